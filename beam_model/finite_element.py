@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two-node beam elements: Hermite cubics, and the shear-flexible element exact at its nodes.
+
+Both have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s h²)
+the shear-flexible shape functions solve the homogeneous Timoshenko equations (Friedman and
+Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from beam_model.segment_model import SegmentModel
+from geometry.boom import SAME_PLACE, BoomError, Segment
+
+Array = npt.NDArray[np.float64]
+Theory = Literal["euler-bernoulli", "timoshenko"]
+
+# Exact for products of the cubics.
+_GAUSS = np.polynomial.legendre.leggauss(4)
+
+
+def finite_element_segment(
+    segment: Segment,
+    element_length: float,
+    breaks: Sequence[float],
+    theory: Theory,
+    rotary_inertia: bool,
+) -> SegmentModel:
+    """Assemble one segment.
+
+    Args:
+        segment: a beam; its supports get nodes.
+        element_length: largest length of an element in m.
+        breaks: further x in m that get nodes: stations.
+        theory: ``timoshenko`` takes the shear area from the segment's box section.
+        rotary_inertia: keep I_p of (3).
+
+    Raises:
+        BoomError: a Timoshenko beam without a section.
+    """
+    if theory == "timoshenko" and segment.section is None:
+        raise BoomError(
+            "segment",
+            f"{segment.name!r} has no box section, which a Timoshenko beam needs for its shear "
+            "area; give height_to_width or section",
+        )
+    nodes = _nodes(segment, element_length, breaks)
+    num_dofs = 2 * nodes.size
+    stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
+    load = np.zeros(num_dofs)
+    points, weights = _GAUSS
+    for k, h in enumerate(np.diff(nodes)):
+        dofs = slice(2 * k, 2 * k + 4)
+        phi = _shear_number(segment, theory, h)
+        xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
+        w, slope = _deflection(xi, h, phi)
+        theta, curvature = _rotation(xi, h, phi)
+        stiffness[dofs, dofs] += segment.bending_stiffness * _products(curvature, weight)
+        if phi > 0.0:
+            shear_stiffness = 12.0 * segment.bending_stiffness / (phi * h**2)
+            stiffness[dofs, dofs] += shear_stiffness * _products(slope - theta, weight)
+        mass[dofs, dofs] += segment.mass_per_length * _products(w, weight)
+        if rotary_inertia:
+            mass[dofs, dofs] += segment.rotary_inertia * _products(theta, weight)
+        damping[dofs, dofs] += segment.viscous_damping * _products(w, weight)
+        load[dofs] += segment.load * (w @ weight)
+
+    held = [2 * int(np.argmin(np.abs(nodes - x))) for x in segment.supports]
+    free = np.setdiff1d(np.arange(num_dofs), held)
+
+    def deflection(x: float) -> Array:
+        k = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
+        h = nodes[k + 1] - nodes[k]
+        row = np.zeros(num_dofs)
+        shapes, _ = _deflection(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
+        row[2 * k : 2 * k + 4] = shapes
+        return np.asarray(row[free])
+
+    block = np.ix_(free, free)
+    return SegmentModel(
+        stiffness=stiffness[block],
+        mass=mass[block],
+        damping=damping[block],
+        load=load[free],
+        deflection=deflection,
+        rigid_modes=segment.rigid_modes,
+    )
+
+
+def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
+    """Equal elements between the places that must be nodes."""
+    inside = [x for x in (*segment.supports, *breaks) if segment.holds(x)]
+    places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
+    places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE])]
+    spans = [
+        np.linspace(a, b, max(1, int(np.ceil((b - a) / element_length - SAME_PLACE))) + 1)[:-1]
+        for a, b in pairwise(places)
+    ]
+    return np.concatenate([*spans, [segment.end]])
+
+
+def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
+    """Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
+    if theory == "euler-bernoulli" or segment.section is None:
+        return 0.0
+    shear_stiffness = segment.material.shear_modulus * segment.section.shear_area
+    return 12.0 * segment.bending_stiffness / (shear_stiffness * h**2)
+
+
+def _deflection(xi: Array, h: float, phi: float) -> tuple[Array, Array]:
+    """Shape functions of w and their slopes w′, each (4, num_points), at ξ = x/h."""
+    w = np.array(
+        [
+            1.0 - 3.0 * xi**2 + 2.0 * xi**3 + phi * (1.0 - xi),
+            h * (xi - 2.0 * xi**2 + xi**3 + 0.5 * phi * (xi - xi**2)),
+            3.0 * xi**2 - 2.0 * xi**3 + phi * xi,
+            h * (-(xi**2) + xi**3 - 0.5 * phi * (xi - xi**2)),
+        ]
+    )
+    slope = np.array(
+        [
+            (-6.0 * xi + 6.0 * xi**2 - phi) / h,
+            1.0 - 4.0 * xi + 3.0 * xi**2 + 0.5 * phi * (1.0 - 2.0 * xi),
+            (6.0 * xi - 6.0 * xi**2 + phi) / h,
+            -2.0 * xi + 3.0 * xi**2 - 0.5 * phi * (1.0 - 2.0 * xi),
+        ]
+    )
+    return w / (1.0 + phi), slope / (1.0 + phi)
+
+
+def _rotation(xi: Array, h: float, phi: float) -> tuple[Array, Array]:
+    """Shape functions of θ and the curvatures θ′, each (4, num_points), at ξ = x/h."""
+    theta = np.array(
+        [
+            6.0 * (xi**2 - xi) / h,
+            1.0 - 4.0 * xi + 3.0 * xi**2 + phi * (1.0 - xi),
+            6.0 * (xi - xi**2) / h,
+            -2.0 * xi + 3.0 * xi**2 + phi * xi,
+        ]
+    )
+    curvature = np.array(
+        [
+            6.0 * (2.0 * xi - 1.0) / h**2,
+            (-4.0 + 6.0 * xi - phi) / h,
+            6.0 * (1.0 - 2.0 * xi) / h**2,
+            (-2.0 + 6.0 * xi + phi) / h,
+        ]
+    )
+    return theta / (1.0 + phi), curvature / (1.0 + phi)
+
+
+def _products(values: Array, weights: Array) -> Array:
+    """∫ f_i f_j dx over one element from values at its quadrature points."""
+    return (values * weights) @ values.T

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The force between two segments that touch across a play.
+
+The law is the paper's equation (4): nothing inside the clearance, a power of the
+penetration beyond it. Its potential is kept beside it, because the energy ledger of
+every trajectory is the first check of a contact simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PowerContact:
+    """Gap contact: F(y) = k₂ (y − Δ)ⁿ above Δ, −k₁ (−y − Δ)ⁿ below −Δ, zero between.
+
+    Equation (4) of Rusiński and Wyciślok (1997), in the one sign convention that restores;
+    n = 3/2 is Hertz, n = 1 a linear stop. A side with stiffness zero never touches.
+
+    Args:
+        stiffness: k₂ in N/mⁿ.
+        exponent: n, at least 1. Below 1 the force has an infinite slope at touch.
+        clearance: Δ in m on each side (half the play), not negative.
+        stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
+
+    Raises:
+        ValueError: an argument is out of its range or not finite.
+    """
+
+    stiffness: float
+    exponent: float
+    clearance: float
+    stiffness_below: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, k in (("stiffness", self.stiffness), ("stiffness_below", self.below)):
+            if not (np.isfinite(k) and k >= 0.0):
+                raise ValueError(f"{name} must be a number of N/m^n, not negative, got {k}")
+        if self.stiffness == 0.0 and self.below == 0.0:
+            raise ValueError("stiffness must be positive on one side at least, got 0.0 on both")
+        if not 1.0 <= self.exponent < np.inf:
+            raise ValueError(f"exponent must be at least 1, got {self.exponent}")
+        if not 0.0 <= self.clearance < np.inf:
+            raise ValueError(f"clearance must be finite and not negative, got {self.clearance} m")
+
+    @property
+    def below(self) -> float:
+        """k₁ in N/mⁿ."""
+        return self.stiffness if self.stiffness_below is None else self.stiffness_below
+
+    def upper(self) -> PowerContact:
+        """The same law on the side y > 0 alone."""
+        return replace(self, stiffness_below=0.0)
+
+    def lower(self) -> PowerContact:
+        """The same law on the side y < 0 alone."""
+        return replace(self, stiffness=0.0, stiffness_below=self.below)
+
+    def shared(self, weight: float) -> PowerContact:
+        """The part ``weight`` of the law, for one of several points that carry it together."""
+        return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)
+
+    def penetration(self, y: Array) -> Array:
+        """Depth beyond the clearance in m, zero while apart. Shape of ``y``."""
+        return np.maximum(np.abs(y) - self.clearance, 0.0)
+
+    def force(self, y: Array) -> Array:
+        """Force in N that the outer segment feels; the inner one feels its opposite.
+
+        Args:
+            y: relative displacement u − w in m, any shape.
+        """
+        return np.sign(y) * self._side(y) * self.penetration(y) ** self.exponent
+
+    def energy(self, y: Array) -> Array:
+        """Potential of :meth:`force` in J. Shape of ``y``."""
+        n = self.exponent
+        return self._side(y) * self.penetration(y) ** (n + 1.0) / (n + 1.0)
+
+    def _side(self, y: Array) -> Array:
+        return np.where(y > 0.0, self.stiffness, self.below)

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The one way in which a computation says that its numbers cannot be trusted."""
+
+
+class NumericsError(RuntimeError):
+    """The result is not finite, or its energy is out of bound. The message names the remedy."""

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What leaves every model: deflections, contact forces and energies over time.
+
+A trajectory is labelled (xarray) and carries its energy residual: kinetic, strain and contact
+energy, less the work of the load, plus what damping took, should add up to what there was.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.signal import find_peaks
+
+from dynamics.gap_system import GapSystem
+
+Array = npt.NDArray[np.float64]
+
+Dims = str | tuple[str, str]
+
+ENERGIES = ("kinetic_energy", "strain_energy", "contact_energy", "work", "dissipation")
+
+
+def energy_residual(energies: Array) -> Array:
+    """(num_times,) energy that is not accounted for, as a part of the energy put in.
+
+    Args:
+        energies: (num_times, 5), the columns of ``ENERGIES`` in J.
+    """
+    held = energies[:, :3].sum(axis=1)
+    missing = held - held[0] - energies[:, 3] + energies[:, 4]
+    put_in = max(float(np.abs(energies[:, 3]).max()), float(np.abs(held[0])))
+    return np.asarray(missing / put_in if put_in > 0.0 else missing)
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """Motion of one model.
+
+    Args:
+        data: dims ``time`` and ``station``; the output of each observer;
+            ``contact_force`` in N, positive where the inner segment presses up, as the mean
+            over the output interval that ends at the time (so that its sum is the impulse);
+            ``contact_force_peak``, the largest in that interval; ``gap`` in m, the mean of
+            u − w over a station's rows; the energies in J. Attributes: ``step`` in s,
+            ``steps``, ``first_contact`` in s (NaN if none), ``contact_changes``,
+            ``energy_residual``, ``contact_phase``.
+        states: (num_times, num_modes) modal coordinates.
+    """
+
+    data: xr.Dataset
+    states: Array
+
+    @classmethod
+    def record(
+        cls,
+        system: GapSystem,
+        *,
+        time: Array,
+        states: Array,
+        energies: Array,
+        row_gaps: Array,
+        row_forces: Array,
+        row_peaks: Array,
+        step: float,
+        first_contact: float,
+        contact_changes: int,
+    ) -> Trajectory:
+        """Label what an integrator leaves; rows are gathered by station.
+
+        Args:
+            time: (num_times,) in s.
+            states: (num_times, num_modes).
+            energies: (num_times, 5), the columns of ``ENERGIES`` in J.
+            row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
+            step: in s.
+            first_contact: in s.
+            contact_changes: how often a row opened or closed.
+        """
+        belongs = np.equal.outer(system.station_of_row, np.arange(len(system.stations)))
+        rows_at = np.maximum(belongs.sum(axis=0), 1)
+        variables: dict[str, tuple[Dims, Array, dict[str, str]]] = {
+            name: ("time", states @ row, {"units": unit})
+            for name, (row, unit) in system.observers.items()
+        }
+        by_station = ("time", "station")
+        variables |= {
+            "contact_force": (by_station, row_forces @ belongs, {"units": "N"}),
+            "contact_force_peak": (by_station, row_peaks @ belongs, {"units": "N"}),
+            "gap": (by_station, row_gaps @ belongs / rows_at, {"units": "m"}),
+        }
+        variables |= {
+            name: ("time", column, {"units": "J"})
+            for name, column in zip(ENERGIES, energies.T, strict=True)
+        }
+        data = xr.Dataset(
+            variables,
+            coords={
+                "time": ("time", time, {"units": "s"}),
+                "station": ("station", np.array(system.stations, dtype=float), {"units": "m"}),
+            },
+            attrs={
+                "step": step,
+                "steps": round(float(time[-1]) / step),
+                "first_contact": first_contact,
+                "contact_changes": contact_changes,
+                "energy_residual": float(np.abs(energy_residual(energies)).max()),
+            },
+        )
+        return cls(data, states)
+
+    @property
+    def time(self) -> Array:
+        """(num_times,) in s."""
+        return np.asarray(self.data["time"].values)
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest unaccounted energy as a part of the energy put in."""
+        return float(self.data.attrs["energy_residual"])
+
+    @property
+    def first_contact(self) -> float:
+        """When a row first closes in s, NaN if it never does."""
+        return float(self.data.attrs["first_contact"])
+
+    def first_peak(self, observer: str = "tip") -> tuple[float, float]:
+        """Time in s and height in m of the first peak of the slow motion.
+
+        A peak counts when it stands out by a fifth of the whole range, so that the ripple of
+        micro-impacts does not; NaN where there is none.
+        """
+        deflection = np.asarray(self.data[observer].values)
+        peaks, _ = find_peaks(deflection, prominence=0.2 * np.ptp(deflection))
+        if peaks.size == 0:
+            return float("nan"), float("nan")
+        return float(self.time[peaks[0]]), float(deflection[peaks[0]])

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Structured triangle meshes of a box segment, made by gmsh.
+
+Every wall is cut into transfinite patches, so that mesh lines lie exactly where supports,
+stations and contact points are, whatever the lengths and the mesh size, and so that the mesh
+does not depend on gmsh's version. The triangles mirror each other in y and in z: a load in
+the plane of bending then moves the section in that plane, to round-off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import gmsh
+import meshio
+import numpy as np
+import numpy.typing as npt
+
+from geometry.boom import SAME_PLACE
+from geometry.section import BoxSection
+
+WALLS = ("bottom", "right", "top", "left")
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentMesh:
+    """Mid-surface mesh of one segment.
+
+    Args:
+        points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
+        triangles: (num_triangles, 3) point numbers.
+        walls: (num_triangles,) position of each triangle's wall in ``WALLS``.
+        lines: name of a cross-section line → (num_edges, 2) point numbers.
+    """
+
+    points: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int64]
+    walls: npt.NDArray[np.int32]
+    lines: Mapping[str, npt.NDArray[np.int64]]
+
+    def write(self, path: Path) -> None:
+        """Write for ParaView (``.vtu``, ``.xdmf``) with the wall of each triangle as a field."""
+        meshio.Mesh(
+            self.points, [("triangle", self.triangles)], cell_data={"wall": [self.walls]}
+        ).write(path)
+
+
+def mesh_segment(
+    section: BoxSection,
+    breaks: Mapping[str, float],
+    size: float,
+    msh: Path | None = None,
+) -> SegmentMesh:
+    """Mesh the four walls of a box.
+
+    Args:
+        section: its mid-lines are meshed.
+        breaks: name → x in m of each outline that must be a mesh line; the smallest and the
+            largest x are the ends of the segment. Two names may share a place.
+        size: target edge length in m; every patch gets the nearest whole number of edges.
+        msh: where to write gmsh's own file, with a physical group for each wall, and for
+            each break and wall the line ``NAME:WALL``.
+
+    Raises:
+        ValueError: the size is not a positive number, or there are no two distinct breaks.
+    """
+    if not (np.isfinite(size) and size > 0.0):
+        raise ValueError(f"mesh size must be a positive number of m, got {size}")
+    outlines = _merge_places(breaks.values())
+    if len(outlines) < 2:
+        raise ValueError("a segment needs breaks at two places at least, its ends")
+    corners, walls = _ring(section)
+    with _gmsh_model():
+        wall_surfaces, ring_curves = _build_patches(outlines, corners, walls, size)
+        for wall, surfaces in wall_surfaces.items():
+            gmsh.model.addPhysicalGroup(2, surfaces, name=wall)
+        for name, x in breaks.items():
+            at = int(np.argmin([abs(x - outline) for outline in outlines]))
+            for wall in WALLS:
+                curves = [c for c, w in zip(ring_curves[at], walls, strict=True) if w == wall]
+                gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{wall}")
+        gmsh.model.mesh.generate(2)
+        if msh is not None:
+            gmsh.write(str(msh))
+        return _extract(wall_surfaces)
+
+
+def _merge_places(values: Iterable[float]) -> list[float]:
+    places: list[float] = []
+    for x in sorted(values):
+        if not places or x - places[-1] > SAME_PLACE:
+            places.append(x)
+    return places
+
+
+def _ring(section: BoxSection) -> tuple[list[tuple[float, float]], list[str]]:
+    """Corners (y, z) of the patches once around the box, and the wall of each edge."""
+    b, h = 0.5 * section.width, 0.5 * section.height
+    corners = [(-b, -h), (0.0, -h), (b, -h), (b, 0.0), (b, h), (0.0, h), (-b, h), (-b, 0.0)]
+    return corners, [wall for wall in WALLS for _ in range(2)]
+
+
+@contextmanager
+def _gmsh_model() -> Iterator[None]:
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("segment")
+        yield
+    finally:
+        gmsh.finalize()
+
+
+def _build_patches(
+    outlines: Sequence[float],
+    corners: Sequence[tuple[float, float]],
+    walls: Sequence[str],
+    size: float,
+) -> tuple[dict[str, list[int]], list[list[int]]]:
+    """Transfinite patches; gives surfaces by wall, and ring curves by outline."""
+    geo = gmsh.model.geo
+    n = len(corners)
+    points = [[geo.addPoint(x, y, z) for y, z in corners] for x in outlines]
+    rings = [[geo.addLine(p[j], p[(j + 1) % n]) for j in range(n)] for p in points]
+    rails = [[geo.addLine(a[j], b[j]) for j in range(n)] for a, b in pairwise(points)]
+    surfaces: dict[str, list[int]] = {wall: [] for wall in WALLS}
+    for i, (x0, x1) in enumerate(pairwise(outlines)):
+        for j, (y0, z0) in enumerate(corners):
+            k = (j + 1) % n
+            y1, z1 = corners[k]
+            loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
+            surface = geo.addPlaneSurface([loop])
+            surfaces[walls[j]].append(surface)
+            # The diagonals turn around from quadrant to quadrant, which makes the mesh a
+            # mirror image of itself.
+            quadrant = (y0 + y1) * (z0 + z1)
+            geo.mesh.setTransfiniteSurface(
+                surface,
+                "Left" if quadrant > 0.0 else "Right",
+                [points[i][j], points[i + 1][j], points[i + 1][k], points[i][k]],
+            )
+            for ring in (rings[i][j], rings[i + 1][j]):
+                _divide(ring, float(np.hypot(y1 - y0, z1 - z0)), size)
+            for rail in (rails[i][j], rails[i][k]):
+                _divide(rail, x1 - x0, size)
+    geo.synchronize()
+    return surfaces, rings
+
+
+def _divide(curve: int, length: float, size: float) -> None:
+    edges = max(1, int(np.floor(length / size + 0.5)))
+    gmsh.model.geo.mesh.setTransfiniteCurve(curve, edges + 1)
+
+
+def _extract(wall_surfaces: Mapping[str, Sequence[int]]) -> SegmentMesh:
+    mesh = gmsh.model.mesh
+    tags, coordinates, _ = mesh.getNodes()
+    number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    number[tags] = np.arange(tags.size)
+    triangles, walls = [], []
+    for wall, surfaces in wall_surfaces.items():
+        for surface in surfaces:
+            _, nodes = mesh.getElementsByType(2, surface)
+            triangles.append(number[nodes].reshape(-1, 3))
+            walls.append(np.full(len(triangles[-1]), WALLS.index(wall), dtype=np.int32))
+    lines = {}
+    for dim, group in gmsh.model.getPhysicalGroups(1):
+        curves = gmsh.model.getEntitiesForPhysicalGroup(dim, group)
+        edges = [number[mesh.getElementsByType(1, curve)[1]].reshape(-1, 2) for curve in curves]
+        lines[gmsh.model.getPhysicalName(dim, group)] = np.concatenate(edges)
+    return SegmentMesh(
+        coordinates.reshape(-1, 3), np.concatenate(triangles), np.concatenate(walls), lines
+    )

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The shell in UFL: flat facets with displacement u and rotation θ, both vectors in space.
+
+Reissner-Mindlin kinematics in the facet's own frame: membrane strain ε, bending strain κ,
+transverse shear γ. The rotation about the normal (drilling) has no stiffness of its own in
+this theory; it is tied to the rotation that the displacement has in the facet's plane (Hughes
+and Brezzi 1989), so that folded plates hand their bending moments over to one another.
+Displacement quadratic and rotation Crouzeix-Raviart (Campello, Pimenta and Wriggers 2003) do
+not lock as the wall becomes thin.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import ufl
+from dolfinx import fem
+from petsc4py import PETSc
+
+from geometry.boom import Material
+
+SHEAR_CORRECTION = 5.0 / 6.0
+
+# Part of G t that ties the drilling rotation. It does not depend on the mesh, so refinement
+# does not stiffen the shell.
+DRILLING = 1.0e-2
+
+
+class ShellForms(NamedTuple):
+    """Compiled bilinear forms, and the linear form of a unit load along z."""
+
+    stiffness: Any
+    mass: Any
+    unit_load: Any
+
+
+def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
+    """Orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
+
+    e3 has no preferred side: every strain is even in it, so the energy does not care.
+    """
+    jacobian = ufl.Jacobian(domain)
+    t1, t2 = (ufl.as_vector([jacobian[i, k] for i in range(3)]) for k in range(2))
+    e3 = ufl.cross(t1, t2)
+    e3 = e3 / ufl.sqrt(ufl.dot(e3, e3))
+    e1 = t1 / ufl.sqrt(ufl.dot(t1, t1))
+    return e1, ufl.cross(e3, e1), e3
+
+
+def shell_forms(
+    space: Any, thickness: Any, material: Material, drilling: float = DRILLING
+) -> ShellForms:
+    """Forms of one shell.
+
+    Args:
+        space: displacement and rotation, see :func:`compat.shell_space`.
+        thickness: wall thickness t in m, constant on each cell.
+        material: isotropic.
+        drilling: part of G t that ties the drilling rotation.
+    """
+    domain = space.mesh
+    constant = {
+        # Constants, not numbers: the compiled form then serves every material.
+        name: fem.Constant(domain, PETSc.ScalarType(value))
+        for name, value in {
+            "E": material.youngs_modulus,
+            "nu": material.poissons_ratio,
+            "rho": material.density,
+            "drilling": drilling,
+        }.items()
+    }
+    young, nu, density = constant["E"], constant["nu"], constant["rho"]
+    shear_modulus = young / (2.0 * (1.0 + nu))
+    e1, e2, e3 = facet_frame(domain)
+    plane = ufl.as_matrix([[e1[i] for i in range(3)], [e2[i] for i in range(3)]])
+
+    def in_plane(gradient: Any) -> Any:
+        return plane * gradient * plane.T
+
+    def strains(u: Any, theta: Any) -> tuple[Any, Any, Any, Any]:
+        gradient = ufl.grad(u)
+        membrane = in_plane(gradient)
+        bending = ufl.sym(in_plane(ufl.grad(ufl.cross(theta, e3))))
+        shear = plane * (gradient.T * e3 + ufl.cross(theta, e3))
+        twist = 0.5 * (membrane[1, 0] - membrane[0, 1]) - ufl.dot(theta, e3)
+        return ufl.sym(membrane), bending, shear, twist
+
+    def plane_stress(strain: Any) -> Any:
+        identity = ufl.Identity(2)
+        return young / (1.0 - nu**2) * ((1.0 - nu) * strain + nu * ufl.tr(strain) * identity)
+
+    u, theta = ufl.split(ufl.TrialFunction(space))
+    v, eta = ufl.split(ufl.TestFunction(space))
+    membrane, bending, shear, twist = strains(u, theta)
+    membrane_v, bending_v, shear_v, twist_v = strains(v, eta)
+    t = thickness
+    stiffness = (
+        t * ufl.inner(plane_stress(membrane), membrane_v)
+        + t**3 / 12.0 * ufl.inner(plane_stress(bending), bending_v)
+        + SHEAR_CORRECTION * shear_modulus * t * ufl.inner(shear, shear_v)
+        + constant["drilling"] * shear_modulus * t * twist * twist_v
+    ) * ufl.dx(degree=2, domain=domain)
+    mass = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
+    return ShellForms(
+        fem.form(stiffness),
+        fem.form(mass * ufl.dx(degree=4, domain=domain)),
+        fem.form(t * v[2] * ufl.dx(degree=2, domain=domain)),
+    )

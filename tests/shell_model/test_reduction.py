@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The reduced segment answers as the full one does, and says how well."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from shell_model.eigenmodes import natural_frequencies
+from shell_model.reduction import KrylovOptions, ShiftedSolver, reduce_segment
+from shell_model.segment_shell import SegmentShell
+
+Shells = Callable[..., SegmentShell]
+
+
+def _inputs(shell: SegmentShell) -> np.ndarray:
+    rows = [
+        shell.row(shell.outline(x).flange_deflection(side, 0.5 * shell.section.width))
+        for x in (2.0, 10.0)
+        for side in (1.0, -1.0)
+    ]
+    return np.column_stack([row for row in rows if row.any()] + [shell.load])
+
+
+def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
+    """Reference: the full model. Statics, and frequencies the basis was not built at."""
+    shell = box_shell(0.25, supports=(0.0, 2.0), load=80.0)
+    inputs = _inputs(shell)
+    reduced = reduce_segment(shell, inputs, KrylovOptions())
+    gains = reduced.shapes.T @ inputs
+    for frequency in (0.0, 20.0, 120.0, 700.0):
+        solve = ShiftedSolver(shell, frequency)
+        full = inputs.T @ solve(inputs)
+        solve.destroy()
+        sigma = (2.0 * np.pi * frequency) ** 2
+        approximate = gains.T @ (gains / (reduced.omega2 + sigma)[:, None])
+        scale = np.sqrt(np.outer(np.diag(full), np.diag(full)))
+        assert np.abs((approximate - full) / scale).max() < 1.0e-6
+    assert reduced.compliance_error < 1.0e-6
+
+
+def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
+    shell = box_shell(0.25, supports=(0.0, 2.0), load=80.0)
+    inputs = _inputs(shell)
+    rich = reduce_segment(shell, inputs, KrylovOptions())
+    poor = reduce_segment(shell, inputs, KrylovOptions(shifts=(5.0, 300.0), moments=1))
+    assert poor.omega2.size < rich.omega2.size
+    assert poor.compliance_error > 1.0e3 * rich.compliance_error
+
+
+def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> None:
+    """Reference: SLEPc on the full model. Each ω below the limit is a natural one to 1e-6."""
+    shell = box_shell(0.25, load=80.0)
+    reduced = reduce_segment(shell, _inputs(shell), KrylovOptions())
+    frequencies = np.sqrt(reduced.omega2) / (2.0 * np.pi)
+    claimed = frequencies[(frequencies > 0.0) & (frequencies <= reduced.frequency_limit)]
+    assert claimed.size >= 1
+    full = natural_frequencies(shell, 40)
+    for frequency in claimed:
+        assert np.abs(full / frequency - 1.0).min() < 1.0e-6
+
+
+def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
+    box_shell: Shells,
+) -> None:
+    """Heave and pitch; the load moves nothing else freely, so the four others drop out."""
+    shell = box_shell(0.25, load=80.0)
+    reduced = reduce_segment(shell, _inputs(shell), KrylovOptions())
+    assert np.count_nonzero(reduced.omega2 == 0.0) == 2
+
+
+@pytest.mark.quick
+def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
+    shell = box_shell(0.25, load=80.0)
+    reduced = reduce_segment(shell, _inputs(shell), KrylovOptions(moments=2))
+    right, left = shell.mass.createVecs()
+    product = np.empty_like(reduced.shapes)
+    for column, shape in enumerate(reduced.shapes.T):
+        right.array[:] = shape
+        shell.mass.mult(right, left)
+        product[:, column] = left.array
+    gram = reduced.shapes.T @ product
+    assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The shell of one segment behaves as a beam where a beam is right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.segment_model import natural_modes
+from geometry.boom import Segment
+from shell_model.eigenmodes import natural_frequencies
+from shell_model.outline import Outline
+from shell_model.reduction import ShiftedSolver
+from shell_model.segment_shell import SegmentShell
+from tests.shell_model.conftest import BOX, STEEL
+
+Shells = Callable[..., SegmentShell]
+
+
+def test_rigid_motions_cost_no_energy(box_shell: Shells) -> None:
+    """Reference: analytic, zero, against the stiffness's own size."""
+    shell = box_shell(0.25)
+    motions = shell.rigid_motions()
+    right, left = shell.stiffness.createVecs()
+    right.array[:] = np.abs(motions).max(axis=1)
+    shell.stiffness.mult(right, left)
+    size = np.abs(right.array @ left.array)
+    for motion in motions.T:
+        right.array[:] = motion
+        shell.stiffness.mult(right, left)
+        assert abs(motion @ left.array) < 1.0e-10 * size
+
+
+@pytest.mark.quick
+def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
+    """Reference: analytic, ρ A L for the translations, ρ (J_y + J_z) L for the roll.
+
+    The mid-surface box has its second moments without the corners' own share, (t/h)² of it.
+    """
+    shell = box_shell(0.25)
+    right, left = shell.mass.createVecs()
+    masses = []
+    for motion in shell.rigid_motions().T:
+        right.array[:] = motion
+        shell.mass.mult(right, left)
+        masses.append(motion @ left.array)
+    mass = STEEL.density * BOX.area * 10.0
+    polar = BOX.second_moment_of_area + BOX.lateral_second_moment_of_area
+    assert masses[:3] == pytest.approx([mass] * 3, rel=1.0e-12)
+    assert masses[3] == pytest.approx(STEEL.density * polar * 10.0, rel=5.0e-4)
+
+
+def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength(box_shell: Shells) -> None:
+    """Reference: other code, this project's Timoshenko elements, themselves tested against
+    analytic frequencies. Six rigid modes at zero; the first bending frequency closes in on
+    the beam's with the square of the wavelength, as section distortion must.
+    """
+    differences = []
+    for length in (10.0, 20.0):
+        measured = natural_frequencies(box_shell(0.2, length=length), 10)
+        assert measured[:6] == pytest.approx(np.zeros(6), abs=1.0e-3)
+        euler, timoshenko = (
+            _free_beam_frequency(length, theory) for theory in ("euler-bernoulli", "timoshenko")
+        )
+        bending = measured[6:][np.argmin(np.abs(measured[6:] - timoshenko))]
+        difference = abs(bending / timoshenko - 1.0)
+        assert difference < 0.2 * (1.0 - timoshenko / euler)
+        differences.append(difference)
+    assert differences[1] < 1.0e-3
+    assert np.log2(differences[0] / differences[1]) > 1.5
+
+
+def _free_beam_frequency(length: float, theory: Theory) -> float:
+    beam = Segment(
+        name="beam",
+        start=0.0,
+        end=length,
+        material=STEEL,
+        mass_per_length=BOX.mass_per_length(STEEL.density),
+        second_moment_of_area=BOX.second_moment_of_area,
+        rotary_inertia=STEEL.density * BOX.second_moment_of_area,
+        section=BOX,
+    )
+    model = finite_element_segment(beam, 0.05 * length, (), theory, theory == "timoshenko")
+    omega2 = natural_modes(model.stiffness, model.mass, model.rigid_modes).omega2
+    return float(np.sqrt(omega2[2]) / (2.0 * np.pi))
+
+
+def _web_row(outline: Outline) -> dict[int, float]:
+    """Deflection of the webs alone, where the shear force of a beam goes."""
+    row: dict[int, float] = {}
+    for side in (1.0, -1.0):
+        nodes, lengths = outline.simpson("z", 0.5 * side * BOX.width)
+        for dof, weight in zip(outline.dofs[nodes, 2], lengths / (2.0 * BOX.height), strict=True):
+            row[int(dof)] = row.get(int(dof), 0.0) + float(weight)
+    return row
+
+
+def _overhang_compliance(box_shell: Shells, size: float) -> float:
+    shell = box_shell(size, supports=(0.0, 2.0))
+    force = shell.row(_web_row(shell.outline(10.0)))
+    solve = ShiftedSolver(shell, 0.0)
+    compliance = float(force @ solve(force[:, None])[:, 0])
+    solve.destroy()
+    return compliance
+
+
+def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
+    """Reference: analytic. Supports at 0 and 2 m, unit force at 10 m shared by the webs:
+    a² (l + a) / 3EJ + (a + a²/l) / G A_web, with l = 2 m and a = 8 m.
+
+    The measured difference, 0.1 %, is a third of what the flanges' shear flow can add.
+    """
+    bending = 64.0 * 10.0 / (3.0 * STEEL.youngs_modulus * BOX.second_moment_of_area)
+    shear = (8.0 + 32.0) / (STEEL.shear_modulus * BOX.shear_area)
+    assert shear > 0.02 * bending  # the tolerance is smaller than the effect
+    coarse, fine = (_overhang_compliance(box_shell, size) for size in (0.2, 0.1))
+    assert fine == pytest.approx(bending + shear, rel=2.0e-3)
+    assert abs(fine - coarse) < 2.0e-3 * fine
+    assert fine > coarse  # refinement softens a conforming displacement model
+
+
+@pytest.mark.quick
+def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
+    """Reference: analytic. Mean deflection, slope and distortion of a lifted, pitched box."""
+    shell = box_shell(0.25)
+    outline = shell.outline(10.0)
+    motion = shell.rigid_motions() @ np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
+    readings = [
+        shell.row(row) @ motion
+        for row in (
+            outline.mean_deflection(),
+            outline.rotation(),
+            outline.distortion(),
+            outline.flange_deflection(1.0, 0.1),
+            outline.flange_deflection(-1.0, 0.5 * BOX.width),
+        )
+    ]
+    lifted = 0.03 + 0.002 * 5.0
+    assert readings == pytest.approx([lifted, 0.002, 0.0, lifted, lifted], abs=1.0e-12)
