@@ -9,6 +9,7 @@ from __future__ import annotations
 import inspect
 from typing import Any
 
+import dolfinx.fem.petsc as fem_petsc
 import numpy as np
 import numpy.typing as npt
 import ufl
@@ -24,7 +25,7 @@ except ImportError:
     _HAS_BASIX_UFL = False
 
 _ASSEMBLE_DIAGONAL = (
-    "diag" if "diag" in inspect.signature(fem.petsc.assemble_matrix).parameters else "diagonal"
+    "diag" if "diag" in inspect.signature(fem_petsc.assemble_matrix).parameters else "diagonal"
 )
 
 
@@ -74,6 +75,15 @@ def cellwise_function(domain: Any, values: npt.NDArray[np.float64]) -> Any:
 
 def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
     """Assembled matrix with ``diagonal`` in the rows of held degrees of freedom."""
-    matrix = fem.petsc.assemble_matrix(form, bcs, **{_ASSEMBLE_DIAGONAL: diagonal})
+    matrix = fem_petsc.assemble_matrix(form, bcs, **{_ASSEMBLE_DIAGONAL: diagonal})
     matrix.assemble()
     return matrix
+
+
+def assemble_vector(form: Any) -> npt.NDArray[np.float64]:
+    """This rank's rows of an assembled vector, the other ranks' parts added."""
+    vector = fem_petsc.assemble_vector(form)
+    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+    rows = vector.array.copy()
+    vector.destroy()
+    return np.asarray(rows)

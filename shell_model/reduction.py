@@ -41,7 +41,7 @@ class KrylovOptions:
     """
 
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
-    moments: int = 4
+    moments: int = 3
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ class SegmentShell:
         rotation_dofs: (num_owned_rotation_nodes, 3) global rows of the rotations.
         section: the plates.
         supported: whether anything is held.
+        space: the function space, which owns the communicator that the matrices live on.
     """
 
     comm: MPI.Comm
@@ -54,6 +55,7 @@ class SegmentShell:
     rotation_dofs: npt.NDArray[np.int64]
     section: BoxSection
     supported: bool
+    space: Any
 
     @property
     def num_dofs(self) -> int:
@@ -136,14 +138,21 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     for bc in bcs:
         held, _ = bc.dof_indices()
         free[held[held < free.size]] = False
-    unit_load = fem.petsc.assemble_vector(forms.unit_load)
-    unit_load.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-    load = segment.load / section.area * unit_load.array.copy() * free
-    unit_load.destroy()
+    load = segment.load / section.area * compat.assemble_vector(forms.unit_load) * free
     places, node_dofs = _owned_nodes(space, 0)
     _, rotation_dofs = _owned_nodes(space, 1)
     return SegmentShell(
-        comm, stiffness, mass, load, free, places, node_dofs, rotation_dofs, section, bool(bcs)
+        comm=comm,
+        stiffness=stiffness,
+        mass=mass,
+        load=load,
+        free=free,
+        nodes=places,
+        node_dofs=node_dofs,
+        rotation_dofs=rotation_dofs,
+        section=section,
+        supported=bool(bcs),
+        space=space,
     )
 
 
