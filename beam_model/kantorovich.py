@@ -18,7 +18,7 @@ from beam_model.segment_model import SegmentModel
 from geometry.boom import Segment
 
 Array = npt.NDArray[np.float64]
-Base = Literal["as printed", "pinned"]
+Base = Literal["as printed", "pinned", "complete"]
 
 
 def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
@@ -27,23 +27,29 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     Args:
         segment: its supports are x0, x1, …; x counts from the first of them, as in the paper
             where x0 = 0.
-        terms: how many, i = 1 … terms for ``as printed``, i = 0 … terms − 1 for ``pinned``.
-        base: as printed, the slope vanishes at x0 too; pinned leaves it free.
+        terms: how many: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
+        base: as printed, the slope vanishes at x0 too; the others leave it free.
     """
     supports = sorted(segment.supports)
     roots = [supports[0], *supports] if base == "as printed" else supports
     return _times_legendre(segment, Polynomial.fromroots(roots), terms)
 
 
-def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
+def inner_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
+
+    The printed functions lack one: all of them keep x4 on the tangent at x2, and the series does
+    not converge to a free beam however many terms it has. One power less makes them complete.
 
     Args:
         segment: runs from x2 to x4.
         terms: how many; the first two are the rigid motions.
+        base: complete, the powers of x − x2 behind the rigid motions start at one; otherwise at
+            two, as printed.
     """
     rigid = _times_legendre(segment, Polynomial([1.0]), min(terms, 2))
-    bending = Polynomial.fromroots([segment.start, segment.start, segment.end])
+    powers = 1 if base == "complete" else 2
+    bending = Polynomial.fromroots([segment.start] * powers + [segment.end])
     return rigid + _times_legendre(segment, bending, terms - 2)
 
 
@@ -55,10 +61,11 @@ def kantorovich_segment(
     Args:
         segment: a beam.
         terms: number of functions.
-        base: which reading of (29), where the segment is supported.
+        base: which reading of (29) and (31).
         rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
     """
-    basis = outer_basis(segment, terms, base) if segment.supports else inner_basis(segment, terms)
+    functions = outer_basis if segment.supports else inner_basis
+    basis = functions(segment, terms, base)
     # Gauss's rule with as many points as the highest degree is exact for products of two.
     degree = max(function.degree() for function in basis)
     nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
@@ -68,6 +75,8 @@ def kantorovich_segment(
         np.array([function.deriv(order)(x) if order else function(x) for function in basis])
         for order in (0, 1, 2)
     )
+    # The printed base holds the slope at the first support too.
+    held = len(segment.supports) + int(bool(segment.supports) and base == "as printed")
     mass = segment.mass_per_length * _products(value, weights)
     if rotary_inertia:
         mass = mass + segment.rotary_inertia * _products(slope, weights)
@@ -77,7 +86,7 @@ def kantorovich_segment(
         damping=segment.viscous_damping * _products(value, weights),
         load=segment.load * (value @ weights),
         deflection=lambda place: np.array([function(place) for function in basis]),
-        rigid_modes=min(segment.rigid_modes, terms),
+        rigid_modes=min(max(0, 2 - held), terms),
     )
 
 

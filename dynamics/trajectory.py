@@ -14,25 +14,12 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.signal import find_peaks
 
+from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
 
 Array = npt.NDArray[np.float64]
 
 Dims = str | tuple[str, str]
-
-ENERGIES = ("kinetic_energy", "strain_energy", "contact_energy", "work", "dissipation")
-
-
-def energy_residual(energies: Array) -> Array:
-    """(num_times,) energy that is not accounted for, as a part of the energy put in.
-
-    Args:
-        energies: (num_times, 5), the columns of ``ENERGIES`` in J.
-    """
-    held = energies[:, :3].sum(axis=1)
-    missing = held - held[0] - energies[:, 3] + energies[:, 4]
-    put_in = max(float(np.abs(energies[:, 3]).max()), float(np.abs(held[0])))
-    return np.asarray(missing / put_in if put_in > 0.0 else missing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +33,7 @@ class Trajectory:
             ``contact_force_peak``, the largest in that interval; ``gap`` in m, the mean of
             u − w over a station's rows; the energies in J. Attributes: ``step`` in s,
             ``steps``, ``first_contact`` in s (NaN if none), ``contact_changes``,
-            ``energy_residual``, ``contact_phase``.
+            ``energy_residual``.
         states: (num_times, num_modes) modal coordinates.
     """
 
@@ -65,6 +52,7 @@ class Trajectory:
         row_forces: Array,
         row_peaks: Array,
         step: float,
+        steps: int,
         first_contact: float,
         contact_changes: int,
     ) -> Trajectory:
@@ -76,6 +64,7 @@ class Trajectory:
             energies: (num_times, 5), the columns of ``ENERGIES`` in J.
             row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
             step: in s.
+            steps: how many were made.
             first_contact: in s.
             contact_changes: how often a row opened or closed.
         """
@@ -103,7 +92,7 @@ class Trajectory:
             },
             attrs={
                 "step": step,
-                "steps": round(float(time[-1]) / step),
+                "steps": steps,
                 "first_contact": first_contact,
                 "contact_changes": contact_changes,
                 "energy_residual": float(np.abs(energy_residual(energies)).max()),

@@ -7,6 +7,7 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from geometry.section import BoxSection
 
@@ -183,7 +184,8 @@ def _check_segment(where: str, segment: Segment) -> None:
                 f"{x:g} m lies outside the segment; it must be between {segment.start:g} and "
                 f"{segment.end:g} m",
             )
-    if len(set(segment.supports)) != len(segment.supports):
+    places = sorted(segment.supports)
+    if any(right - left <= SAME_PLACE for left, right in pairwise(places)):
         raise BoomError(f"{where}.supports", "a place is given twice; give each once")
 
 
@@ -203,7 +205,7 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
                 f"{x:g} m lies outside the overlap of {outer.name!r} and {inner.name!r}; it must "
                 f"be between {start:g} and {end:g} m",
             )
-    if list(joint.stations) != sorted(set(joint.stations)):
+    if any(right - left <= SAME_PLACE for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")
     if outer.section is None or inner.section is None:
         return

@@ -43,7 +43,7 @@ class SegmentMesh:
     lines: Mapping[str, npt.NDArray[np.int64]]
 
     def write(self, path: Path) -> None:
-        """Write for ParaView (``.vtu``, ``.xdmf``) with the wall of each triangle as a field."""
+        """Write for ParaView (``.vtu``) with the wall of each triangle as a field."""
         meshio.Mesh(
             self.points, [("triangle", self.triangles)], cell_data={"wall": [self.walls]}
         ).write(path)

@@ -14,6 +14,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from scipy.optimize import brentq
 
+# No plate is thinner (m).
+SMALLEST = 1.0e-6
+
 
 class SectionError(ValueError):
     """No box section satisfies what is asked of it."""
@@ -165,15 +168,15 @@ def infer_inner_section(
 
     # With height = H − t and width = A/2t − height, the wall is thickest where the width is
     # down to the wall itself, and thinnest where width + t fills the outer section.
-    thickest = area / (2.0 * outside_height)
+    thickest = area / (2.0 * max(outside_height, SMALLEST))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))
-    walls = np.linspace(thinnest, thickest, 402)[1:-1]
+    walls = np.linspace(thinnest, thickest, 401)[:-1]
     try:
-        values = np.array([defect(wall) for wall in walls])
-        crossing = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
-    except SectionError:
-        crossing = np.array([], dtype=int)
+        signs = np.sign([defect(wall) for wall in walls])
+    except SectionError:  # no room at all
+        signs = np.zeros(0)
+    crossing = np.flatnonzero(signs[:-1] != signs[1:])
     if crossing.size == 0:
         raise SectionError(
             f"no uniform-wall box with A = {area:.6g} m² and J = {second_moment_of_area:.6g} m⁴ "

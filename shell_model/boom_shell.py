@@ -246,9 +246,9 @@ def _gap_system(
         load=np.concatenate(load),
         rows=np.array(
             [read(c.joint.inner, c.inner) - read(c.joint.outer, c.outer) for c in contacts]
-        ),
+        ).reshape(len(contacts), -1 if contacts else sum(r.omega2.size for r in reduced)),
         laws=[contact.law for contact in contacts],
-        station_of_row=np.array([contact.station for contact in contacts]),
+        station_of_row=np.array([contact.station for contact in contacts], dtype=np.int64),
         stations=[x for joint in boom.joints for x in joint.stations],
         observers={
             name + suffix: Observer(read(number, row(shells[number].outline(x))), unit)

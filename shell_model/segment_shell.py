@@ -12,6 +12,7 @@ import numpy.typing as npt
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
+from scipy.linalg import null_space
 
 from geometry.boom import Segment
 from geometry.mesh import WALLS, SegmentMesh
@@ -41,7 +42,6 @@ class SegmentShell:
         node_dofs: (num_owned_nodes, 3) global rows of their displacements.
         rotation_dofs: (num_owned_rotation_nodes, 3) global rows of the rotations.
         section: the plates.
-        supported: whether anything is held.
         space: the function space, which owns the communicator that the matrices live on.
     """
 
@@ -54,7 +54,6 @@ class SegmentShell:
     node_dofs: npt.NDArray[np.int64]
     rotation_dofs: npt.NDArray[np.int64]
     section: BoxSection
-    supported: bool
     space: Any
 
     @property
@@ -86,12 +85,11 @@ class SegmentShell:
         return local
 
     def rigid_motions(self) -> Array:
-        """(num_owned, 6) translations along and rotations about x, y, z; (num_owned, 0) if held.
+        """(num_owned, num_free) rigid motions that the supports leave, six for a free segment.
 
-        Displacement nodes get ω × (x − middle), rotation nodes ω itself.
+        Displacement nodes get ω × (x − middle), rotation nodes ω itself; combinations that
+        move a held row drop out. Collective.
         """
-        if self.supported:
-            return np.zeros((self.free.size, 0))
         first, _ = self.owned
         motions = np.zeros((self.free.size, 6))
         ends = self.comm.allgather((self.nodes[:, 0].min(), self.nodes[:, 0].max()))
@@ -101,7 +99,8 @@ class SegmentShell:
             motions[self.node_dofs - first, i] = axis
             motions[self.node_dofs - first, 3 + i] = np.cross(axis, arms)
             motions[self.rotation_dofs - first, 3 + i] = axis
-        return motions
+        held = np.concatenate(self.comm.allgather(motions[~self.free]))
+        return motions @ (null_space(held) if held.size else np.eye(6))
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> SegmentShell:
@@ -151,7 +150,6 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
         node_dofs=node_dofs,
         rotation_dofs=rotation_dofs,
         section=section,
-        supported=bool(bcs),
         space=space,
     )
 

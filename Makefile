@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+#
+# `make verify` and `make test` bring up what they need on Debian 12 and 13: Debian packages, and
+# pinned Python packages in .venv. If a conda environment is active whose Python has DOLFINx (see
+# environment.yml), that one is used and nothing but protractile itself is installed in it.
+
+VERIFY_CASES := paper
+
+ROOMS := geometry dynamics beam_model shell_model runs
+SOURCES := pyproject.toml $(foreach room,$(ROOMS),$(wildcard $(room)/*.py)) $(wildcard runs/templates/*)
+REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
+
+# One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
+export OMP_NUM_THREADS ?= 1
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+
+RELEASE := $(shell . /etc/os-release && echo $$ID-$$VERSION_ID)
+FIND_DOLFINX := import importlib.util, sys; sys.exit(importlib.util.find_spec("dolfinx") is None)
+CONDA := $(if $(CONDA_PREFIX),$(shell $(CONDA_PREFIX)/bin/python -c '$(FIND_DOLFINX)' && echo yes))
+ifeq ($(CONDA),yes)
+BIN := $(CONDA_PREFIX)/bin
+READY := $(BIN)/protractile
+else
+BIN := .venv/bin
+READY := .venv/ready-$(RELEASE)
+endif
+
+.PHONY: help verify snapshots test quick lint matrix clean distclean debian-packages
+.DELETE_ON_ERROR:
+
+help: ## list these targets
+	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
+
+verify: $(REPORTS) ## run the paper's cases where they are not up to date, print the verdicts
+	@status=0; \
+	for case in $(VERIFY_CASES); do $(BIN)/protractile report runs/out/$$case || status=1; done; \
+	exit $$status
+
+snapshots: $(REPORTS) ## pictures of the verify cases
+	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
+
+test: $(READY) ## all tests
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+
+quick: $(READY) ## the quick tests alone
+	$(BIN)/python -m pytest -m quick
+
+lint: $(READY) ## ruff and mypy
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
+	$(BIN)/python -m mypy
+
+matrix: ## the quick tests on the DOLFINx of Debian 13 and of unstable (needs root)
+	@$(MAKE) --no-print-directory --keep-going -j1 matrix-trixie matrix-sid
+
+matrix-%:
+	@.ci/matrix $*
+
+clean: ## remove outputs, root file systems and caches
+	rm -rf --one-file-system runs/out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find $(ROOMS) tests -name __pycache__ -prune -exec rm -rf {} +
+
+distclean: clean ## remove .venv too
+	rm -rf .venv
+
+# Exit status 1 with a report is a run whose verdict failed: `report` in `verify` repeats it.
+runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
+	@rm -f $@
+	$(BIN)/protractile run $< --out $(@D) || { [ $$? -eq 1 ] && [ -f $@ ]; }
+
+.venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
+	@echo "installing Python packages into .venv (a minute or two) ..."
+	@/usr/bin/python3 -m venv --system-site-packages .venv
+	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[test]'
+	@touch $@
+
+$(CONDA_PREFIX)/bin/protractile: pyproject.toml
+	$(BIN)/python -m pip install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+debian-packages:
+	@.ci/debian-packages
+
+.ci/constraints-%.txt:
+	@echo "$*: neither Debian 12 nor 13; activate environment.yml's conda environment" >&2; exit 1

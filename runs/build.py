@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The boom and the contact laws that a case declares."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dynamics.contact import PowerContact
+from geometry.boom import Boom, BoomError, Joint, Material, Segment
+from geometry.section import BoxSection, SectionError, infer_inner_section, infer_outer_section
+from runs.bad_input import choices
+from runs.schema import Case, FiniteElementTable, Model, SegmentTable, ShellTable
+
+
+def build_boom(case: Case) -> Boom:
+    """The boom that a case declares, its sections inferred where they are not given.
+
+    Raises:
+        BoomError: no boom can be like that.
+    """
+    check_names("segment", [segment.name for segment in case.segments])
+    joints = tuple(_joint(case, number) for number in range(len(case.joints)))
+    sections = _sections(case, joints)
+    segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
+    return Boom(segments, joints)
+
+
+def contact_laws(boom: Boom, model: Model) -> list[PowerContact]:
+    """The contact law of each joint, as a model sees it."""
+    laws = [(joint.clearance, model.contact or joint) for joint in boom.joints]
+    return [
+        PowerContact(law.stiffness, law.exponent, clearance, law.stiffness_below)
+        for clearance, law in laws
+    ]
+
+
+def needs_plates(model: Model) -> bool:
+    """Whether a model cannot do without the box sections."""
+    return isinstance(model, ShellTable) or (
+        isinstance(model, FiniteElementTable) and model.theory == "timoshenko"
+    )
+
+
+def check_names(where: str, names: Sequence[str]) -> None:
+    """No name twice.
+
+    Raises:
+        BoomError: at the second one.
+    """
+    for number, name in enumerate(names, start=1):
+        if name in names[: number - 1]:
+            first = names.index(name) + 1
+            raise BoomError(
+                f"{where}[{number}].name",
+                f"{name!r} is the name of {where}[{first}] already; give each its own",
+            )
+
+
+def _joint(case: Case, index: int) -> Joint:
+    table = case.joints[index]
+    names = [segment.name for segment in case.segments]
+    for end in ("outer", "inner"):
+        name = getattr(table, end)
+        if name not in names:
+            raise BoomError(
+                f"joint[{index + 1}].{end}", f"{name!r} is no segment; give {choices(names)}"
+            )
+    if table.outer == table.inner:
+        raise BoomError(f"joint[{index + 1}].inner", "must be another segment than the outer one")
+    for number, other in enumerate(case.joints[:index], start=1):
+        if {other.outer, other.inner} == {table.outer, table.inner}:
+            raise BoomError(
+                f"joint[{index + 1}]",
+                f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; give "
+                "all their stations there",
+            )
+    return Joint(
+        outer=names.index(table.outer),
+        inner=names.index(table.inner),
+        stations=table.stations,
+        clearance=0.5 * table.play,
+        stiffness=table.stiffness,
+        stiffness_below=(
+            table.stiffness if table.stiffness_below is None else table.stiffness_below
+        ),
+        exponent=table.exponent,
+    )
+
+
+def _segment(case: Case, index: int, section: BoxSection | None) -> Segment:
+    table = case.segments[index]
+    material = Material(**case.material.model_dump())
+    mass, second_moment = _beam_numbers(case, index)
+    rotary = table.rotary_inertia
+    return Segment(
+        name=table.name,
+        start=table.span[0],
+        end=table.span[1],
+        material=material,
+        mass_per_length=mass,
+        second_moment_of_area=second_moment,
+        rotary_inertia=material.density * second_moment if rotary is None else rotary,
+        section=section,
+        load=table.load,
+        supports=table.supports,
+        viscous_damping=table.viscous_damping,
+    )
+
+
+def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
+    """Mass per length in kg/m and second moment in m⁴, given or of the given section."""
+    table = case.segments[index]
+    section = _given_section(table, index)
+    mass, second_moment = table.mass_per_length, table.second_moment_of_area
+    if section is not None:
+        mass = mass or section.mass_per_length(case.material.density)
+        second_moment = second_moment or section.second_moment_of_area
+    if mass is None:
+        raise _missing(index, "mass_per_length")
+    if second_moment is None:
+        raise _missing(index, "second_moment_of_area")
+    return mass, second_moment
+
+
+def _missing(index: int, key: str) -> BoomError:
+    description = SegmentTable.model_fields[key].description
+    return BoomError(f"segment[{index + 1}].{key}", f"missing; it is {description}")
+
+
+def _given_section(table: SegmentTable, index: int) -> BoxSection | None:
+    if table.section is None:
+        return None
+    try:
+        return BoxSection(**table.section.model_dump())
+    except SectionError as error:
+        raise BoomError(f"segment[{index + 1}].section", str(error)) from None
+
+
+def _sections(case: Case, joints: Sequence[Joint]) -> list[BoxSection | None]:
+    """Given sections, then those of a given ratio, then those that fill the one around them."""
+    sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
+    for i, table in enumerate(case.segments):
+        if sections[i] is None and table.height_to_width is not None:
+            sections[i] = _infer(case, i, table.height_to_width)
+    # One pass a joint carries a section inwards through all of them, in whatever order.
+    for _ in joints:
+        for joint in joints:
+            outer = sections[joint.outer]
+            if sections[joint.inner] is None and outer is not None:
+                sections[joint.inner] = _infer(case, joint.inner, (outer, joint.clearance))
+    return sections
+
+
+def _infer(case: Case, index: int, hint: float | tuple[BoxSection, float]) -> BoxSection | None:
+    """A section from its height-to-width ratio, or from the one around it and the clearance.
+
+    None where there is none and no model needs it.
+    """
+    mass, second_moment = _beam_numbers(case, index)
+    area = mass / case.material.density
+    try:
+        if isinstance(hint, tuple):
+            return infer_inner_section(area, second_moment, *hint)
+        return infer_outer_section(area, second_moment, hint)
+    except SectionError as error:
+        if any(needs_plates(model) for model in case.models):
+            raise BoomError(f"segment[{index + 1}].section", str(error)) from None
+        return None

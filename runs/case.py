@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A case file, read and checked."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from geometry.boom import Boom, BoomError
+from runs.bad_input import BadInput, choices
+from runs.build import build_boom, check_names, needs_plates
+from runs.schema import Case, FiniteElementTable, KantorovichTable, ShellTable, TimeTable
+
+# More reported times than this would not fit in a netCDF file, or in anybody's patience.
+MOST_OUTPUTS = 10_000_000
+
+# A dense eigenproblem of more elements, or a factorisation of more triangles, is a slip of the pen.
+MOST_ELEMENTS = 5_000
+MOST_TRIANGLES = 20_000_000
+
+
+def load(path: str) -> Case:
+    """Read and check a case file.
+
+    Raises:
+        BadInput: the file cannot be read, or what it says cannot be.
+    """
+    try:
+        case = Case.model_validate(_read(path))
+    except ValidationError as error:
+        raise BadInput.from_validation(path, error) from None
+    try:
+        _check_time(case.time)
+        boom = build_boom(case)
+        _check_models(case, boom)
+    except BoomError as error:
+        raise BadInput(path, error.where, error.what) from None
+    except ArithmeticError as error:
+        raise BadInput(
+            path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
+        ) from None
+    return case
+
+
+def select(case: Case, path: str, models: Sequence[str] | None, mesh_size: float | None) -> Case:
+    """The case with the named models alone, and with another mesh for its shells.
+
+    Raises:
+        BadInput: a name that the case does not know, a mesh size that is not positive, or one
+            that nothing would use.
+    """
+    chosen = case.models
+    if models is not None:
+        known = [model.name for model in case.models]
+        for name in models:
+            if name not in known:
+                raise BadInput(
+                    path, "--models", f"{name!r} is not a model of the case; give {choices(known)}"
+                )
+        chosen = tuple(model for model in case.models if model.name in models)
+    if mesh_size is not None:
+        if not (np.isfinite(mesh_size) and mesh_size > 0.0):
+            raise BadInput(
+                path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
+            )
+        if not any(isinstance(model, ShellTable) for model in chosen):
+            raise BadInput(path, "--mesh-size", "no shell is to be run; leave it out")
+        try:
+            _check_mesh_size("--mesh-size", mesh_size, build_boom(case))
+        except BoomError as error:
+            raise BadInput(path, error.where, error.what) from None
+        chosen = tuple(
+            model.model_copy(update={"mesh_size": mesh_size})
+            if isinstance(model, ShellTable)
+            else model
+            for model in chosen
+        )
+    return case.model_copy(update={"models": chosen})
+
+
+def _read(path: str) -> dict[str, object]:
+    try:
+        text = Path(path).read_bytes().decode("utf-8-sig")
+        return tomllib.loads(text)
+    except FileNotFoundError:
+        raise BadInput(path, "file", "does not exist; give the path of a case file") from None
+    except IsADirectoryError:
+        raise BadInput(path, "file", "is a directory; give the path of a case file") from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise BadInput(path, *_unreadable(error)) from None
+
+
+def _unreadable(error: Exception) -> tuple[str, str]:
+    """Key and text for a file that is there and cannot be understood."""
+    if isinstance(error, OSError):
+        return "file", f"cannot be read ({error.strerror}); give a case file that can"
+    if isinstance(error, UnicodeDecodeError):
+        line = error.object[: error.start].count(b"\n") + 1
+        return f"line {line}", "not UTF-8; save the file in this encoding"
+    if isinstance(error, RecursionError):
+        return "file", "not TOML: nested too deeply; a case has three levels at most"
+    what, _, place = str(error).rstrip(")").rpartition(" (at ")
+    at_line, _, at_column = place.partition(", ")
+    if not what or not at_line.startswith("line "):
+        return "file", f"not TOML: {error}; see https://toml.io"
+    return at_line, f"not TOML: {what} ({at_column}); see https://toml.io"
+
+
+def _check_time(time: TimeTable) -> None:
+    outputs = time.duration / time.output_step
+    if outputs > MOST_OUTPUTS:
+        raise BoomError(
+            "time.output_step",
+            f"{time.output_step:g} s makes {outputs:.3g} outputs of {time.duration:g} s; it must "
+            f"be at least {time.duration / MOST_OUTPUTS:.3g} s",
+        )
+    if abs(outputs - round(outputs)) > 1e-6 * outputs or round(outputs) < 1:
+        whole = max(1, round(outputs))
+        raise BoomError(
+            "time.duration",
+            f"must be a whole number of output steps of {time.output_step:g} s, such as "
+            f"{whole * time.output_step:g} s, got {time.duration:g} s",
+        )
+
+
+def _check_models(case: Case, boom: Boom) -> None:
+    check_names("model", [model.name for model in case.models])
+    for number, model in enumerate(case.models, start=1):
+        where = f"model[{number}]"
+        _check_step(f"{where}.step", model.step, case.time)
+        if isinstance(model, KantorovichTable) and len(model.terms) != len(boom.segments):
+            raise BoomError(
+                f"{where}.terms",
+                f"must have one number for each of the {len(boom.segments)} segments, got "
+                f"{list(model.terms)}",
+            )
+        if isinstance(model, FiniteElementTable) and model.tied and model.contact:
+            raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
+        if isinstance(model, FiniteElementTable):
+            length = max(segment.length for segment in boom.segments)
+            if length / model.element_length > MOST_ELEMENTS:
+                raise BoomError(
+                    f"{where}.element_length",
+                    f"{model.element_length:g} m makes more than {MOST_ELEMENTS} elements of a "
+                    f"segment; it must be at least {length / MOST_ELEMENTS:.3g} m",
+                )
+        if needs_plates(model):
+            for i, segment in enumerate(boom.segments, start=1):
+                if segment.section is None:
+                    raise BoomError(
+                        f"segment[{i}].section",
+                        f"missing, and {model.name!r} needs it; give section or height_to_width",
+                    )
+        if isinstance(model, ShellTable):
+            _check_mesh_size(f"{where}.mesh_size", model.mesh_size, boom)
+            for i, segment in enumerate(boom.segments, start=1):
+                if segment.viscous_damping > 0.0:
+                    raise BoomError(
+                        f"segment[{i}].viscous_damping",
+                        f"the shell {model.name!r} has none; leave it out, or run beams alone",
+                    )
+    _check_step("time.step", case.time.step, case.time)
+
+
+def _check_mesh_size(where: str, size: float, boom: Boom) -> None:
+    surface = sum(
+        2.0 * (segment.section.height + segment.section.width) * segment.length
+        for segment in boom.segments
+        if segment.section is not None
+    )
+    smallest = float(np.sqrt(2.0 * surface / MOST_TRIANGLES))
+    if size < smallest:
+        raise BoomError(
+            where,
+            f"{size:g} m makes more than {MOST_TRIANGLES:.0e} triangles; it must be at least "
+            f"{smallest:.3g} m",
+        )
+
+
+def _check_step(where: str, step: float | None, time: TimeTable) -> None:
+    if step is not None and step > time.output_step:
+        raise BoomError(
+            where, f"must not be above the output step of {time.output_step:g} s, got {step:g} s"
+        )

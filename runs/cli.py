@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The command line. Exit status: 0 ran; 1 a demanded verdict failed; 2 bad input; 3 numerics."""
+
+from __future__ import annotations
+
+import json
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+from dynamics.failure import NumericsError
+from runs import case as case_file
+from runs import output, ranks
+from runs.bad_input import BadInput
+from runs.inferred import print_inferred
+from runs.pipeline import Progress as Tell
+from runs.pipeline import run_case
+from runs.report import print_table
+from runs.results import FIELDS, Results
+from runs.schema import Case, ShellTable
+from shell_model.rendering import RenderingUnavailable
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+app = typer.Typer(
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Vibrations of telescopic booms whose segments touch across plays.",
+)
+
+CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
+Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
+
+
+@app.command()
+def run(
+    case: CaseFile,
+    out: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE]")
+    ] = None,
+    models: Annotated[
+        str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")
+    ] = None,
+    mesh_size: Annotated[
+        float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
+    ] = None,
+) -> int:
+    """Run the models of a case, judge them, and write everything to a folder."""
+    names = None if models is None else [name.strip() for name in models.split(",")]
+    effective = case_file.select(case_file.load(case), case, names, mesh_size)
+    comm = _enter_mpi(effective, case)
+    with _all_ranks_end_together(comm), TemporaryDirectory(prefix="protractile-") as scratch:
+        if (ranks.launched_rank() if comm is None else comm.rank) != 0:
+            if comm is not None:
+                run_case(effective, case, comm, Path(scratch), _silence)
+            return 0
+        folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
+        with _progress_bars() as tell:
+            finished = run_case(effective, case, comm, Path(scratch), tell)
+        assert finished is not None
+        output.write(finished, folder, Path(scratch))
+        print(f"{folder / output.REPORT}")
+        return _show(finished.results, case)
+
+
+@app.command()
+def report(folder: Folder) -> int:
+    """Render the report of a run again from its data, and print its tables."""
+    results = Results.load(Path(folder))
+    output.write_report(results, Path(folder))
+    return _show(results, folder)
+
+
+@app.command()
+def snapshot(
+    folder: Folder,
+    time: Annotated[
+        list[float] | None, typer.Option(metavar="T", help="Time in s; may be repeated.")
+    ] = None,
+) -> int:
+    """Render the deformed shells of a run, and its report again with the pictures."""
+    results = Results.load(Path(folder))
+    last = results.case.time.duration
+    for t in time or []:
+        if not 0.0 <= t <= last:
+            raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
+    if not list(Path(folder).glob(f"*{FIELDS}")):
+        raise BadInput(folder, FIELDS, "missing; give the folder of a run with a shell")
+    try:
+        output.write_snapshots(results, Path(folder), sorted(set(time)) if time else None)
+    except RenderingUnavailable as reason:
+        raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
+    output.write_report(results, Path(folder))
+    for name in results.summary["snapshots"]["written"]:
+        print(Path(folder) / output.SNAPSHOTS / name)
+    return 0
+
+
+@app.command()
+def check(case: CaseFile) -> int:
+    """Check a case file, and print what follows from it."""
+    print_inferred(case_file.load(case), Console())
+    return 0
+
+
+@app.command()
+def schema() -> int:
+    """Print the JSON Schema of a case file."""
+    print(json.dumps(Case.model_json_schema(), indent=1))
+    return 0
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run a command and exit; whatever the user can mend is one line on stderr."""
+    command = typer.main.get_command(app)
+    try:
+        status = command.main(arguments, prog_name="protractile", standalone_mode=False)
+    except typer.Abort:
+        ranks.fail("protractile: interrupted", 130, None)
+    except Exception as error:
+        known = _explain(error)
+        if known is None:
+            raise
+        ranks.fail(*known, None)
+    sys.exit(status or 0)
+
+
+def _explain(error: Exception) -> tuple[str, int] | None:
+    """The line and the exit status for what is not a fault of the program."""
+    if isinstance(error, BadInput):
+        return f"protractile: {error}", 2
+    if isinstance(error, NumericsError):
+        return " ".join(f"protractile: {error}".split()), 3
+    if isinstance(error, MemoryError):
+        return f"protractile: out of memory ({error}); make the models or the output smaller", 3
+    # A usage error of typer's, whose class has no public name.
+    if hasattr(error, "format_message"):
+        text = " ".join(error.format_message().split())
+        return f"protractile: {text} (protractile --help tells more)", 2
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"protractile: {error.filename}: file: cannot be used ({error.strerror})", 2
+    return None
+
+
+@contextmanager
+def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
+    """A rank that fails alone takes the others, who would wait for it for ever, with it."""
+    try:
+        yield
+    except Exception as error:
+        if comm is None or comm.size == 1:
+            raise
+        known = _explain(error)
+        ranks.fail(*(known or (traceback.format_exc(), 1)), comm)
+
+
+def _enter_mpi(case: Case, file: str) -> MPI.Comm | None:
+    """The ranks that share the shells, None for a case without one.
+
+    Raises:
+        BadInput: a shell is asked for, and what it takes is not installed.
+    """
+    for number, model in enumerate(case.models, start=1):
+        if isinstance(model, ShellTable):
+            try:
+                import_module("shell_model.boom_shell")
+                from mpi4py import MPI
+            except ImportError as error:
+                raise BadInput(
+                    file,
+                    f"model[{number}].kind",
+                    f"a shell needs FEniCSx, which cannot be imported ({error}); install "
+                    "python3-dolfinx (Debian) or fenics-dolfinx (conda), or run the other models "
+                    "with --models",
+                ) from None
+            return MPI.COMM_WORLD
+    return None
+
+
+@contextmanager
+def _progress_bars() -> Iterator[Tell]:
+    """A bar for each stage on stderr, none where nobody watches."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield _silence
+        return
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    bars: dict[str, TaskID] = {}
+    with Progress(*columns, console=console) as progress:
+
+        def tell(model: str, stage: str, part: float) -> None:
+            label = f"{model}: {stage}"
+            if label not in bars:
+                bars[label] = progress.add_task(label, total=1.0)
+            progress.update(bars[label], completed=part)
+
+        yield tell
+
+
+def _silence(model: str, stage: str, part: float) -> None:
+    """Progress is rank 0's to show."""
+
+
+def _show(results: Results, file: str) -> int:
+    """Print the tables and what is amiss; the exit status."""
+    print_table(results, Console())
+    skipped = results.summary["snapshots"]["skipped"]
+    if skipped is not None:
+        print(f"no snapshots: {skipped}")
+    broken = results.broken_demands()
+    for verdict in broken:
+        print(
+            f"protractile: {file}: demand: {verdict.id} is {verdict.verdict}, and the case demands "
+            f"that it is reproduced: {verdict.why}",
+            file=sys.stderr,
+        )
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    main()

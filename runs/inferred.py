@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What follows from a case before anything moves: sections, lengths, contact laws, models."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.table import Table
+
+from geometry.boom import Boom
+from geometry.section import BoxSection
+from runs.build import build_boom, contact_laws
+from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+
+
+def print_inferred(case: Case, console: Console) -> None:
+    """Print a checked case's segments, joints and models."""
+    boom = build_boom(case)
+    console.print(case.title, markup=False)
+    console.print(_segments(case, boom))
+    if boom.joints:
+        console.print(_joints(boom))
+    console.print(_models(case, boom))
+
+
+def _segments(case: Case, boom: Boom) -> Table:
+    table = Table("segment", "span (m)", "m (kg/m)", "J (m⁴)", "I_p (kg m)", "box (mm)")
+    for given, segment in zip(case.segments, boom.segments, strict=True):
+        box = _plates(segment.section)
+        table.add_row(
+            segment.name,
+            f"{segment.start:g}–{segment.end:g}",
+            f"{segment.mass_per_length:.4g}",
+            f"{segment.second_moment_of_area:.4g}",
+            f"{segment.rotary_inertia:.3g}",
+            box if given.section is not None or segment.section is None else f"{box}, inferred",
+        )
+    return table
+
+
+def _plates(section: BoxSection | None) -> str:
+    if section is None:
+        return "unknown"
+    height, width, flange, web = (
+        f"{1e3 * length:.4g}"
+        for length in (section.height, section.width, section.flange, section.web)
+    )
+    wall = flange if flange == web else f"{flange} / {web}"
+    return f"{height} x {width} x {wall}"
+
+
+def _joints(boom: Boom) -> Table:
+    table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)")
+    for joint in boom.joints:
+        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+        room = "unknown"
+        if outer.section is not None and inner.section is not None:
+            height = 1e3 * outer.section.clear_height_around(inner.section)
+            width = 1e3 * outer.section.clear_width_around(inner.section)
+            room = f"{height:.1f} high, {width:.1f} wide"
+        table.add_row(
+            f"{inner.name} in {outer.name}",
+            f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",
+            ", ".join(f"{x:g}" for x in joint.stations),
+            f"± {1e3 * joint.clearance:g}",
+            room,
+        )
+    return table
+
+
+def _models(case: Case, boom: Boom) -> Table:
+    table = Table("model", "kind", "", "contact (k in N/mⁿ)")
+    for model in case.models:
+        tied = isinstance(model, FiniteElementTable) and model.tied
+        laws = {f"k {law.stiffness:g}, n {law.exponent:g}" for law in contact_laws(boom, model)}
+        contact = "tied" if tied else "; ".join(sorted(laws))
+        table.add_row(model.name, model.kind, _resolution(model), contact)
+    return table
+
+
+def _resolution(model: Model) -> str:
+    if isinstance(model, KantorovichTable):
+        return f"terms {' + '.join(map(str, model.terms))}, base {model.base}"
+    if isinstance(model, FiniteElementTable):
+        return f"{model.theory}, elements of {model.element_length:g} m"
+    assert isinstance(model, ShellTable)
+    return f"mesh {model.mesh_size:g} m, contact {model.contact_line}"

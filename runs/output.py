@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A run's folder. Each file is there whole or not at all, and ``report.html`` comes last."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from runs import toml
+from runs.bad_input import BadInput
+from runs.figures import draw
+from runs.pipeline import Run
+from runs.report import render
+from runs.results import CASE, FIELDS, SUMMARY, TRAJECTORIES, VERDICTS, Results, read_netcdf
+from shell_model.rendering import RenderingUnavailable, render_snapshots
+
+REPORT = "report.html"
+SNAPSHOTS = "snapshots"
+
+
+def prepare(out: str, file: str) -> Path:
+    """Make the folder of a run, or take an earlier run's.
+
+    Args:
+        out: the folder as the user gave it.
+        file: the case file, for messages.
+
+    Raises:
+        BadInput: it cannot be made or written, or holds something else.
+    """
+    folder = Path(out)
+    key = f"--out {out}"
+    if folder.exists() and not folder.is_dir():
+        raise BadInput(file, key, "is a file; give a folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=folder, prefix=".probe-"):
+            pass
+        names = [path.name for path in folder.iterdir() if not path.name.startswith(".")]
+    except OSError as error:
+        raise BadInput(
+            file, key, f"cannot be written ({error.strerror}); give a folder that can"
+        ) from None
+    if names and TRAJECTORIES not in names:
+        raise BadInput(
+            file, key, "holds files that are not a run's; give a new folder or an earlier run's"
+        )
+    return folder
+
+
+def write(run: Run, folder: Path, mesh_folder: Path) -> None:
+    """Write everything that a run leaves; what an earlier one left goes.
+
+    Args:
+        run: a finished one.
+        folder: made by :func:`prepare`.
+        mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
+    """
+    results = run.results
+    (folder / REPORT).unlink(missing_ok=True)
+    for path in folder.glob(f"*{FIELDS}"):
+        path.unlink()
+    # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
+    empty = [name for name, size in results.trajectories.sizes.items() if size == 0]
+    with whole(folder / TRAJECTORIES) as path:
+        results.trajectories.drop_dims(empty).to_netcdf(path, engine="scipy")
+    with whole(folder / "trajectories.csv") as path:
+        _write_csv(results.trajectories, path)
+    _write_text(folder / CASE, toml.dumps(results.case))
+    with whole_folder(folder / "mesh") as meshes:
+        for name, shell in run.shells.items():
+            prefix = f"{name}-" if len(run.shells) > 1 else ""
+            with whole(folder / f"{prefix}{FIELDS}") as path:
+                shell.fields.to_netcdf(path, engine="scipy")
+            for segment, mesh in shell.meshes.items():
+                mesh.write(meshes / f"{prefix}{segment}.vtu")
+                gmsh_file = mesh_folder / name / f"{segment}.msh"
+                shutil.copyfile(gmsh_file, meshes / f"{prefix}{segment}.msh")
+    try:
+        write_snapshots(results, folder)
+    except RenderingUnavailable as reason:
+        with whole_folder(folder / SNAPSHOTS):
+            results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
+    write_report(results, folder)
+
+
+def write_snapshots(results: Results, folder: Path, times: Sequence[float] | None = None) -> None:
+    """Render the deformed shells of a run's folder, and note it in the summary.
+
+    Args:
+        results: of the folder.
+        folder: with the shells' fields.
+        times: in s; the telling ones unless given.
+
+    Raises:
+        RenderingUnavailable: no picture can be made here.
+    """
+    written = []
+    with whole_folder(folder / SNAPSHOTS) as pictures:
+        for path in sorted(folder.glob(f"*{FIELDS}")):
+            fields = read_netcdf(path)
+            model = fields.attrs["model"]
+            prefix = path.name.removesuffix(FIELDS)
+            for drawn in render_snapshots(fields, results.trajectories, model, pictures, times):
+                written.append(drawn.rename(pictures / f"{prefix}{drawn.name}").name)
+    results.summary["snapshots"] = {"written": written, "skipped": None}
+
+
+def write_report(results: Results, folder: Path) -> None:
+    """Write what is derived from the trajectories: summary, verdicts, figures, report."""
+    _write_text(folder / SUMMARY, _json(results.summary))
+    _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in results.verdicts]))
+    with whole_folder(folder / "figures") as part:
+        drawn = draw(results, part)
+    figures = [replace(figure, path=folder / "figures" / figure.path.name) for figure in drawn]
+    pictures = [folder / SNAPSHOTS / name for name in results.summary["snapshots"]["written"]]
+    _write_text(folder / REPORT, render(results, figures, pictures))
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """A name to write to; the file gets its own when it is complete."""
+    part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        yield part
+        os.replace(part, path)
+    except OSError as error:
+        # A full disk does not say which file it was.
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """A folder to write to; its files replace those of ``folder`` when all are complete."""
+    with TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}-") as part:
+        yield Path(part)
+        folder.mkdir(exist_ok=True)
+        new = {path.name for path in Path(part).iterdir()}
+        for name in new:
+            os.replace(Path(part) / name, folder / name)
+    for path in folder.iterdir():
+        if path.name not in new:
+            path.unlink()
+    if not new:
+        folder.rmdir()
+
+
+def _write_text(path: Path, text: str) -> None:
+    with whole(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
+    """One line for each model and time; a station's columns are headed ``NAME@X``."""
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in trajectories.data_vars.items():
+        if "station" in variable.dims:
+            for i, x in enumerate(trajectories["station"].values):
+                columns[f"{name}@{x:g}"] = variable.isel(station=i)
+        else:
+            columns[str(name)] = variable
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["model", "time", *columns])
+        times = trajectories["time"].values
+        for i, model in enumerate(trajectories["model"].values):
+            table = np.column_stack([times, *(c.isel(model=i).values for c in columns.values())])
+            for row in table.tolist():
+                writer.writerow([model, *("" if np.isnan(v) else f"{v:.9g}" for v in row)])

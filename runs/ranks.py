@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Which process of ``mpirun -n N protractile`` this is, and how all of them end together.
+
+MPI itself is entered for a shell alone: a beam's run neither needs nor imports mpi4py, and
+its other processes have nothing to do.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+# Rank as the launcher tells it before MPI is entered: Open MPI, PMIx, MPICH and its kin.
+_LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
+
+# Seconds for which another rank's message waits: if rank 0 has failed too, it speaks alone.
+_GRACE = 5.0
+
+
+def launched_rank() -> int:
+    """This process's rank, 0 without a launcher."""
+    return next((int(os.environ[name]) for name in _LAUNCHERS if name in os.environ), 0)
+
+
+def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
+    """End all ranks, with one line on stderr.
+
+    Args:
+        line: what went wrong.
+        code: exit status.
+        comm: None as long as MPI has not been entered. Until then all ranks do the same and
+            end by themselves; the status is rank 0's, since a launcher would cut its message
+            short if another one ended before it with a status other than 0.
+    """
+    if comm is None or comm.size == 1:
+        if launched_rank() != 0:
+            sys.exit(0)
+        print(line, file=sys.stderr, flush=True)
+        sys.exit(code)
+    if comm.rank != 0:
+        time.sleep(_GRACE)
+    print(line, file=sys.stderr, flush=True)
+    comm.Abort(code)
+    raise AssertionError("MPI_Abort returned")

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a run leaves: labelled trajectories of all models, a summary, and verdicts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom
+from runs import case as case_file
+from runs import toml
+from runs.bad_input import BadInput
+from runs.schema import Case
+from runs.verdicts import Verdict
+
+TRAJECTORIES = "trajectories.nc"
+SUMMARY = "summary.json"
+VERDICTS = "verdicts.json"
+CASE = "case.toml"
+FIELDS = "fields.nc"
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """One run.
+
+    Args:
+        case: the effective one, with every default filled in.
+        trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
+            m; deflections ``tip``, ``head``, ``tail`` in m (from the second joint on ``head-2``
+            and so forth), ``contact_force`` and ``contact_force_peak`` in N, ``gap`` in m,
+            energies in J; NaN where a model has none.
+        summary: what ``summary.json`` holds.
+        verdicts: on the statements of the paper.
+    """
+
+    case: Case
+    trajectories: xr.Dataset
+    summary: dict[str, Any]
+    verdicts: list[Verdict]
+
+    @classmethod
+    def load(cls, folder: Path) -> Results:
+        """Read a run's folder.
+
+        Raises:
+            BadInput: it is not a run's folder, or not a whole one.
+        """
+        if not folder.is_dir():
+            what = "is a file" if folder.exists() else "does not exist"
+            raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
+
+        def read(name: str, how: Callable[[Path], Any]) -> Any:
+            try:
+                return how(folder / name)
+            except FileNotFoundError:
+                what = "missing; give the folder of a run that has finished"
+            except (OSError, ValueError, TypeError, KeyError) as error:
+                what = f"cannot be understood ({error}); run the case again"
+            raise BadInput(str(folder), name, what)
+
+        trajectories = read(TRAJECTORIES, read_netcdf)
+        if "station" not in trajectories.dims:
+            trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
+        summary = read(SUMMARY, _read_json)
+        verdicts = read(VERDICTS, lambda path: [Verdict(**entry) for entry in _read_json(path)])
+        if not (folder / CASE).is_file():
+            raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
+        case = case_file.load(str(folder / CASE))
+        expected = toml.digest(case)
+        for name, mark in ((TRAJECTORIES, trajectories.attrs), (SUMMARY, summary)):
+            if mark.get("case_hash") != expected:
+                raise BadInput(
+                    str(folder), name, f"is not of the case in {CASE}; run the case again"
+                )
+        return cls(case, trajectories, summary, verdicts)
+
+    def broken_demands(self) -> list[Verdict]:
+        """The verdicts that the case demands and that are not ``reproduced``."""
+        return [
+            verdict
+            for verdict in self.verdicts
+            if verdict.id in self.case.demand and verdict.verdict != "reproduced"
+        ]
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A netCDF file, all of it in memory."""
+    return xr.load_dataset(path, engine="scipy")
+
+
+def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
+    """Gather the trajectories of all models, which share their times, in one dataset.
+
+    Args:
+        boom: its joints' stations are the dimension ``station``.
+        trajectories: by the model's name.
+    """
+    stations = [x for joint in boom.joints for x in joint.stations]
+    everything = [trajectory.data for trajectory in trajectories.values()]
+    time = everything[0]["time"]
+    units = {
+        str(name): (variable.dims, variable.attrs)
+        for data in everything
+        for name, variable in data.data_vars.items()
+    }
+    lengths = {"time": time.size, "station": len(stations)}
+    variables = {}
+    for name, (dims, attributes) in units.items():
+        values = np.full((len(everything), *(lengths[str(dim)] for dim in dims)), np.nan)
+        for i, data in enumerate(everything):
+            # A tied model has no stations.
+            if name in data and data[name].shape == values.shape[1:]:
+                values[i] = data[name].values
+        variables[name] = (("model", *dims), values, attributes)
+    return xr.Dataset(
+        variables,
+        coords={
+            "model": list(trajectories),
+            "time": time,
+            "station": ("station", np.array(stations, dtype=float), {"units": "m"}),
+        },
+    )
+
+
+def _read_json(path: Path) -> Any:
+    return json.loads(path.read_text(encoding="utf-8"))

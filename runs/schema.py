@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a case file may say. SI units throughout; an unknown key is an error.
+
+The descriptions are what the JSON Schema shows, and what the message for a missing key quotes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Exponent = Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(strict=True, ge=1)]
+Flag = Annotated[bool, Field(strict=True)]
+# A name becomes a file name and an element of a comma-separated list.
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$")]
+StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
+
+
+class Table(BaseModel):
+    """A table of the case file: nothing but its own keys, and not changed once read."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class TimeTable(Table):
+    """How long, and how finely reported."""
+
+    duration: Positive = Field(description="the simulated time in s, from t = 0")
+    output_step: Positive = Field(1.0e-3, description="the interval of the reported times in s")
+    step: Positive | None = Field(
+        None,
+        description="the step of the integrator in s; each model's own, small enough for its "
+        "contacts, unless given",
+    )
+
+
+class MaterialTable(Table):
+    """Isotropic linear elasticity, the same for all segments."""
+
+    youngs_modulus: Positive = Field(description="Young's modulus E in Pa")
+    poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5)] = Field(
+        description="Poisson's ratio"
+    )
+    density: Positive = Field(description="the density in kg/m^3")
+
+
+class SectionTable(Table):
+    """A box by its wall mid-lines and thicknesses."""
+
+    height: Positive = Field(description="the distance of the flange mid-lines in m")
+    width: Positive = Field(description="the distance of the web mid-lines in m")
+    flange: Positive = Field(description="the thickness of the two flanges in m")
+    web: Positive = Field(description="the thickness of the two webs in m")
+
+
+class SegmentTable(Table):
+    """One box of the boom."""
+
+    name: Name = Field(description="what the joints and the results call the segment")
+    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    supports: tuple[Number, ...] = Field(
+        (), description="the x in m of the places whose deflection is held at zero"
+    )
+    mass_per_length: Positive | None = Field(
+        None, description="the mass per length in kg/m; follows from the section unless given"
+    )
+    second_moment_of_area: Positive | None = Field(
+        None, description="the second moment of area in m^4; follows from the section unless given"
+    )
+    rotary_inertia: NotNegative | None = Field(
+        None, description="the rotary inertia in kg m; density times second moment unless given"
+    )
+    height_to_width: Positive | None = Field(
+        None, description="the ratio of the mid-lines of a uniform-wall box, to infer its section"
+    )
+    section: SectionTable | None = Field(
+        None,
+        description="the box; unless given it is inferred from mass and second moment, with "
+        "height_to_width, or with the room in the segment around it",
+    )
+    load: Number = Field(
+        0.0, description="the uniform load along z in N/m, applied at t = 0 and kept"
+    )
+    viscous_damping: NotNegative = Field(
+        0.0, description="the viscous damping per length in N s/m^2"
+    )
+
+
+class JointTable(Table):
+    """Where an inner segment slides in an outer one, with play."""
+
+    outer: str = Field(description="the name of the outer segment")
+    inner: str = Field(description="the name of the inner segment")
+    stations: Annotated[tuple[Number, ...], Field(min_length=1)] = Field(
+        description="the x in m at which the two may touch, rising"
+    )
+    play: NotNegative = Field(description="the play in m, the clearance above and below together")
+    stiffness: Positive = Field(
+        description="the contact stiffness in N/m^n where the inner segment presses up"
+    )
+    stiffness_below: NotNegative | None = Field(
+        None,
+        description="the contact stiffness in N/m^n where the inner segment presses down; the "
+        "same as above unless given",
+    )
+    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+
+
+class ContactTable(Table):
+    """The contact law that one model uses in all joints, instead of the joints' own."""
+
+    stiffness: Positive = Field(description="the contact stiffness in N/m^n")
+    stiffness_below: NotNegative | None = Field(
+        None, description="the contact stiffness in N/m^n below; the same as above unless given"
+    )
+    exponent: Exponent = Field(description="the exponent n of the contact law")
+
+
+class ModelTable(Table):
+    """What every kind of model has."""
+
+    name: Name = Field(description="what the results call the model")
+    contact: ContactTable | None = Field(
+        None, description="the model's own contact law; the joints' unless given"
+    )
+    step: Positive | None = Field(
+        None, description="the model's own step of the integrator in s; the case's unless given"
+    )
+
+
+class KantorovichTable(ModelTable):
+    """The semi-discrete Ritz series of the paper."""
+
+    kind: Literal["kantorovich"] = Field(description="the kind of model")
+    terms: tuple[Count, ...] = Field(
+        description="the number of functions of each segment, from the base to the tip"
+    )
+    base: Literal["as printed", "pinned", "complete"] = Field(
+        "as printed",
+        description="the reading of the functions: as printed, with zero slope at the base; "
+        "pinned, with a free one; complete, where the inner segment bends freely too",
+    )
+    rotary_inertia: Flag = Field(False, description="whether the rotary inertia is kept")
+
+
+class FiniteElementTable(ModelTable):
+    """Beam finite elements."""
+
+    kind: Literal["finite-element"] = Field(description="the kind of model")
+    element_length: Positive = Field(0.5, description="the length of an element in m, at most")
+    theory: Literal["euler-bernoulli", "timoshenko"] = Field(
+        "euler-bernoulli", description="the beam theory"
+    )
+    rotary_inertia: Flag = Field(True, description="whether the rotary inertia is kept")
+    tied: Flag = Field(
+        False, description="whether the segments deflect alike at the stations, without play"
+    )
+
+
+class ShellTable(ModelTable):
+    """Flat facet shells on the folded box, reduced to the contact's inputs."""
+
+    kind: Literal["shell"] = Field(description="the kind of model")
+    mesh_size: Positive = Field(0.1, description="the edge length of the triangles in m")
+    contact_line: Literal["near webs", "across"] = Field(
+        "near webs", description="where on the flanges the segments touch"
+    )
+
+
+Model = Annotated[KantorovichTable | FiniteElementTable | ShellTable, Field(discriminator="kind")]
+
+
+class Case(Table):
+    """A boom, and the models to run on it."""
+
+    title: str = Field(description="the heading of the report")
+    demand: tuple[StatementId, ...] = Field(
+        (), description="the statements of the paper that the run must reproduce"
+    )
+    time: TimeTable = Field(description="the table of the duration and the output step")
+    material: MaterialTable = Field(description="the table of the elastic constants and density")
+    segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1)] = Field(
+        alias="segment", description="the segments, one [[segment]] each, from the base to the tip"
+    )
+    joints: tuple[JointTable, ...] = Field(
+        (), alias="joint", description="the joints, one [[joint]] each, from the base to the tip"
+    )
+    models: Annotated[tuple[Model, ...], Field(min_length=1)] = Field(
+        alias="model", description="the models to run, one [[model]] each"
+    )

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How figures and numbers look: readable on a telephone, one colour per model everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.colors import to_rgb
+
+# On a telephone a figure is shown about half as wide as it is drawn: 11 pt stay readable.
+WIDTH = 5.4
+DPI = 150
+
+INK = "#222222"
+RULE = "#d9d9d9"
+PLAY_FREE = "#6b6b6b"
+
+# Okabe and Ito (2008), without what is too pale for a line on white; the purple a little darker.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c")
+
+RC: dict[Any, Any] = {
+    "figure.dpi": DPI,
+    "savefig.dpi": DPI,
+    "figure.constrained_layout.use": True,
+    "figure.facecolor": "white",
+    "font.family": "DejaVu Sans",
+    "font.size": 11.0,
+    "text.color": INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 11.0,
+    "axes.titleweight": "bold",
+    "axes.formatter.use_mathtext": True,
+    "grid.color": RULE,
+    "grid.linewidth": 0.6,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "lines.linewidth": 1.5,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "legend.fontsize": 11.0,
+    # Long trajectories overflow the renderer's path buffer unless cut into pieces.
+    "agg.path.chunksize": 10000,
+}
+
+
+def tint(color: str, strength: float) -> tuple[float, float, float]:
+    """A colour mixed with white; strength 1 leaves it as it is."""
+    red, green, blue = to_rgb(color)
+    paper = 1.0 - strength
+    return strength * red + paper, strength * green + paper, strength * blue + paper
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """Colour and dash pattern of one model's lines."""
+
+    color: str
+    linestyle: str = "-"
+
+
+def strokes(models: Sequence[str], play_free: Sequence[str]) -> dict[str, Stroke]:
+    """A stroke for each model, the same whichever of them a figure shows.
+
+    Args:
+        models: names in the order of the case.
+        play_free: those without play, which are the background of the others: grey, dashed.
+    """
+    with_play = [name for name in models if name not in play_free]
+    drawn = {name: Stroke(PLAY_FREE, "--") for name in play_free}
+    for i, name in enumerate(with_play):
+        # Past the palette the colours come again, dashed.
+        again, color = divmod(i, len(PALETTE))
+        drawn[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
+    return {name: drawn[name] for name in models}
+
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def scientific(number: float, digits: int = 1) -> str:
+    """8 × 10⁻⁵ for 8e-05, with at most so many significant digits."""
+    mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
+    return f"{float(mantissa):g} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"

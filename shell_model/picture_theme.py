@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How the pictures of shells look: one camera, one page, one set of colours and letters.
+
+VTK draws the surfaces, matplotlib everything that is written on them: the camera's projection
+is known, so that labels and axes stand where they belong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from PIL import Image
+
+Array = npt.NDArray[np.float64]
+Pixels = npt.NDArray[np.uint8]
+Triangles = npt.NDArray[np.int32]
+
+# Told apart by the colour-blind too (Okabe and Ito 2008).
+OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
+INK, FAINT = "#202020", "#a8a8a8"
+DEFLECTION = "viridis_r"
+
+# Light enough for the colour of a face to be that of the bar, dark enough to tell faces apart.
+MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0}
+MESHED = {"show_edges": True, "edge_color": INK, "line_width": 1.5}
+
+LETTERS: dict[Any, Any] = {
+    "font.size": 20.0,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+}
+
+# Width and height of a sheet in pixels, and pixels per inch. VTK draws each pixel as a square of
+# four, for smooth edges.
+SHEET = (1600, 900)
+DPI = 100
+FINER = 2
+
+# Degrees over which the picture's height is seen: perspective enough for a box to look like one.
+VIEW_ANGLE = 12.0
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """Looks along y, from negative y and a little from above, so that x runs to the right.
+
+    Args:
+        centre: (3,) the middle of the picture in m.
+        width: what the picture's width shows at the centre in m.
+        pixels: width and height of the picture.
+        elevation: how far from above in degrees.
+    """
+
+    centre: Array
+    width: float
+    pixels: tuple[int, int]
+    elevation: float
+
+    @property
+    def axes(self) -> Array:
+        """(3, 3) unit vectors to the right, up and into the picture."""
+        tilt = np.radians(self.elevation)
+        right = np.array([1.0, 0.0, 0.0])
+        into = np.array([0.0, np.cos(tilt), -np.sin(tilt)])
+        return np.array([right, np.cross(right, into), into])
+
+    @property
+    def position(self) -> Array:
+        """(3,) in m."""
+        half_height = 0.5 * self.width * self.pixels[1] / self.pixels[0]
+        distance = half_height / np.tan(np.radians(0.5 * VIEW_ANGLE))
+        return np.asarray(self.centre - distance * self.axes[2])
+
+    def project(self, points: npt.ArrayLike) -> Array:
+        """(..., 2) pixels to the right of and above the picture's lower left corner.
+
+        Args:
+            points: (..., 3) in m.
+        """
+        right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
+        magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
+        middle = 0.5 * np.array(self.pixels)
+        return np.asarray(np.stack([right, up], axis=-1) * magnification[..., None] + middle)
+
+
+class Scene:
+    """Surfaces before a camera, drawn off-screen on white. A thing drawn again replaces itself.
+
+    Args:
+        pixels: width and height.
+    """
+
+    def __init__(self, pixels: tuple[int, int]) -> None:
+        # VTK's libraries may be missing on a machine that is asked for no picture.
+        import pyvista
+        from vtkmodules.vtkCommonCore import vtkLogger
+
+        # VTK warns that it found no display before it takes EGL, which needs none.
+        self._logger, self._verbosity = vtkLogger, vtkLogger.GetCurrentVerbosityCutoff()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+        self._surface: Any = pyvista.PolyData.from_regular_faces
+        self._pixels = pixels
+        look = pyvista.themes.DocumentTheme()
+        look.multi_samples = 1
+        self._plotter = pyvista.Plotter(
+            off_screen=True, window_size=[FINER * n for n in pixels], theme=look
+        )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._plotter.close()
+        self._logger.SetStderrVerbosity(self._verbosity)
+
+    def surface(self, name: str, points: Array, triangles: Triangles, **look: Any) -> None:
+        """Draw a surface.
+
+        Args:
+            name: of the thing.
+            points: (num_points, 3) in m.
+            triangles: (num_triangles, 3) point numbers.
+            look: as pyvista has it, on matte ground.
+        """
+        surface = self._surface(points, triangles)
+        self._plotter.add_mesh(
+            surface, name=name, show_scalar_bar=False, render=False, **(MATTE | look)
+        )
+
+    def outline(
+        self, name: str, points: Array, triangles: Triangles, color: str, width: float
+    ) -> None:
+        """Draw the free and the sharp edges of a surface; the lines' width is in pixels."""
+        edges = self._surface(points, triangles).extract_feature_edges(feature_angle=30.0)
+        self._plotter.add_mesh(
+            edges, name=name, color=color, line_width=FINER * width, lighting=False, render=False
+        )
+
+    def seen_by(self, camera: Camera) -> Pixels:
+        """(height, width, 3) what the camera sees."""
+        eye = self._plotter.camera
+        eye.position, eye.focal_point = tuple(camera.position), tuple(camera.centre)
+        eye.up, eye.view_angle = tuple(camera.axes[1]), VIEW_ANGLE
+        self._plotter.renderer.ResetCameraClippingRange()
+        self._plotter.render()
+        fine = Image.fromarray(np.asarray(self._plotter.screenshot(return_img=True)))
+        return np.asarray(fine.reduce(FINER))
+
+
+class Sheet:
+    """A page: heading, picture, x along the picture's lower edge, and room below it.
+
+    The coordinates of ``picture`` are the pixels of :meth:`Camera.project`.
+
+    Args:
+        pixels: width and height of the picture.
+        floor: height of the picture's lower edge in pixels.
+    """
+
+    def __init__(self, pixels: tuple[int, int], floor: int) -> None:
+        self.figure = Figure(figsize=(SHEET[0] / DPI, SHEET[1] / DPI), dpi=DPI)
+        self._canvas: Any = FigureCanvasAgg(self.figure)
+        self.picture = self.axes(0, floor, *pixels)
+        self.picture.spines["left"].set_visible(False)
+        blank = np.full((pixels[1], pixels[0], 3), 255, dtype=np.uint8)
+        self._image = self.picture.imshow(
+            blank, extent=(0, pixels[0], 0, pixels[1]), interpolation="nearest"
+        )
+        self.picture.set_yticks([])
+        self._arrows: list[Artist] = []
+        centred: dict[str, Any] = {"ha": "center", "va": "top"}
+        self._heading = self.figure.text(0.5, 0.98, "", size=26, weight="bold", **centred)
+        self._explanation = self.figure.text(0.5, 0.925, "", size=19, **centred)
+
+    def axes(self, left: int, bottom: int, width: int, height: int) -> Axes:
+        """Axes at a place on the sheet, in pixels."""
+        return self.figure.add_axes(
+            (left / SHEET[0], bottom / SHEET[1], width / SHEET[0], height / SHEET[1])
+        )
+
+    def mark_x(self, camera: Camera, first: float, last: float) -> None:
+        """Put ticks where the camera sees round x at the depth of its centre.
+
+        Args:
+            camera: the picture's.
+            first, last: the range of x in m.
+        """
+        _, y, z = camera.centre
+        ticks = np.asarray(MaxNLocator(20, steps=[1, 2, 5, 10]).tick_values(first, last))
+        ticks = ticks[(ticks > first - 1.0e-9) & (ticks < last + 1.0e-9)]
+        seen = camera.project([[x, y, z] for x in ticks])
+        self.picture.set_xticks(list(seen[:, 0]), [f"{x:g}" for x in ticks])
+        self.picture.set_xlabel("x along the boom (m)")
+
+    def write(self, heading: str, explanation: str) -> None:
+        """Set the lines above the picture."""
+        self._heading.set_text(heading)
+        self._explanation.set_text(explanation)
+
+    def show(self, pixels: Pixels) -> None:
+        """Put what a camera saw into the picture."""
+        self._image.set_data(pixels)
+
+    def arrow(self, foot: Array, length: float, text: str) -> None:
+        """Draw a vertical arrow and write beside it.
+
+        Args:
+            foot: (2,) pixels, as of :meth:`Camera.project`.
+            length: in pixels, negative for an arrow that points down.
+            text: to the right of the arrow.
+        """
+        x, y = (float(pixel) for pixel in foot)
+        shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": FORCE}
+        self._arrows += [
+            self.picture.annotate("", (x, y + length), (x, y), arrowprops=shaft),
+            self.picture.annotate(text, (x + 22.0, y + 0.6 * length), va="center", color=FORCE),
+        ]
+
+    def clear_arrows(self) -> None:
+        """Remove all arrows."""
+        for arrow in self._arrows:
+            arrow.remove()
+        self._arrows.clear()
+
+    def image(self) -> Image.Image:
+        """The sheet as it is now."""
+        self._canvas.draw()
+        return Image.fromarray(np.asarray(self._canvas.buffer_rgba())[..., :3].copy())

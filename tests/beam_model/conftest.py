@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Plain beams, and the paper's boom as each kind of model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.kantorovich import Base, kantorovich_segment
+from beam_model.segment_model import SegmentModel
+from geometry.boom import Boom, Material, Segment
+from geometry.section import BoxSection
+
+BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
+
+
+@pytest.fixture(scope="session")
+def beam(steel: Material) -> Callable[..., Segment]:
+    """A beam of the box above on [3, 8] m, with what a test adds."""
+
+    def make(**changes: object) -> Segment:
+        numbers = {
+            "name": "beam",
+            "start": 3.0,
+            "end": 8.0,
+            "material": steel,
+            "mass_per_length": BOX.mass_per_length(steel.density),
+            "second_moment_of_area": BOX.second_moment_of_area,
+            "rotary_inertia": steel.density * BOX.second_moment_of_area,
+            "section": BOX,
+        }
+        return Segment(**numbers | changes)  # type: ignore[arg-type]
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def series(paper_boom: Boom) -> Callable[..., list[SegmentModel]]:
+    """Kantorovich models of the paper's segments."""
+
+    def make(terms: tuple[int, int], base: Base = "as printed") -> list[SegmentModel]:
+        return [
+            kantorovich_segment(segment, count, base, rotary_inertia=False)
+            for segment, count in zip(paper_boom.segments, terms, strict=True)
+        ]
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def elements(paper_boom: Boom) -> Callable[..., list[SegmentModel]]:
+    """Finite element models of the paper's segments."""
+
+    def make(length: float, theory: Theory = "euler-bernoulli") -> list[SegmentModel]:
+        return [
+            finite_element_segment(segment, length, (9.0, 10.0), theory, rotary_inertia=False)
+            for segment in paper_boom.segments
+        ]
+
+    return make

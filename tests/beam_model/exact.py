@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Closed solutions of beams, to hold the models against.
+
+Nothing here is shared with the library: statics by Macaulay's brackets, natural frequencies
+by the transcendental determinant of Euler-Bernoulli spans.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from geometry.boom import Boom, Segment
+
+Array = npt.NDArray[np.float64]
+
+# βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).
+FREE_FREE = (4.730040744862704, 7.853204624095838, 10.995607838001671)
+CLAMPED_FREE = (1.875104068711961, 4.694091132974175, 7.854757438237613)
+PINNED_FREE = (3.926602312047919, 7.068582745628732, 10.210176122813031)
+PINNED_PINNED = (np.pi, 2.0 * np.pi, 3.0 * np.pi)
+
+
+def angular_frequencies(segment: Segment, numbers: Sequence[float]) -> Array:
+    """ω in rad/s from βL."""
+    beta = np.array(numbers) / segment.length
+    return beta**2 * np.sqrt(segment.bending_stiffness / segment.mass_per_length)
+
+
+class OverhangingBeam:
+    """A beam on two supports under forces (place in m, N) and a uniform load over its length.
+
+    ``shear_stiffness`` G A in N makes it flexible in shear.
+    """
+
+    def __init__(
+        self,
+        segment: Segment,
+        forces: Sequence[tuple[float, float]],
+        load: float,
+        shear_stiffness: float = np.inf,
+    ) -> None:
+        a, b = segment.supports
+        total = sum(force for _, force in forces) + load * segment.length
+        turning = sum(force * (x - a) for x, force in forces) + load * segment.length * (
+            0.5 * (segment.start + segment.end) - a
+        )
+        at_b = -turning / (b - a)
+        self.forces = [(a, -total - at_b), (b, at_b), *forces]
+        self.load, self.start = load, segment.start
+        self.bending_stiffness, self.shear_stiffness = segment.bending_stiffness, shear_stiffness
+        self.line = (0.0, 0.0)
+        slope = (self.deflection(b) - self.deflection(a)) / (b - a)
+        self.line = (self.deflection(a) - slope * a, slope)
+
+    def deflection(self, x: float) -> float:
+        """EI w'''' = q + Σ P δ and G A w_s'' = −(q + Σ P δ), both zero at the supports."""
+        run = x - self.start
+        cubes = self.load * run**4 / 24.0
+        ramps = self.load * run**2 / 2.0
+        for place, force in self.forces:
+            arm = max(x - place, 0.0)
+            cubes += force * arm**3 / 6.0
+            ramps += force * arm
+        constant, slope = self.line
+        return cubes / self.bending_stiffness - ramps / self.shear_stiffness - constant - slope * x
+
+
+def tied_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
+    """Rest of a two-segment boom whose segments are hinged to each other at both stations.
+
+    The inner segment alone gives the forces between them: the joint is statically determinate.
+    """
+    outer, inner = boom.segments
+    (tail, head), q = boom.joints[0].stations, inner.load * inner.length
+    at_head = q * (0.5 * (inner.start + inner.end) - tail) / (head - tail)
+    at_tail = q - at_head
+    below = OverhangingBeam(
+        outer, [(tail, at_tail), (head, at_head)], outer.load, shear_stiffness[0]
+    )
+    # Held at rest at its stations, the inner segment bends; the outer one tilts and lifts it.
+    above = OverhangingBeam(
+        replace(inner, supports=(tail, head)), [], inner.load, shear_stiffness[1]
+    )
+    slope = (below.deflection(head) - below.deflection(tail)) / (head - tail)
+
+    def lifted(x: float) -> float:
+        return above.deflection(x) + below.deflection(tail) + slope * (x - tail)
+
+    return {"tip": lifted(boom.tip), "head": below.deflection(head), "tail": lifted(tail)}
+
+
+class Span:
+    """Four solutions of EI w'''' = m ω² w on [a, b], bounded by one each, and their derivatives."""
+
+    def __init__(self, segment: Segment, a: float, b: float, omega: float) -> None:
+        self.a, self.b = a, b
+        self.bending_stiffness = segment.bending_stiffness
+        self.beta = (segment.mass_per_length * omega**2 / segment.bending_stiffness) ** 0.25
+
+    def row(self, x: float, order: int) -> Array:
+        """(4,) derivative of each solution at x, over βᵒʳᵈᵉʳ."""
+        angle = self.beta * (x - self.a)
+        quarters = 0.5 * np.pi * order
+        cosine, sine = np.cos(angle + quarters), np.sin(angle + quarters)
+        fading = (-1.0) ** order * np.exp(-angle)
+        growing = np.exp(self.beta * (x - self.b))
+        return np.array([cosine, sine, fading, growing])
+
+
+def tied_determinant(boom: Boom, omega: float) -> float:
+    """Determinant, up to a positive factor, of the play-free boom's exact equations at ω.
+
+    Outer spans between supports, stations and end, inner ones between stations and tip;
+    deflections are tied at the stations, each segment's slope and moment pass through.
+    """
+    outer, inner = boom.segments
+    x0, x1 = outer.supports
+    tail, head = boom.joints[0].stations
+    spans = [
+        Span(outer, x0, x1, omega),
+        Span(outer, x1, tail, omega),
+        Span(outer, tail, head, omega),
+        Span(inner, tail, head, omega),
+        Span(inner, head, inner.end, omega),
+    ]
+    rows: list[Array] = []
+
+    def require(*terms: tuple[int, float, int, float]) -> None:
+        """Σ factor · (derivative of a span at x) = 0; terms are (span, x, order, factor).
+
+        Derivatives count in the units of the first term, forces in those of the outer beam.
+        """
+        row = np.zeros(20)
+        for span, x, order, factor in terms:
+            scale = (spans[span].beta / spans[terms[0][0]].beta) ** order
+            row[4 * span : 4 * span + 4] += factor * scale * spans[span].row(x, order)
+        rows.append(row)
+
+    def passes(left: int, right: int, x: float, *orders: int) -> None:
+        for order in orders:
+            require((left, x, order, 1.0), (right, x, order, -1.0))
+
+    stiffness = inner.bending_stiffness / outer.bending_stiffness
+    require((0, x0, 0, 1.0))
+    require((0, x0, 2, 1.0))
+    require((0, x1, 0, 1.0))
+    require((1, x1, 0, 1.0))
+    passes(0, 1, x1, 1, 2)
+    passes(1, 2, tail, 0, 1, 2)
+    require((3, tail, 2, 1.0))
+    require((2, tail, 0, 1.0), (3, tail, 0, -1.0))
+    require((2, tail, 3, 1.0), (1, tail, 3, -1.0), (3, tail, 3, stiffness))
+    require((2, head, 2, 1.0))
+    require((2, head, 0, 1.0), (3, head, 0, -1.0))
+    passes(3, 4, head, 0, 1, 2)
+    require((2, head, 3, -1.0), (4, head, 3, stiffness), (3, head, 3, -stiffness))
+    require((4, inner.end, 2, 1.0))
+    require((4, inner.end, 3, 1.0))
+    sign, logarithm = np.linalg.slogdet(np.array(rows))
+    return float(sign * np.exp(logarithm))
+
+
+def tied_frequencies(boom: Boom, highest: float) -> Array:
+    """Exact natural frequencies of the play-free boom in Hz up to ``highest``."""
+    grid = 2.0 * np.pi * np.arange(0.5, highest, 0.25)
+    values = np.array([tied_determinant(boom, omega) for omega in grid])
+    (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
+    roots = [
+        brentq(lambda omega: tied_determinant(boom, omega), grid[k], grid[k + 1], rtol=1e-12)
+        for k in changes
+    ]
+    return np.array(roots) / (2.0 * np.pi)

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Beam elements: exact statics at any mesh, frequencies of order four, rows that read anywhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.segment_model import SegmentModel, natural_modes
+from geometry.boom import BoomError, Segment
+from tests.beam_model.exact import (
+    FREE_FREE,
+    PINNED_FREE,
+    PINNED_PINNED,
+    OverhangingBeam,
+    angular_frequencies,
+)
+
+Array = npt.NDArray[np.float64]
+Beam = Callable[..., Segment]
+
+pytestmark = pytest.mark.quick
+
+THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
+
+
+def frequencies(model: SegmentModel) -> Array:
+    """ω of the elastic modes in rad/s."""
+    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
+    return np.sqrt(modes.omega2[model.rigid_modes :])
+
+
+def shear_stiffness(segment: Segment, theory: Theory) -> float:
+    """G A of the webs in N."""
+    assert segment.section is not None
+    if theory == "euler-bernoulli":
+        return np.inf
+    return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6
+
+
+@pytest.mark.parametrize(
+    ("supports", "numbers"),
+    [((), FREE_FREE), ((3.0, 8.0), PINNED_PINNED), ((3.0,), PINNED_FREE)],
+    ids=["free-free", "pinned-pinned", "pinned-free"],
+)
+def test_frequencies_converge_at_order_four(
+    beam: Beam, supports: tuple[float, ...], numbers: tuple[float, ...]
+) -> None:
+    """Reference: analytic βL; slope and error."""
+    segment = beam(supports=supports)
+    expected = angular_frequencies(segment, numbers)
+    errors = []
+    for count in (8, 16, 32):
+        model = finite_element_segment(segment, 5.0 / count, (), "euler-bernoulli", False)
+        assert model.rigid_modes == 2 - len(supports)
+        errors.append(frequencies(model)[:3] / expected - 1.0)
+    slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert slopes[1] == pytest.approx(4.0, abs=0.1)
+    assert 0.0 < errors[-1].max() < 1.0e-5
+    assert errors[-1][0] < 5.0e-7
+
+
+def test_rotary_inertia_of_two_pinned_ends(beam: Beam) -> None:
+    """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
+    segment = beam(supports=(3.0, 8.0))
+    model = finite_element_segment(segment, 0.1, (), "euler-bernoulli", True)
+    k = np.array(PINNED_PINNED) / 5.0
+    share = segment.rotary_inertia * k**2 / segment.mass_per_length
+    assert share[0] > 0.01
+    expected = angular_frequencies(segment, PINNED_PINNED) / np.sqrt(1.0 + share)
+    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("rotary_inertia", [False, True])
+def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inertia: bool) -> None:
+    """Reference: analytic. w = W sin kx, θ = Θ cos kx in Timoshenko's equations.
+
+    GA k² W − GA k Θ = m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ.
+    """
+    segment = beam(supports=(3.0, 8.0))
+    shear = shear_stiffness(segment, "timoshenko")
+    expected = []
+    for k in np.array(PINNED_PINNED) / 5.0:
+        pull = np.array(
+            [[shear * k**2, -shear * k], [-shear * k, segment.bending_stiffness * k**2 + shear]]
+        )
+        # ω² is the inverse of the largest eigenvalue of K⁻¹M, which allows I_p = 0.
+        mass = np.diag([segment.mass_per_length, segment.rotary_inertia * rotary_inertia])
+        expected.append(1.0 / np.sqrt(np.linalg.eigvals(np.linalg.solve(pull, mass)).max()))
+    assert expected[0] < 0.9 * angular_frequencies(segment, PINNED_PINNED)[0]
+    errors = []
+    for count in (10, 20, 40):
+        model = finite_element_segment(segment, 5.0 / count, (), "timoshenko", rotary_inertia)
+        errors.append(np.abs(frequencies(model)[:3] / expected - 1.0).max())
+    # Elements short against the depth deflect in straight lines between their nodes: order two.
+    assert errors[-1] < 2e-3
+    assert np.log2(np.array(errors[:-1]) / np.array(errors[1:])) == pytest.approx(2.0, abs=0.15)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("length", [20.0, 1.3, 0.4])
+def test_statics_are_exact_at_the_nodes_of_any_mesh(
+    beam: Beam, theory: Theory, length: float
+) -> None:
+    """Reference: analytic. An overhanging beam under its load and forces at breaks and tip."""
+    segment = beam(supports=(3.0, 4.2), load=-4000.0)
+    forces = [(6.1, 3.0e4), (8.0, -1.0e4)]
+    exact = OverhangingBeam(segment, forces, segment.load, shear_stiffness(segment, theory))
+    model = finite_element_segment(segment, length, (6.1,), theory, False)
+    load = model.load + sum(force * model.deflection(x) for x, force in forces)
+    rest = np.linalg.solve(model.stiffness, load)
+    for x in (6.1, 8.0):
+        assert model.deflection(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
+    for x in segment.supports:
+        assert not model.deflection(x).any()
+
+
+def test_shear_matters_where_statics_are_tested(beam: Beam) -> None:
+    segment = beam(supports=(3.0, 4.2))
+    tip = [
+        OverhangingBeam(segment, [(8.0, 1.0)], 0.0, shear_stiffness(segment, theory)).deflection(
+            8.0
+        )
+        for theory in THEORIES
+    ]
+    assert tip[0] == pytest.approx(
+        3.8**2 * (1.2 + 3.8) / (3.0 * segment.bending_stiffness), rel=1e-12, abs=0.0
+    )
+    assert tip[1] > 1.05 * tip[0]
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
+    """Reference: analytic. Without a distributed load the shape functions are the solution."""
+    segment = beam(supports=(3.0, 4.2))
+    exact = OverhangingBeam(segment, [(8.0, 1.0e4)], 0.0, shear_stiffness(segment, theory))
+    model = finite_element_segment(segment, 2.0, (), theory, False)
+    rest = np.linalg.solve(model.stiffness, 1.0e4 * model.deflection(8.0))
+    for x in (3.5, 4.1, 4.3, 5.77, 6.1, 7.999):
+        assert model.deflection(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("rotary_inertia", [False, True])
+def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None:
+    """Reference: analytic. No strain; m̄ L, and m̄ L³/12 + I_p L about the middle."""
+    segment = beam(load=7.0, viscous_damping=3.0)
+    model = finite_element_segment(segment, 0.9, (), theory, rotary_inertia)
+    nodes = np.linspace(3.0, 8.0, len(model.load) // 2)
+    lift, turn = np.zeros(len(model.load)), np.zeros(len(model.load))
+    lift[::2], turn[::2], turn[1::2] = 1.0, nodes - 5.5, 1.0
+    for motion in (lift, turn):
+        assert np.abs(model.stiffness @ motion).max() < 1e-9 * np.abs(model.stiffness).max()
+    mass = segment.mass_per_length * 5.0
+    spin = mass * 25.0 / 12.0 + 5.0 * segment.rotary_inertia * rotary_inertia
+    assert lift @ model.mass @ lift == pytest.approx(mass, rel=1e-12)
+    assert turn @ model.mass @ turn == pytest.approx(spin, rel=1e-12)
+    assert abs(lift @ model.mass @ turn) < 1e-9 * mass
+    assert lift @ model.damping @ lift == pytest.approx(15.0, rel=1e-12)
+    assert lift @ model.load == pytest.approx(35.0, rel=1e-12)
+    assert abs(turn @ model.load) < 1e-9
+    assert model.deflection(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
+
+
+def test_viscous_damping_is_its_share_of_the_mass(beam: Beam) -> None:
+    """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
+    segment = beam(viscous_damping=88.0)
+    model = finite_element_segment(segment, 0.5, (), "euler-bernoulli", False)
+    expected = 88.0 / segment.mass_per_length * model.mass
+    np.testing.assert_allclose(model.damping, expected, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("length", "breaks", "nodes"),
+    [
+        (10.0, (), 3),  # 3, 4, 8
+        (1.0, (), 6),
+        (0.3, (), 4 + 14 + 1),
+        (0.1, (), 51),
+        (10.0, (4.0, 8.0, 5.0 + 1e-12, 5.0), 4),
+        (10.0, (2.9, 8.1), 3),  # places off the segment are not its own
+    ],
+)
+def test_elements_are_no_longer_than_asked(
+    beam: Beam, length: float, breaks: tuple[float, ...], nodes: int
+) -> None:
+    model = finite_element_segment(beam(supports=(4.0,)), length, breaks, "euler-bernoulli", True)
+    assert len(model.load) == 2 * nodes - 1
+
+
+def test_shear_needs_a_section(beam: Beam) -> None:
+    message = (
+        "segment: 'beam' has no box section, which a Timoshenko beam needs for its shear area; "
+        "give height_to_width or section"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        finite_element_segment(beam(section=None), 0.5, (), "timoshenko", True)

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The paper's boom in motion: its series until they touch, its energy, its units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.finite_element import finite_element_segment
+from beam_model.kantorovich import kantorovich_segment
+from beam_model.segment_model import SegmentModel, gap_system
+from dynamics.contact import PowerContact
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from geometry.boom import Boom, Segment
+
+Models = Callable[..., list[SegmentModel]]
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture
+def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> GapSystem:
+    return gap_system(paper_boom, series((2, 3)), [paper_law])
+
+
+def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
+    """Reference: analytic, nothing is lost: below 1e-4 of the work of the load."""
+    run = integrate(five_terms, 10.0)
+    assert run.data.attrs["contact_changes"] > 1000
+    held = sum(run.data[f"{kind}_energy"].values for kind in ("kinetic", "strain", "contact"))
+    work = run.data["work"].values
+    assert np.abs(held - work).max() < 1e-4 * np.abs(work).max()
+    assert run.energy_residual < 1e-4
+
+
+def test_the_step_of_the_paper_is_refused(five_terms: GapSystem) -> None:
+    """7 s in 4375 steps, as the paper's finite element run with friction."""
+    message = "the motion is not finite at a step of 0.0016 s; halve the step"
+    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
+        integrate(five_terms, 7.0, output_step=1.6e-3, step=1.6e-3)
+
+
+def test_four_and_five_terms_coincide_until_they_touch(
+    paper_boom: Boom, series: Models, paper_law: PowerContact
+) -> None:
+    """Statement 4.1 of the paper: until then the inner segment moves as a rigid body."""
+    four, five = (
+        integrate(gap_system(paper_boom, series(terms), [paper_law]), 0.4, step=4.0e-6)
+        for terms in ((2, 2), (2, 3))
+    )
+    assert 0.1 < five.first_contact < 0.2
+    assert four.first_contact == pytest.approx(five.first_contact, rel=1e-9)
+    before = five.time < five.first_contact
+    for name in ("tip", "head", "tail"):
+        one, other = (run.data[name].values for run in (four, five))
+        size = np.abs(other[before]).max()
+        assert np.abs(one - other)[before].max() < 1e-9 * size
+        # Then they do not, or the comparison would say nothing.
+        assert np.abs(one - other).max() > 1e-2 * size
+
+
+def test_the_first_contact_does_not_depend_on_the_step(five_terms: GapSystem) -> None:
+    """Reference: analytic. Before it the motion is exact; the line between two places is not,
+    by ÿ h²/8 over the closing speed, some 1e-2 /s of h²."""
+    finest = integrate(five_terms, 0.2, step=1.0e-6).first_contact
+    for step in (1.0e-3, 1.0e-4, 1.0e-5):
+        first = integrate(five_terms, 0.13, step=step, energy_bound=np.inf).first_contact
+        assert abs(first - finest) < 10.0 * step**2 + 1e-12
+
+
+def in_millimetres_and_tonnes(segment: Segment) -> Segment:
+    """The same segment in mm, t, s, N, MPa; densities in t/mm³."""
+    material = replace(segment.material, youngs_modulus=2.1e5, density=7.85e-9)
+    return replace(
+        segment,
+        start=1e3 * segment.start,
+        end=1e3 * segment.end,
+        supports=tuple(1e3 * x for x in segment.supports),
+        material=material,
+        mass_per_length=1e-6 * segment.mass_per_length,
+        second_moment_of_area=1e12 * segment.second_moment_of_area,
+        rotary_inertia=segment.rotary_inertia,
+        section=None,
+        load=1e-3 * segment.load,
+    )
+
+
+@pytest.mark.parametrize("kind", ["series", "elements"])
+def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
+    """Reference: analytic, the first contacts of the boom in mm, t and s, before chaos sets in.
+
+    k N/mⁿ are k/1000ⁿ N/mmⁿ.
+    """
+    (joint,) = paper_boom.joints
+    small = Boom(
+        tuple(in_millimetres_and_tonnes(segment) for segment in paper_boom.segments),
+        (replace(joint, stations=(9.0e3, 10.0e3), clearance=7.0),),
+    )
+    runs = []
+    for boom, unit in ((paper_boom, 1.0), (small, 1000.0)):
+        if kind == "series":
+            models = [
+                kantorovich_segment(segment, terms, "as printed", rotary_inertia=True)
+                for segment, terms in zip(boom.segments, (2, 3), strict=True)
+            ]
+            law = PowerContact(1.0e13 / unit**2, 2.0, 7.0e-3 * unit)
+        else:
+            models = [
+                finite_element_segment(segment, unit, boom.stations_of(k), "euler-bernoulli", True)
+                for k, segment in enumerate(boom.segments)
+            ]
+            law = PowerContact(1.0e10 / unit, 1.0, 7.0e-3 * unit)
+        system = gap_system(boom, models, [law])
+        runs.append(integrate(system, 0.122, output_step=1.0e-3))
+    metres, millimetres = runs
+    assert metres.data.attrs["contact_changes"] >= 2
+    assert millimetres.data.attrs["contact_changes"] == metres.data.attrs["contact_changes"]
+    assert millimetres.data.attrs["steps"] == metres.data.attrs["steps"]
+    assert millimetres.first_contact == pytest.approx(metres.first_contact, rel=1e-9)
+    for name, factor in (("tip", 1e3), ("head", 1e3), ("contact_force_peak", 1.0), ("work", 1e3)):
+        expected = factor * metres.data[name].values
+        error = np.abs(millimetres.data[name].values - expected).max()
+        assert error < 1e-9 * np.abs(expected).max(), name

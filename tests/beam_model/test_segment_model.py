@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Segments side by side and tied: rows, observers, and the play-free boom's exact numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.segment_model import SegmentModel, gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
+
+Models = Callable[..., list[SegmentModel]]
+
+pytestmark = pytest.mark.quick
+
+
+def rest(system: GapSystem) -> dict[str, float]:
+    """Observed deflections at rest under the load in m."""
+    position = system.static_response(system.load)
+    return {name: float(row @ position) for name, (row, _) in system.observers.items()}
+
+
+def test_tied_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:
+    """Reference: other code, Euler-Bernoulli elements, to its digits."""
+    system = tied_system(paper_boom, elements(0.5))
+    assert system.frequencies[:4] == pytest.approx([2.0852, 10.463, 30.337, 57.49], rel=5e-5)
+    assert not system.laws
+    assert system.omega2.min() > 1.0
+
+
+def test_tied_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
+    """Reference: analytic, the transcendental determinant of the joined spans.
+
+    At order four: half the element, a sixteenth of the error.
+    """
+    exact = tied_frequencies(paper_boom, 110.0)
+    assert exact.size == 5
+    errors = [
+        tied_system(paper_boom, elements(length)).frequencies[:5] / exact - 1.0
+        for length in (1.0, 0.5, 0.25)
+    ]
+    assert np.abs(errors[-1]).max() < 2e-6
+    assert np.abs(errors[-2]).max() < 1e-4
+    np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
+
+
+@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+def test_tied_boom_rests_where_statics_put_it(
+    paper_boom: Boom, elements: Models, theory: Theory
+) -> None:
+    """Reference: analytic. The joint is statically determinate."""
+    shear = [
+        segment.material.shear_modulus * segment.section.shear_area
+        if theory == "timoshenko" and segment.section is not None
+        else np.inf
+        for segment in paper_boom.segments
+    ]
+    expected = tied_deflections(paper_boom, shear)
+    for length in (20.0, 0.7):
+        found = rest(tied_system(paper_boom, elements(length, theory)))
+        assert found == pytest.approx(expected, rel=1e-7, abs=0.0)
+
+
+def test_tied_series_converges_to_the_tied_elements(
+    paper_boom: Boom, series: Models, elements: Models
+) -> None:
+    """Reference: other code, Hermite elements. Twelve terms a segment, free to turn at the base.
+
+    Measured: frequencies within 6e-4, deflections within 5e-4. With 2 + 3 terms the first
+    frequency is off by 9 %, the deflections by 14 %.
+    """
+    beams = tied_system(paper_boom, elements(0.25))
+    found = tied_system(paper_boom, series((12, 12), "complete"))
+    np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
+    assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
+
+
+def test_apart_the_segments_move_as_if_alone(
+    paper_boom: Boom, elements: Models, paper_law: PowerContact
+) -> None:
+    """Reference: analytic. The inner one falls freely, at q/m̄ = 1 m/s²; the outer one swings
+    about its rest under q."""
+    system = gap_system(paper_boom, elements(0.5), [paper_law])
+    assert (np.sort(system.omega2)[:2] == 0.0).all()
+    assert np.sort(system.omega2)[2] > 1.0
+    rigid = system.omega2 == 0.0
+    fall = system.observers["tip"].row @ np.where(rigid, system.load, 0.0)
+    assert fall == pytest.approx(1.0, rel=1e-9)
+    inner = system.observers["tip"].row != 0.0
+    bend = np.where(inner & ~rigid, system.load, 0.0)
+    assert np.abs(bend).max() < 1e-7 * np.abs(system.load).max()
+    swing = np.divide(system.load, system.omega2, out=np.zeros_like(system.load), where=~rigid)
+    outer = paper_boom.segments[0]
+    at_rest = OverhangingBeam(outer, [], outer.load).deflection(10.0)
+    assert system.observers["head"].row @ swing == pytest.approx(at_rest, rel=1e-6, abs=0.0)
+
+
+def test_rows_read_the_inner_less_the_outer(
+    paper_boom: Boom, elements: Models, paper_law: PowerContact
+) -> None:
+    """Reference: analytic. The inner segment raised as a body, the outer one bent by a force."""
+    system = gap_system(paper_boom, elements(0.5), [paper_law])
+    assert system.rows.shape == (2, system.num_modes)
+    assert list(system.stations) == [9.0, 10.0]
+    assert list(system.station_of_row) == [0, 1]
+    assert list(system.laws) == [paper_law, paper_law]
+    rigid = system.omega2 == 0.0
+    # Raise and tilt so that the tail goes to 3 mm and the tip to 8 mm.
+    ends = np.array([system.observers[name].row[rigid] for name in ("tail", "tip")])
+    motion = np.zeros(system.num_modes)
+    motion[rigid] = np.linalg.solve(ends, [3.0e-3, 8.0e-3])
+    assert system.rows @ motion == pytest.approx([3.0e-3, 3.5e-3], rel=1e-9)
+    # The outer one alone under 1 kN at its head.
+    head = system.observers["head"].row
+    bent = np.divide(1000.0 * head, system.omega2, out=np.zeros_like(head), where=~rigid)
+    outer = paper_boom.segments[0]
+    exact = OverhangingBeam(outer, [(10.0, 1000.0)], 0.0)
+    expected = [-exact.deflection(9.0), -exact.deflection(10.0)]
+    assert system.rows @ bent == pytest.approx(expected, rel=1e-6, abs=0.0)
+
+
+def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
+    outer, middle = paper_boom.segments
+    (joint,) = paper_boom.joints
+    last = replace(middle, name="last", start=17.5, end=27.0, section=None)
+    second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
+    boom = Boom((outer, middle, last), (joint, second))
+    models = [
+        finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
+        for k, s in enumerate(boom.segments)
+    ]
+    laws = [PowerContact(1e13, 2.0, 7e-3), PowerContact(1e10, 1.0, 5e-3)]
+    system = gap_system(boom, models, laws)
+    assert [law.exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
+    assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
+    assert (system.omega2 == 0.0).sum() == 4
+    tied = tied_system(boom, models)
+    assert tied.omega2.min() > 1.0
+    assert tied.num_modes == system.num_modes - 4
+    # Tied, both segments of a joint deflect alike at its stations.
+    position = tied.static_response(tied.load)
+    for name in ("head", "head-2", "tail", "tail-2"):
+        assert tied.observers[name].row @ position > 0.0
+    assert tied.observers["tail-2"].row @ position > tied.observers["head"].row @ position
+
+
+@pytest.mark.parametrize("kind", ["series", "elements"])
+def test_viscous_damping_is_exact(paper_boom: Boom, kind: str, paper_law: PowerContact) -> None:
+    """Reference: analytic. Every mode of a segment decays with c = μ̄/m̄."""
+    from beam_model.kantorovich import kantorovich_segment
+
+    segments = [
+        replace(segment, viscous_damping=damping)
+        for segment, damping in zip(paper_boom.segments, (50.0, 20.0), strict=True)
+    ]
+    models = [
+        kantorovich_segment(segment, 4, "as printed", rotary_inertia=False)
+        if kind == "series"
+        else finite_element_segment(segment, 1.0, (9.0, 10.0), "euler-bernoulli", False)
+        for segment in segments
+    ]
+    system = gap_system(paper_boom, models, [paper_law])
+    outer = len(models[0].load)
+    np.testing.assert_allclose(system.damping[:outer], 50.0 / 83.16, rtol=1e-9)
+    np.testing.assert_allclose(system.damping[outer:], 20.0 / 55.07, rtol=1e-9)
+    assert not gap_system(
+        paper_boom, [replace_damping(m) for m in models], [paper_law]
+    ).damping.any()
+
+
+def replace_damping(model: SegmentModel) -> SegmentModel:
+    return replace(model, damping=np.zeros_like(model.damping))

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The boom of Rusiński and Wyciślok (1997), which most tests are about."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+
+from dynamics.contact import PowerContact
+from geometry.boom import Boom, Joint, Material, Segment
+from geometry.section import infer_inner_section, infer_outer_section
+
+# The same examples every time, however slow the machine.
+settings.register_profile("protractile", deadline=None, derandomize=True)
+settings.load_profile("protractile")
+
+
+@pytest.fixture(scope="session")
+def steel() -> Material:
+    return Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+
+
+@pytest.fixture(scope="session")
+def paper_boom(steel: Material) -> Boom:
+    """Two segments on supports at 0 and 2 m, a play of 14 mm at 9 and 10 m, the load q."""
+    outer_box = infer_outer_section(83.16 / steel.density, 3.7986e-4, 494.5 / 302.7)
+    outer = Segment(
+        name="outer",
+        start=0.0,
+        end=10.0,
+        material=steel,
+        mass_per_length=83.16,
+        second_moment_of_area=3.7986e-4,
+        rotary_inertia=3.48,
+        section=outer_box,
+        load=83.16,
+        supports=(0.0, 2.0),
+    )
+    inner = Segment(
+        name="inner",
+        start=9.0,
+        end=19.0,
+        material=steel,
+        mass_per_length=55.07,
+        second_moment_of_area=2.1829e-4,
+        rotary_inertia=1.68,
+        section=infer_inner_section(55.07 / steel.density, 2.1829e-4, outer_box, 7.0e-3),
+        load=55.07,
+    )
+    joint = Joint(
+        outer=0,
+        inner=1,
+        stations=(9.0, 10.0),
+        clearance=7.0e-3,
+        stiffness=1.0e13,
+        stiffness_below=1.0e13,
+        exponent=2.0,
+    )
+    return Boom((outer, inner), (joint,))
+
+
+@pytest.fixture(scope="session")
+def paper_law() -> PowerContact:
+    """(4) with the paper's k, n and Δ."""
+    return PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A single mass, the smallest gap system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem, Observer
+
+
+def one_mass(
+    mass: float,
+    law: PowerContact | None = None,
+    spring: float = 0.0,
+    force: float = 0.0,
+    dashpot: float = 0.0,
+) -> GapSystem:
+    """A mass in kg on a spring in N/m and a dashpot in N·s/m, before a stop.
+
+    Its only modal coordinate is √m times the place, which ``tip`` observes.
+    """
+    row = np.array([1.0 / np.sqrt(mass)])
+    laws = [] if law is None else [law]
+    return GapSystem(
+        omega2=np.array([spring / mass]),
+        load=force * row,
+        rows=row.reshape(1, 1)[: len(laws)],
+        laws=laws,
+        station_of_row=np.zeros(len(laws), dtype=np.int64),
+        stations=[0.0][: len(laws)],
+        observers={"tip": Observer(row)},
+        damping=np.array([dashpot / mass]),
+    )
+
+
+@pytest.fixture(name="one_mass")
+def _one_mass() -> Callable[..., GapSystem]:
+    return one_mass

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""From contact to contact: exact for linear stops, of order four for others, missing none."""
+
+from __future__ import annotations
+
+import re
+import signal
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.integrate import solve_ivp
+
+from dynamics.contact import PowerContact
+from dynamics.event_driven import integrate_events
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
+
+OneMass = Callable[..., GapSystem]
+Array = npt.NDArray[np.float64]
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture(autouse=True)
+def _deadline() -> Iterator[None]:
+    """Motion from event to event may fail by never ending; these tests take a second."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError("the motion does not end")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(15)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def two_modes(exponent: float) -> GapSystem:
+    """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
+    return GapSystem(
+        omega2=np.array([9.0, 60.0]),
+        load=np.array([2.0, 5.0]),
+        rows=np.array([[1.0, 0.6]]),
+        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent, clearance=0.05).upper()],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={},
+    )
+
+
+def reference_states(system: GapSystem, times: Array) -> Array:
+    """(num_times, num_modes) from an adaptive Runge-Kutta method of order 8 (other code, scipy)."""
+    (law,) = system.laws
+    (row,) = system.rows
+    n = system.num_modes
+
+    def rate(_: float, state: Array) -> Array:
+        a, v = state[:n], state[n:]
+        return np.concatenate([v, system.load - system.omega2 * a - row * law.force(row @ a)])
+
+    run = solve_ivp(
+        rate, (0.0, times[-1]), np.zeros(2 * n), "DOP853", times,
+        rtol=1e-13, atol=1e-15, max_step=1e-3,
+    )  # fmt: skip
+    return np.asarray(run.y[:n].T)
+
+
+def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
+    """Reference: analytic, SDND101: half a sine of √((k + spring)/m) in contact, exactly."""
+    stop = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=0.0).upper()
+    system = one_mass(100.0, stop, spring=1.0e4)
+    omega = np.sqrt(1.01e4)
+    half = np.pi / omega
+    run = integrate_events(system, half, output_step=half / 2.0, velocity=np.array([10.0]))
+    assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 / omega, rel=1e-9)
+    assert float(run.data["tip"][1]) == pytest.approx(1.0 / omega, rel=1e-9)
+    assert float(run.data["tip"][2]) == pytest.approx(0.0, abs=1e-12)
+    impulse = 0.5 * half * float(run.data["contact_force"].sum())
+    assert impulse == pytest.approx(200.0 * 1.0e6 / 1.01e6, rel=1e-9)
+    assert run.first_contact == pytest.approx(0.0, abs=1e-15)
+
+
+def test_falling_mass(one_mass: OneMass) -> None:
+    """Reference: analytic, SDND108: back at 0 with its speed after twice 0.5403124 s and a press
+    of 0.3451438 s."""
+    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
+    fall = (np.sqrt(41.0) - 1.0) / 10.0
+    press = 2.0 / 10.0 * (np.pi - np.arctan(np.sqrt(41.0)))
+    assert (fall, fall + press) == pytest.approx((0.5403124, 0.8854562), abs=1e-7)
+    cycle = 2.0 * fall + press
+    run = integrate_events(
+        one_mass(1.0, stop, force=-10.0), cycle, output_step=cycle, velocity=np.array([-1.0])
+    )
+    assert run.first_contact == pytest.approx(fall, rel=1e-11)
+    assert float(run.data["tip"][-1]) == pytest.approx(0.0, abs=1e-10)
+    assert float(run.data["kinetic_energy"][-1]) == pytest.approx(0.5, rel=1e-10)
+    assert run.data.attrs["contact_changes"] == 2
+
+
+@pytest.mark.parametrize("part", [0.3, 0.8, 1.5, 7.0])
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
+def test_peak_force_is_that_of_the_interval(
+    one_mass: OneMass, exponent: float, part: float
+) -> None:
+    """Reference: other code, the splitting at a fine step; output intervals from a part of the
+    press to more than the whole of it."""
+    stop = PowerContact(stiffness=1.0e4, exponent=exponent, clearance=0.1)
+    system, start = one_mass(1.0, stop, force=1.0), np.array([1.0])
+    press = np.pi * 1.0e-2 if exponent == 1.0 else 0.14
+    events, steps = (
+        run(system, 0.4, output_step=part * press, velocity=start, **fine)
+        for run, fine in ((integrate_events, {}), (integrate, {"step": 1.0e-5}))
+    )
+    expected = steps.data["contact_force_peak"].values
+    assert expected.max() > 5.0
+    np.testing.assert_allclose(
+        events.data["contact_force_peak"].values, expected, rtol=2e-2, atol=1e-2 * expected.max()
+    )
+
+
+@pytest.mark.parametrize("integrator", [integrate, integrate_events])
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+def test_a_blow_from_velocity_alone_is_resolved(
+    one_mass: OneMass, integrator: Callable[..., Trajectory], exponent: float
+) -> None:
+    """Reference: analytic. No load gives the step a scale here, only the initial velocity."""
+    stop = PowerContact(stiffness=1.0e9, exponent=exponent, clearance=0.1)
+    run = integrator(one_mass(1.0, stop), 1.0, output_step=0.01, velocity=np.array([5.0]))
+    assert run.data.attrs["contact_changes"] >= 40
+    assert run.energy_residual < 1e-3
+
+
+def test_a_thousand_hard_blows_between_two_stops(one_mass: OneMass) -> None:
+    """Reference: analytic. Contacts of some microseconds, none missed, no energy lost."""
+    law = PowerContact(4.0e12, exponent=1.0, clearance=0.1, stiffness_below=9.0e12)
+    period = 2.0 * 0.2 / 20.0 + np.pi / 2.0e6 + np.pi / 3.0e6
+    run = integrate_events(
+        one_mass(1.0, law), 500.0 * period, output_step=period, velocity=np.array([20.0])
+    )
+    assert run.data.attrs["contact_changes"] == 2000
+    np.testing.assert_allclose(run.data["tip"], 0.0, atol=1e-8)
+    assert run.energy_residual < 1e-9
+
+
+def test_linear_stops_are_exact() -> None:
+    """Reference: other code, scipy's DOP853, through some ten contacts at once."""
+    system = two_modes(1.0)
+    run = integrate_events(system, 3.0, output_step=0.1)
+    expected = reference_states(system, run.time)
+    assert run.data.attrs["contact_changes"] >= 9
+    np.testing.assert_allclose(run.states, expected, atol=1e-7 * np.abs(expected).max())
+    assert run.energy_residual < 1e-11
+
+
+def test_smooth_stops_are_of_order_four() -> None:
+    """Reference: other code, scipy's DOP853, through one contact; slope and error."""
+    system = two_modes(3.0)
+    errors = []
+    phases = (0.8, 0.4, 0.2)
+    for phase in phases:
+        run = integrate_events(system, 0.6, output_step=0.02, phase=phase)
+        expected = reference_states(system, run.time)
+        errors.append(np.abs(run.states - expected).max() / np.abs(expected).max())
+    assert run.data.attrs["contact_changes"] == 2
+    assert errors[-1] < 1e-7
+    assert np.log2(errors[0] / errors[-1]) / 2.0 > 3.0
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+def test_agrees_with_the_splitting(exponent: float) -> None:
+    """Reference: other code, the step-by-step integrator at a fine step."""
+    system = two_modes(exponent)
+    events = integrate_events(system, 1.5, output_step=0.01)
+    steps = integrate(system, 1.5, output_step=0.01, step=1.0e-5)
+    assert events.data.attrs["contact_changes"] == steps.data.attrs["contact_changes"] >= 5
+    assert events.first_contact == pytest.approx(steps.first_contact, rel=1e-8)
+    names = ("kinetic_energy", "strain_energy", "contact_energy", "work", "gap", "contact_force")
+    for name in names:
+        size = float(np.abs(steps.data[name]).max())
+        np.testing.assert_allclose(events.data[name], steps.data[name], atol=1e-4 * size)
+
+
+def test_without_contact_it_is_the_flow(one_mass: OneMass) -> None:
+    """Reference: analytic."""
+    run = integrate_events(one_mass(4.0, spring=100.0, force=30.0), 2.0, output_step=0.1)
+    np.testing.assert_allclose(run.data["tip"], 0.3 * (1.0 - np.cos(5.0 * run.time)), atol=1e-13)
+    assert np.isnan(run.first_contact)
+
+
+def test_refuses_damping(one_mass: OneMass) -> None:
+    message = "a damped system has no closed form from contact to contact"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        integrate_events(one_mass(1.0, spring=1.0, dashpot=0.1), 1.0)
+
+
+def test_refuses_to_start_pressed(one_mass: OneMass) -> None:
+    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
+    message = "the initial position presses a contact; start with every gap open"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        integrate_events(one_mass(1.0, stop), 1.0, position=np.array([-0.11]))

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A gap system refuses shapes that do not agree, and knows what its matrices say."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem, Observer
+
+pytestmark = pytest.mark.quick
+
+LAW = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=1.0e-3)
+
+
+def parts() -> dict[str, Any]:
+    """Three modes, one of them rigid, and two contact rows."""
+    return {
+        "omega2": np.array([9.0, 0.0, 4.0]) * np.pi**2,
+        "load": np.array([1.0, 2.0, 3.0]),
+        "rows": np.array([[3.0, 4.0, 0.0], [0.0, 0.0, 0.5]]),
+        "laws": [LAW, LAW],
+        "station_of_row": np.array([0, 1]),
+        "stations": [9.0, 10.0],
+        "observers": {"tip": Observer(np.ones(3))},
+    }
+
+
+def test_numbers_of_a_system() -> None:
+    """Reference: analytic, by hand."""
+    system = GapSystem(**parts())
+    assert system.num_modes == 3
+    assert system.frequencies == pytest.approx([0.0, 1.0, 1.5], rel=1e-14)
+    assert system.row_masses == pytest.approx([1.0 / 25.0, 4.0], rel=1e-14)
+    assert not system.damping.any()
+    assert system.damping.shape == (3,)
+
+
+def test_rest_under_a_force() -> None:
+    system = GapSystem(**parts() | {"omega2": np.array([4.0, 1.0, 2.0])})
+    assert system.static_response(np.array([1.0, 2.0, 3.0])) == pytest.approx([0.25, 2.0, 1.5])
+
+
+def test_no_rest_with_a_rigid_mode() -> None:
+    with pytest.raises(ValueError, match=r"^a system with rigid modes has no static response$"):
+        GapSystem(**parts()).static_response(np.ones(3))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("load", np.ones(2), "load must have the shape (3,), got (2,)"),
+        ("omega2", np.ones((3, 1)), "omega2 must have the shape (3,), got (3, 1)"),
+        ("rows", np.ones((2, 2)), "rows must have the shape (2, 3), got (2, 2)"),
+        ("rows", np.ones((1, 3)), "rows must have the shape (2, 3), got (1, 3)"),
+        ("laws", [LAW], "rows must have the shape (1, 3), got (2, 3)"),
+        ("station_of_row", np.array([0]), "station_of_row must have the shape (2,), got (1,)"),
+        ("damping", np.ones(4), "damping must have the shape (3,), got (4,)"),
+        (
+            "observers",
+            {"tip": Observer(np.ones(2))},
+            "observer 'tip' must have the shape (3,), got (2,)",
+        ),
+        ("load", np.array([0.0, np.nan, 0.0]), "load must be finite"),
+        ("rows", np.full((2, 3), np.inf), "rows must be finite"),
+        ("observers", {"tip": Observer(np.full(3, np.nan))}, "observer 'tip' must be finite"),
+        ("omega2", np.array([1.0, -1e-9, 1.0]), "omega2 and damping must not be negative"),
+        ("damping", np.array([0.0, -1.0, 0.0]), "omega2 and damping must not be negative"),
+    ],
+)
+def test_refuses_what_does_not_agree(name: str, value: object, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        GapSystem(**parts() | {name: value})

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Between contacts the motion of every mode is exact, whatever its damping and the step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.linalg import expm
+
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.splitting import ModalFlow, integrate
+
+pytestmark = pytest.mark.quick
+
+# ω² in rad²/s², c in 1/s, load in N/√kg
+MODES = {
+    "undamped": (40.0, 0.0, 3.0),
+    "undamped, slow": (1.0e-6, 0.0, 3.0),
+    "damped": (40.0, 0.7, 3.0),
+    "critically damped": (2.25, 3.0, 3.0),
+    "overdamped": (2.0, 9.0, 3.0),
+    "rigid": (0.0, 0.0, 3.0),
+    "rigid damped": (0.0, 0.7, 3.0),
+    "stiff": (1.0e8, 20.0, 3.0),
+}
+
+
+def modes() -> GapSystem:
+    omega2, damping, load = np.array(list(MODES.values())).T
+    n = omega2.size
+    return GapSystem(
+        omega2=omega2,
+        load=load,
+        rows=np.zeros((0, n)),
+        laws=[],
+        station_of_row=np.zeros(0, dtype=np.int64),
+        stations=[],
+        observers={name: Observer(row) for name, row in zip(MODES, np.eye(n), strict=True)},
+        damping=damping,
+    )
+
+
+def exact(omega2: float, damping: float, load: float, time: float) -> npt.NDArray[np.float64]:
+    """The map (a, v, 1) → (a, v, 1) of one mode, from scipy's matrix exponential."""
+    generator = np.array([[0.0, 1.0, 0.0], [-omega2, -damping, load], [0.0, 0.0, 0.0]])
+    return np.asarray(expm(generator * time))
+
+
+@pytest.mark.parametrize("step", [1.0e-2, 1.0])
+def test_flow_is_the_matrix_exponential(step: float) -> None:
+    """Reference: other code, scipy.linalg.expm.
+
+    Each entry is held against the size that it has without decay, so that those that are
+    small because the step is small are not passed by.
+    """
+    flow = ModalFlow.over(modes(), step)
+    for k, (name, numbers) in enumerate(MODES.items()):
+        (aa, av, ap), (va, vv, vp), _ = exact(*numbers, step)
+        omega = np.sqrt(numbers[0])
+        reach = min(step, 1.0 / omega) if omega > 0.0 else step
+        expected = ModalFlow(*map(np.array, (aa, av, ap, va, vv, vp)))
+        size = ModalFlow(
+            *map(np.array, (1.0, reach, 3.0 * reach**2, omega**2 * reach, 1.0, 3.0 * reach))
+        )
+        for entry in fields(ModalFlow):
+            got = getattr(flow, entry.name)[k]
+            error = abs(got - getattr(expected, entry.name))
+            assert error <= 2e-12 * getattr(size, entry.name), (name, entry.name)
+
+
+@pytest.mark.parametrize("omega2", [0.0, 40.0])
+@pytest.mark.parametrize("damping", [0.0, 1.0e-9, 0.7, 9.0])
+def test_load_response_of_the_shortest_steps(
+    one_mass: Callable[..., GapSystem], omega2: float, damping: float
+) -> None:
+    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load.
+
+    At the steps that contacts need, a difference of two numbers near one leaves few digits of
+    it, and a relative error of it acts as one of the load.
+    """
+    mode = one_mass(1.0, spring=omega2, dashpot=damping, force=1.0)
+    for h in (1.0e-4, 1.0e-5, 1.0e-6):
+        series = h**2 / 2.0 - damping * h**3 / 6.0 + (damping**2 - omega2) * h**4 / 24.0
+        assert ModalFlow.over(mode, h).ap == pytest.approx(series, rel=1e-9, abs=0.0)
+
+
+def test_steps_add_up() -> None:
+    """Reference: analytic, (flow over h)ⁿ = flow over n h; here by the integrator itself."""
+    one = integrate(modes(), 2.0, output_step=0.5)
+    many = integrate(modes(), 2.0, output_step=0.5, step=1.0e-4)
+    assert one.data.attrs["steps"] == 4
+    assert many.data.attrs["steps"] == 20_000
+    for name in MODES:
+        size = float(np.abs(one.data[name]).max())
+        np.testing.assert_allclose(many.data[name], one.data[name], rtol=0.0, atol=1e-9 * size)
+
+
+def test_heavily_damped_mode_creeps(one_mass: Callable[..., GapSystem]) -> None:
+    """Reference: analytic. For c ≫ ω the mode creeps as exp(−ω²t/c)."""
+    system = one_mass(1.0, spring=1.0e4, dashpot=1.0e5)
+    assert ModalFlow.over(system, 1.0).aa == pytest.approx(np.exp(-0.1), rel=1e-5)

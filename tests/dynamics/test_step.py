@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The automatic step resolves the fastest contact and fits the output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from dynamics.step import PHASE, closing_speeds, contact_frequencies, contact_step
+
+pytestmark = pytest.mark.quick
+
+
+def test_closing_speeds_by_hand(one_mass: Callable[..., GapSystem]) -> None:
+    """Reference: analytic. A step load swings a spring mass at F/√(k m); a free one falls 2Δ."""
+    law = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=0.2)
+    swinging = one_mass(4.0, law, spring=100.0, force=30.0)
+    assert closing_speeds(swinging) == pytest.approx([1.5], rel=1e-14)
+    falling = one_mass(4.0, law, force=-40.0)
+    assert closing_speeds(falling) == pytest.approx([np.sqrt(2.0 * 10.0 * 0.4)], rel=1e-14)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+def test_contact_frequency_by_hand(one_mass: Callable[..., GapSystem], exponent: float) -> None:
+    """Reference: analytic. Penetration from k pⁿ⁺¹/(n+1) = ½ m (2v)², then √(n k pⁿ⁻¹/m)."""
+    law = PowerContact(2.0e6, exponent, clearance=0.2, stiffness_below=5.0e6)
+    system = one_mass(4.0, law, force=-40.0)
+    energy = 0.5 * 4.0 * (2.0 * closing_speeds(system)[0]) ** 2
+    (frequency,) = contact_frequencies(system)
+    depth = (frequency**2 * 4.0 / (exponent * 5.0e6)) ** (1.0 / (exponent - 1.0)) if (
+        exponent > 1.0
+    ) else np.sqrt(2.0 * energy / 5.0e6)  # fmt: skip
+    assert law.lower().energy(np.array(-0.2 - depth)) == pytest.approx(energy, rel=1e-9)
+    assert frequency == pytest.approx(
+        np.sqrt(exponent * 5.0e6 * depth ** (exponent - 1.0) / 4.0), rel=1e-9
+    )
+
+
+def test_step_is_a_whole_part_of_the_output_step(one_mass: Callable[..., GapSystem]) -> None:
+    """Reference: analytic, √(k/m) = 500 rad/s for a linear stop: at most 0.03/500 s."""
+    system = one_mass(4.0, PowerContact(1.0e6, 1.0, 0.2), force=-40.0)
+    for output_step in (1.0e-3, 0.7e-3, 1.0e-5):
+        step = contact_step(system, output_step)
+        parts = output_step / step
+        assert parts == pytest.approx(round(parts), rel=1e-12)
+        assert step * 500.0 <= PHASE * (1.0 + 1e-12)
+        assert output_step / (round(parts) - 1) * 500.0 > PHASE if round(parts) > 1 else True
+
+
+def test_without_contact_the_output_step_serves(one_mass: Callable[..., GapSystem]) -> None:
+    assert contact_step(one_mass(1.0, spring=1.0e12), 0.1) == 0.1

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A trajectory labels what the integrator leaves and measures it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import xarray as xr
+
+from dynamics.contact import PowerContact
+from dynamics.energy import ENERGIES, energy_residual
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
+
+pytestmark = pytest.mark.quick
+
+STOP = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=1.0e-2)
+
+
+def deflections(tip: npt.NDArray[np.float64], end: float) -> Trajectory:
+    time = np.linspace(0.0, end, tip.size)
+    data = xr.Dataset({"tip": ("time", tip)}, coords={"time": time})
+    return Trajectory(data, np.zeros((tip.size, 0)))
+
+
+def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
+    system = one_mass(2.0, STOP, force=3.0)
+    system = replace(
+        system, observers={**system.observers, "stress": Observer(np.array([5.0]), "Pa")}
+    )
+    run = integrate(system, 0.2, output_step=1.0e-2)
+    units = {name: variable.attrs["units"] for name, variable in run.data.variables.items()}
+    assert units == {
+        "time": "s",
+        "station": "m",
+        "tip": "m",
+        "stress": "Pa",
+        "contact_force": "N",
+        "contact_force_peak": "N",
+        "gap": "m",
+        **dict.fromkeys(ENERGIES, "J"),
+    }
+    for name in ("contact_force", "contact_force_peak", "gap"):
+        assert run.data[name].dims == ("time", "station")
+    for name in ("tip", "stress", *ENERGIES):
+        assert run.data[name].dims == ("time",)
+    assert run.states.shape == (21, 1)
+    np.testing.assert_allclose(run.time, 0.01 * np.arange(21), rtol=1e-15)
+    np.testing.assert_allclose(run.data["stress"], 5.0 * run.states[:, 0], rtol=1e-15)
+    attributes = {"step", "steps", "first_contact", "contact_changes", "energy_residual"}
+    assert set(run.data.attrs) >= attributes
+    assert run.data.attrs["steps"] * run.data.attrs["step"] == pytest.approx(0.2, rel=1e-12)
+    assert run.first_contact == run.data.attrs["first_contact"]
+    assert run.energy_residual == run.data.attrs["energy_residual"]
+
+
+def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
+    """Three rows that share two stops move as two rows do, and report the same forces.
+
+    Reference: other code path, one whole row a station.
+    """
+    row = np.array([[0.8], [-0.5]])
+    whole = GapSystem(
+        omega2=np.array([10.0]),
+        load=np.array([2.0]),
+        rows=row,
+        laws=[STOP, replace(STOP, clearance=5.0e-3)],
+        station_of_row=np.array([0, 1]),
+        stations=[9.0, 10.0],
+        observers={},
+    )
+    shared = replace(
+        whole,
+        rows=row[[0, 1, 0]],
+        laws=[STOP.shared(0.25), whole.laws[1], STOP.shared(0.75)],
+        station_of_row=np.array([0, 1, 0]),
+    )
+    one, two = (integrate(s, 2.0, output_step=1.0e-2, step=1.0e-4) for s in (whole, shared))
+    assert np.abs(one.data["contact_force"]).max("time").values.min() > 1.0
+    for name in ("contact_force", "contact_force_peak", "gap"):
+        assert two.data[name].shape == (201, 2)
+        np.testing.assert_allclose(two.data[name], one.data[name], rtol=1e-8, atol=1e-9)
+    np.testing.assert_array_equal(two.data["station"], [9.0, 10.0])
+
+
+def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
+    system = GapSystem(
+        omega2=np.array([4.0, 9.0]),
+        load=np.array([1.0, 1.0]),
+        rows=np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]),
+        laws=[replace(STOP, clearance=10.0)] * 3,
+        station_of_row=np.array([1, 1, 0]),
+        stations=[9.0, 10.0],
+        observers={},
+    )
+    run = integrate(system, 1.0, output_step=0.1)
+    np.testing.assert_allclose(run.data["gap"][:, 0], run.states.sum(axis=1), rtol=1e-14)
+    np.testing.assert_allclose(run.data["gap"][:, 1], run.states.mean(axis=1), rtol=1e-14)
+
+
+def test_energy_residual_by_hand() -> None:
+    """Reference: analytic. 1 J at first, 4 J of work, 0.5 J lost to damping, 0.2 J too much."""
+    energies = np.array([[0.5, 0.3, 0.2, 0.0, 0.0], [2.0, 2.0, 0.7, 4.0, 0.5]])
+    assert energy_residual(energies) == pytest.approx([0.0, 0.2 / 4.0], rel=1e-12)
+    # Without work what there was at first is the measure, and at rest there is none.
+    energies[:, 3] = 0.0
+    energies[1] = [0.6, 0.4, 0.1, 0.0, 0.0]
+    assert energy_residual(energies) == pytest.approx([0.0, 0.1], rel=1e-12)
+    assert not energy_residual(np.zeros((3, 5))).any()
+
+
+def test_first_peak_of_a_slow_motion_with_ripple() -> None:
+    """Reference: analytic. 1 − cos 2t peaks at π/2; a ripple of 5 % is no peak of its own."""
+    t = np.linspace(0.0, 6.0, 6001)
+    time, height = deflections(1.0 - np.cos(2.0 * t) + 0.05 * np.cos(60.0 * t), 6.0).first_peak()
+    assert time == pytest.approx(0.5 * np.pi, abs=np.pi / 60.0)
+    assert height == pytest.approx(2.05, abs=0.01)
+
+
+def test_first_peak_is_the_first_and_not_the_highest() -> None:
+    t = np.linspace(0.0, 6.0, 6001)
+    time, height = deflections(np.sin(2.0 * t) * (1.0 + 0.3 * t), 6.0).first_peak()
+    # There tan 2t = −2 (1 + 0.3 t)/0.3: t = 0.84495.
+    assert time == pytest.approx(0.84495, abs=1e-3)
+    assert height == pytest.approx(np.sin(2.0 * time) * (1.0 + 0.3 * time), rel=1e-9)
+
+
+def test_no_peak_in_a_steady_rise() -> None:
+    assert np.isnan(deflections(np.linspace(0.0, 1.0, 100), 1.0).first_peak()).all()

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The mesh of a box is closed, exact, symmetric, and has lines where they were asked for."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+import meshio
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geometry.mesh import WALLS, SegmentMesh, mesh_segment
+from geometry.section import BoxSection
+
+BOX = BoxSection(height=0.4945, width=0.3027, flange=0.00664, web=0.00664)
+BREAKS = {"tail": 0.0, "support-2": 2.0, "station-9": 9.0, "station-10": 10.0, "head": 10.0}
+
+
+@pytest.fixture(scope="module")
+def mesh() -> SegmentMesh:
+    return mesh_segment(BOX, BREAKS, 0.2)
+
+
+def edge_counts(triangles: npt.NDArray[np.int64]) -> Counter[tuple[int, int]]:
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    return Counter(map(tuple, np.sort(sides, axis=1).tolist()))
+
+
+def areas(mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+
+def line_length(mesh: SegmentMesh, edges: npt.NDArray[np.int64]) -> float:
+    return float(np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum())
+
+
+@pytest.mark.quick
+def test_tube_is_closed_between_its_ends(mesh: SegmentMesh) -> None:
+    """Every edge lies between two triangles but for the two end outlines; no node is loose."""
+    open_edges = [edge for edge, count in edge_counts(mesh.triangles).items() if count != 2]
+    assert all(edge_counts(mesh.triangles)[edge] == 1 for edge in open_edges)
+    x = mesh.points[np.array(open_edges), 0]
+    assert (x[:, 0] == x[:, 1]).all()
+    assert set(np.unique(x)) == {0.0, 10.0}
+    ends = [mesh.lines[f"{name}:{wall}"] for name in ("tail", "head") for wall in WALLS]
+    assert set(open_edges) == {tuple(sorted(edge)) for end in ends for edge in end.tolist()}
+    assert set(np.unique(mesh.triangles)) == set(range(len(mesh.points)))
+    # A tube: V − E + F = 0.
+    assert len(mesh.points) - len(edge_counts(mesh.triangles)) + len(mesh.triangles) == 0
+
+
+@pytest.mark.quick
+def test_no_two_points_coincide(mesh: SegmentMesh) -> None:
+    assert len(np.unique(np.round(mesh.points, 9), axis=0)) == len(mesh.points)
+
+
+@pytest.mark.quick
+def test_area_is_the_perimeter_times_the_length(mesh: SegmentMesh) -> None:
+    """Reference: analytic, of the whole and of each wall."""
+    assert areas(mesh).sum() == pytest.approx(2.0 * (0.4945 + 0.3027) * 10.0, rel=1e-12)
+    for number, wall in enumerate(WALLS):
+        side = BOX.width if wall in ("bottom", "top") else BOX.height
+        assert areas(mesh)[mesh.walls == number].sum() == pytest.approx(10.0 * side, rel=1e-12)
+
+
+@pytest.mark.quick
+def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
+    planes = {
+        "bottom": (2, -0.5 * BOX.height),
+        "right": (1, 0.5 * BOX.width),
+        "top": (2, 0.5 * BOX.height),
+        "left": (1, -0.5 * BOX.width),
+    }
+    for number, wall in enumerate(WALLS):
+        axis, value = planes[wall]
+        corners = mesh.points[mesh.triangles[mesh.walls == number]]
+        assert np.abs(corners[..., axis] - value).max() < 1e-14
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("axis", [1, 2], ids=["y", "z"])
+def test_mesh_mirrors_itself(mesh: SegmentMesh, axis: int) -> None:
+    """The mirror image has the same triangles, diagonals included."""
+    places = {tuple(p): i for i, p in enumerate(np.round(mesh.points, 9) + 0.0)}
+    mirrored = np.round(mesh.points, 9)
+    mirrored[:, axis] *= -1.0
+    image = np.array([places[tuple(p)] for p in mirrored + 0.0])
+    triangles = {tuple(t) for t in np.sort(mesh.triangles, axis=1).tolist()}
+    assert {tuple(t) for t in np.sort(image[mesh.triangles], axis=1).tolist()} == triangles
+
+
+@pytest.mark.quick
+def test_named_lines_go_once_around_the_section(mesh: SegmentMesh) -> None:
+    assert set(mesh.lines) == {f"{name}:{wall}" for name in BREAKS for wall in WALLS}
+    edges = edge_counts(mesh.triangles)
+    for name, x in BREAKS.items():
+        around: Counter[int] = Counter()
+        for wall in WALLS:
+            line = mesh.lines[f"{name}:{wall}"]
+            side = BOX.width if wall in ("bottom", "top") else BOX.height
+            assert line_length(mesh, line) == pytest.approx(side, rel=1e-12)
+            assert np.abs(mesh.points[line, 0] - x).max() < 1e-12
+            assert all(tuple(sorted(edge)) in edges for edge in line.tolist())
+            around.update(line.ravel().tolist())
+        assert set(around.values()) == {2}
+    for wall in WALLS:
+        np.testing.assert_array_equal(mesh.lines[f"head:{wall}"], mesh.lines[f"station-10:{wall}"])
+
+
+@settings(max_examples=25)
+@given(
+    spans=st.lists(st.floats(0.013, 3.7), min_size=1, max_size=4),
+    start=st.floats(-5.0, 20.0),
+    size=st.floats(0.11, 2.3),
+    height=st.floats(0.1, 0.9),
+    width=st.floats(0.1, 0.9),
+)
+def test_lines_lie_at_the_breaks_for_awkward_lengths(
+    spans: list[float], start: float, size: float, height: float, width: float
+) -> None:
+    box = BoxSection(height, width, 0.006, 0.006)
+    places = start + np.concatenate([[0.0], np.cumsum(spans)])
+    breaks = {f"break-{k}": float(x) for k, x in enumerate(places)}
+    mesh = mesh_segment(box, breaks, size)
+    length = places[-1] - places[0]
+    assert areas(mesh).sum() == pytest.approx(2.0 * (height + width) * length, rel=1e-11)
+    for name, x in breaks.items():
+        lines = [mesh.lines[f"{name}:{wall}"] for wall in WALLS]
+        assert np.abs(mesh.points[np.concatenate(lines), 0] - x).max() < 1e-12
+        assert sum(line_length(mesh, line) for line in lines) == pytest.approx(
+            2.0 * (height + width), rel=1e-12
+        )
+    # No triangle reaches across a line, and the edges along x come as near to the size as
+    # whole numbers allow.
+    corners = mesh.points[mesh.triangles, 0]
+    for a, b in pairwise(places):
+        inside = (corners.min(axis=1) >= a - 1e-9) & (corners.max(axis=1) <= b + 1e-9)
+        assert areas(mesh)[inside].sum() == pytest.approx(
+            2.0 * (height + width) * (b - a), rel=1e-9
+        )
+        steps = len(np.unique(np.round(corners[inside], 9))) - 1
+        assert steps == max(1, int((b - a) / size + 0.5))
+
+
+@pytest.mark.quick
+def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
+    """Reference: other code, meshio's reader of gmsh's own file."""
+    breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "head": 3.5}
+    mesh = mesh_segment(BOX, breaks, 0.25, msh=tmp_path / "outer.msh")
+    read = meshio.read(tmp_path / "outer.msh")
+    expected = {wall: 2 for wall in WALLS}
+    expected |= {f"{name}:{wall}": 1 for name in breaks for wall in WALLS}
+    assert {name: int(dim) for name, (_, dim) in read.field_data.items()} == expected
+    for number, wall in enumerate(WALLS):
+        corners = grouped(read, "triangle", wall)
+        assert len(corners) == (mesh.walls == number).sum()
+        np.testing.assert_allclose(
+            sorted_places(corners.mean(axis=1)),
+            sorted_places(mesh.points[mesh.triangles[mesh.walls == number]].mean(axis=1)),
+            atol=1e-12,
+        )
+    for name, edges in mesh.lines.items():
+        ends = grouped(read, "line", name)
+        np.testing.assert_allclose(
+            sorted_places(ends.mean(axis=1)),
+            sorted_places(mesh.points[edges].mean(axis=1)),
+            atol=1e-12,
+        )
+
+
+@pytest.mark.quick
+def test_lines_that_share_a_place_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
+    mesh_segment(BOX, {"tail": 0.0, "station": 1.0, "head": 1.0}, 0.5, msh=tmp_path / "m.msh")
+    text = (tmp_path / "m.msh").read_text()
+    for name in ("station", "head"):
+        for wall in WALLS:
+            assert f'"{name}:{wall}"' in text
+
+
+def grouped(read: meshio.Mesh, kind: str, name: str) -> npt.NDArray[np.float64]:
+    """Corners (num_cells, nodes, 3) of the cells in a physical group."""
+    tag = read.field_data[name][0]
+    tags = read.cell_data_dict["gmsh:physical"][kind]
+    return read.points[read.cells_dict[kind][tags == tag]]
+
+
+def sorted_places(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return places[np.lexsort(np.round(places, 9).T)]
+
+
+@pytest.mark.quick
+def test_written_mesh_is_read_back(mesh: SegmentMesh, tmp_path: Path) -> None:
+    """Reference: other code, meshio's reader."""
+    mesh.write(tmp_path / "outer.vtu")
+    read = meshio.read(tmp_path / "outer.vtu")
+    np.testing.assert_allclose(read.points, mesh.points, atol=1e-15)
+    np.testing.assert_array_equal(read.cells_dict["triangle"], mesh.triangles)
+    np.testing.assert_array_equal(read.cell_data_dict["wall"]["triangle"], mesh.walls)
+
+
+@pytest.mark.quick
+def test_the_same_call_gives_the_same_mesh(mesh: SegmentMesh) -> None:
+    again = mesh_segment(BOX, BREAKS, 0.2)
+    np.testing.assert_array_equal(again.points, mesh.points)
+    np.testing.assert_array_equal(again.triangles, mesh.triangles)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("size", [0.0, -0.1, float("nan"), float("inf")])
+def test_refuses_a_size_that_is_none(size: float) -> None:
+    message = f"mesh size must be a positive number of m, got {size}"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        mesh_segment(BOX, BREAKS, size)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("breaks", [{}, {"tail": 1.0}, {"tail": 1.0, "head": 1.0 + 1e-12}])
+def test_refuses_a_segment_without_length(breaks: dict[str, float]) -> None:
+    message = "a segment needs breaks at two places at least, its ends"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        mesh_segment(BOX, breaks, 0.2)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Every command, and for every mistake of a user one line on stderr and its exit status."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from runs import cli
+
+pytestmark = pytest.mark.quick
+
+ROOT = Path(__file__).parents[2]
+COARSE = (ROOT / "runs" / "cases" / "coarse.toml").read_text(encoding="utf-8")
+SERIES = "--models", "kantorovich-4,kantorovich-5"
+
+
+class Answer(NamedTuple):
+    status: int | str | None
+    out: str
+    err: str
+
+
+Protractile = Callable[..., Answer]
+
+
+@pytest.fixture
+def protractile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Protractile:
+    """Runs a command in an empty folder that holds case.toml, the coarse case."""
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(COARSE, encoding="utf-8")
+
+    def run(*arguments: str) -> Answer:
+        with pytest.raises(SystemExit) as ended:
+            cli.main(arguments)
+        return Answer(ended.value.code, *capsys.readouterr())
+
+    return run
+
+
+def edit(old: str, new: str) -> None:
+    assert old in COARSE
+    Path("case.toml").write_text(COARSE.replace(old, new, 1), encoding="utf-8")
+
+
+def test_check_prints_what_was_inferred(protractile: Protractile) -> None:
+    """Reference: non-regression, the boxes that :mod:`geometry.section` infers."""
+    answer = protractile("check", "case.toml")
+    assert (answer.status, answer.err) == (0, "")
+    for part in ("488.9 x 325.9", "463.6 x 270.6", "± 7", "terms 2 + 3", "tied", "mesh 0.25 m"):
+        assert part in answer.out
+
+
+def test_schema_is_the_case_s_json_schema(protractile: Protractile) -> None:
+    answer = protractile("schema")
+    assert (answer.status, answer.err) == (0, "")
+    assert {"time", "material", "segment", "model"} <= set(json.loads(answer.out)["required"])
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_bad_case_is_one_line_and_no_folder(protractile: Protractile, command: str) -> None:
+    edit("duration = 0.6", "durration = 0.6")
+    answer = protractile(command, "./case.toml")
+    assert answer == (
+        2,
+        "",
+        "protractile: ./case.toml: time.durration: unknown key; the nearest known one is "
+        "duration\n",
+    )
+    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ([], "Missing command. (protractile --help tells more)"),
+        (["run"], "Missing argument 'CASE.toml'. (protractile --help tells more)"),
+        (["fly", "case.toml"], "No such command 'fly'. (protractile --help tells more)"),
+        (
+            ["run", "nowhere.toml"],
+            "nowhere.toml: file: does not exist; give the path of a case file",
+        ),
+        (
+            ["run", "case.toml", "--models", "shell,plate"],
+            "case.toml: --models: 'plate' is not a model of the case; give 'kantorovich-4', "
+            "'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-tied' or 'shell'",
+        ),
+        (
+            ["run", "case.toml", "--mesh-size", "0"],
+            "case.toml: --mesh-size: must be a finite number of m above 0, got 0",
+        ),
+        (
+            ["run", "case.toml", *SERIES, "--mesh-size", "0.5"],
+            "case.toml: --mesh-size: no shell is to be run; leave it out",
+        ),
+        (
+            ["run", "case.toml", *SERIES, "--out", "case.toml"],
+            "case.toml: --out case.toml: is a file; give a folder",
+        ),
+        (
+            ["run", "case.toml", *SERIES, "--out", "case.toml/deeper"],
+            "case.toml: --out case.toml/deeper: cannot be written (Not a directory); give a "
+            "folder that can",
+        ),
+        (
+            ["run", "case.toml", *SERIES, "--out", "/proc/nowhere"],
+            "case.toml: --out /proc/nowhere: cannot be written (No such file or directory); give "
+            "a folder that can",
+        ),
+        (
+            ["run", "case.toml", *SERIES, "--out", "."],
+            "case.toml: --out .: holds files that are not a run's; give a new folder or an "
+            "earlier run's",
+        ),
+        (["report", "nowhere"], "nowhere: folder: does not exist; give the folder of a run"),
+        (
+            ["report", "."],
+            ".: trajectories.nc: missing; give the folder of a run that has finished",
+        ),
+        (["report", "case.toml"], "case.toml: folder: is a file; give the folder of a run"),
+        (
+            ["snapshot", "."],
+            ".: trajectories.nc: missing; give the folder of a run that has finished",
+        ),
+    ],
+    ids=" ".join,
+)
+def test_a_mistake_is_one_line(protractile: Protractile, arguments: list[str], line: str) -> None:
+    assert protractile(*arguments) == (2, "", f"protractile: {line}\n")
+    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
+
+
+def test_a_number_that_is_none_is_one_line(protractile: Protractile) -> None:
+    answer = protractile("run", "case.toml", "--mesh-size", "fine")
+    assert answer.status == 2
+    assert answer.err.startswith("protractile: Invalid value for '--mesh-size': ")
+    assert answer.err.count("\n") == 1
+
+
+def test_numerics_that_fail_are_one_line_and_no_results(protractile: Protractile) -> None:
+    """A step of 1 ms cannot follow a contact whose period is a fraction of it."""
+    edit("duration = 0.6", "duration = 0.6\nstep = 1e-3")
+    status, out, err = protractile("run", "case.toml", *SERIES, "--out", "out")
+    assert (status, out) == (3, "")
+    assert err.startswith("protractile: case.toml: model[1]: the energy residual is ")
+    assert err.endswith(" at a step of 0.001 s; halve the step\n")
+    assert err.count("\n") == 1
+    assert list(Path("out").iterdir()) == []
+
+
+def test_a_contact_that_would_take_for_ever_is_one_line(protractile: Protractile) -> None:
+    edit("stiffness = 1e13", "stiffness = 1e100")
+    status, out, err = protractile("run", "case.toml", *SERIES, "--out", "out")
+    assert (status, out, err.count("\n")) == (3, "", 1)
+    assert "steps; make the contact softer or the step longer" in err
+
+
+def test_a_full_disk_is_one_line_and_leaves_what_was_there(
+    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: object, path: Path, **options: object) -> None:
+        path.write_bytes(b"half")
+        raise OSError(28, "No space left on device")
+
+    assert protractile("run", "case.toml", *SERIES, "--out", "out").status == 0
+    before = Path("out/trajectories.nc").read_bytes()
+    monkeypatch.setattr("xarray.Dataset.to_netcdf", full)
+    assert protractile("run", "case.toml", *SERIES, "--out", "out") == (
+        2,
+        "",
+        "protractile: out/trajectories.nc: file: cannot be used (No space left on device)\n",
+    )
+    assert Path("out/trajectories.nc").read_bytes() == before
+    assert not Path("out/report.html").exists()
+    assert not list(Path("out").glob(".*"))
+
+
+def test_a_demand_that_is_not_met_is_said_and_counts(protractile: Protractile) -> None:
+    edit("[time]", 'demand = ["S1", "S11"]\n\n[time]')
+    for command in (["run", "case.toml", *SERIES, "--out", "out"], ["report", "out"]):
+        status, _, err = protractile(*command)
+        assert status == 1
+        assert err.startswith(
+            f"protractile: {command[1]}: demand: S11 is undecided, and the case demands that it is "
+            "reproduced: "
+        )
+        assert err.count("\n") == 1
+    assert Path("out/report.html").exists()
+
+
+def test_a_shell_without_fenicsx_is_one_line(
+    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in sys.modules if name.startswith("shell_model.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "dolfinx", None)
+    monkeypatch.setitem(sys.modules, "mpi4py", None)
+    status, out, err = protractile("run", "case.toml", "--out", "out")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(
+        "protractile: case.toml: model[6].kind: a shell needs FEniCSx, which cannot be imported "
+    )
+    assert err.endswith(
+        "; install python3-dolfinx (Debian) or fenics-dolfinx (conda), or run the other models "
+        "with --models\n"
+    )
+    assert not Path("out").exists()
+
+
+def test_beams_need_no_fenicsx(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
+    program = """
+import sys
+for name in ("dolfinx", "mpi4py", "petsc4py", "ufl", "basix", "slepc4py"):
+    sys.modules[name] = None
+from runs.cli import main
+main(["run", "case.toml", "--models", "kantorovich-5,timoshenko", "--out", "out"])
+"""
+    subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=True,
+        capture_output=True,
+    )
+    assert (tmp_path / "out" / "report.html").exists()
+
+
+def test_the_module_is_the_command(tmp_path: Path) -> None:
+    answer = subprocess.run(
+        [sys.executable, "-m", "runs.cli", "check", "nowhere.toml"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert (answer.returncode, answer.stdout) == (2, "")
+    assert answer.stderr == (
+        "protractile: nowhere.toml: file: does not exist; give the path of a case file\n"
+    )

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The report is one file that needs nothing else, shows what the run says, and escapes it."""
+
+import base64
+import math
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import StringIO
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib import image
+from rich.console import Console
+
+from runs import case as case_file
+from runs import toml
+from runs.figures import Figure
+from runs.pipeline import run_case
+from runs.report import number, print_table, render
+from runs.results import Results
+from runs.verdicts import STATEMENTS
+
+pytestmark = pytest.mark.quick
+
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
+GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
+    finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
+    assert finished is not None
+    return finished.results
+
+
+@pytest.fixture
+def figures(tmp_path: Path) -> list[Figure]:
+    image.imsave(tmp_path / "tip.png", np.zeros((2, 2)))
+    return [Figure(tmp_path / "tip.png", "Tip <of> the boom", "A caption & more.")]
+
+
+class Page(HTMLParser):
+    """Tags with their attributes, and the text outside the style sheet."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+        self.style = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        if self.tags and self.tags[-1][0] == "style":
+            self.style += data
+        self.text += data
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def printed(results: Results, width: int = 100) -> str:
+    console = Console(file=StringIO(), width=width)
+    print_table(results, console)
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()
+
+
+def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
+    page = Page(render(results, figures, []))
+    for verdict in results.verdicts:
+        assert verdict.statement in page.text
+        assert verdict.why in page.text
+    order = [
+        page.text.index(heading) for heading in ("Verdicts", "Models", "Figures", "Provenance")
+    ]
+    assert order == sorted(order)
+
+
+def test_shows_every_model_and_where_it_comes_from(results: Results, figures: list[Figure]) -> None:
+    page = Page(render(results, figures, []))
+    cells = re.sub(r"\s+", " ", page.text)
+    for name, model in results.summary["models"].items():
+        assert f"{name} {model['kind']}" in cells
+    contact = results.summary["models"]["kantorovich-4"]["first_contact"]
+    assert f"{contact:.4f}" in cells
+    assert results.summary["case_hash"] in page.text
+    assert results.summary["versions"]["numpy"] in page.text
+    assert toml.dumps(results.case) in page.text
+
+
+def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: Path) -> None:
+    motion = tmp_path / "motion.gif"
+    motion.write_bytes(GIF)
+    page = Page(render(results, figures, [motion]))
+    assert not page.all("script") + page.all("link") + page.all("iframe") + page.all("a")
+    assert "url(" not in page.style
+    assert "@import" not in page.style
+    sources = [str(picture["src"]) for picture in page.all("img")]
+    kinds, pictures = zip(*(source.split(";base64,") for source in sources), strict=True)
+    assert kinds == ("data:image/png", "data:image/gif")
+    assert base64.b64decode(pictures[0]) == figures[0].path.read_bytes()
+    assert base64.b64decode(pictures[1]) == GIF
+
+
+def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
+    text = render(results, figures, [])
+    closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
+    root = ElementTree.fromstring(closed.strip())
+    assert root.tag == "html"
+    assert [row.tag for row in root.iter("tr")].count("tr") == 2 + len(STATEMENTS) + len(MODELS)
+
+
+def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
+    attack = "<script>alert('x')</script> & \"so\""
+    case = results.case.model_copy(update={"title": attack})
+    verdicts = [replace(verdict, why=attack) for verdict in results.verdicts]
+    summary = results.summary | {"snapshots": {"written": [], "skipped": attack}}
+    page = Page(
+        render(replace(results, case=case, verdicts=verdicts, summary=summary), figures, [])
+    )
+    assert not page.all("script")
+    assert page.text.count(attack) == 2 + len(verdicts) + 1  # title, heading; whys; snapshots
+    assert page.all("img")[0]["alt"] == "Tip <of> the boom"
+
+
+def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]) -> None:
+    assert "Snapshots" not in Page(render(results, figures, [])).text
+    reason = "no GL here"
+    summary = results.summary | {"snapshots": {"written": [], "skipped": reason}}
+    assert f"Skipped: {reason}" in Page(render(replace(results, summary=summary), figures, [])).text
+
+
+def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> None:
+    page = Page(render(results, figures, []))
+    viewport = [meta for meta in page.all("meta") if meta.get("name") == "viewport"]
+    assert viewport == [{"name": "viewport", "content": "width=device-width, initial-scale=1"}]
+    assert "@media (max-width:" in page.style
+    assert "@media print" in page.style
+    assert "scroll" in [str(box.get("class")) for box in page.all("div")]
+
+
+def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> None:
+    case = results.case.model_copy(update={"demand": ("S1",)})
+    demanding = replace(results, case=case)
+    assert Page(render(demanding, figures, [])).text.count("(demanded)") == 1
+    assert printed(demanding).count("(demanded)") == 1
+
+
+def test_terminal_shows_both_tables(results: Results) -> None:
+    text = printed(results)
+    for name, model in results.summary["models"].items():
+        (line,) = [line for line in text.splitlines() if line.split()[:1] == [name]]
+        assert line.split()[1] == str(model["degrees_of_freedom"])
+    for verdict in results.verdicts:
+        (line,) = [line for line in text.splitlines() if line.split()[:1] == [verdict.id]]
+        assert line.split()[1] == verdict.verdict
+
+
+def test_terminal_keeps_names_whole_at_80_columns(results: Results) -> None:
+    lines = printed(results, 80).splitlines()
+    assert max(map(len, lines)) <= 80
+    for name in MODELS:
+        assert any(line.split()[:1] == [name] for line in lines)
+
+
+def test_terminal_does_not_read_markup(results: Results) -> None:
+    case = results.case.model_copy(update={"title": "[red]play[/nothing]"})
+    assert "[red]play[/nothing]" in printed(replace(results, case=case))
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (None, "–"),
+        (math.nan, "–"),
+        (0.0, "0"),
+        (0.498484, "0.498"),
+        (8.7669, "8.77"),
+        (2000, "2000"),
+        (45485.3, "45500"),
+        (2.41e6, "2.41 × 10⁶"),
+        (6.4836e-15, "6.48 × 10⁻¹⁵"),
+        (-0.00042, "-4.2 × 10⁻⁴"),
+    ],
+)
+def test_numbers_are_written_for_people(value: float | None, expected: str) -> None:
+    assert number(value) == expected

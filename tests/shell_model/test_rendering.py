@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Pictures show the displacement they say, at the instants they say, or say why there is none.
+
+The shell of these tests is made by hand: an outer segment that bends beyond its supports at 0
+and 2 m, an inner one that moves as a rigid body.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import xarray as xr
+from PIL import Image
+
+from geometry.mesh import mesh_segment
+from geometry.section import BoxSection
+from shell_model import rendering
+from shell_model.deformation import MovingShell, round_scale
+from shell_model.picture_theme import Camera, Scene
+from shell_model.rendering import RenderingUnavailable, render_snapshots, telling_instants
+
+Array = npt.NDArray[np.float64]
+
+OUTER = BoxSection(height=0.4890, width=0.3259, flange=0.0065, web=0.0065)
+INNER = BoxSection(height=0.4636, width=0.2706, flange=0.0047, web=0.0047)
+CLEARANCE = 7.0e-3
+TIME = np.linspace(0.0, 2.0, 401)
+
+
+def shape(points: Array, deflection: Array, slope: Array) -> Array:
+    """(num_points, 3) motion of plane sections."""
+    return np.stack([-points[:, 2] * slope, np.zeros(len(points)), deflection], axis=1)
+
+
+@pytest.fixture(scope="module")
+def fields() -> xr.Dataset:
+    outer = mesh_segment(OUTER, {"start": 0.0, "support": 2.0, "tail": 9.0, "end": 10.0}, 0.3)
+    inner = mesh_segment(INNER, {"start": 9.0, "head": 10.0, "end": 19.0}, 0.3)
+    x, xi = outer.points[:, 0], inner.points[:, 0]
+    still = np.zeros_like(outer.points), np.zeros_like(inner.points)
+    modes = [
+        (shape(outer.points, x * (x - 2.0) / 80.0, (2.0 * x - 2.0) / 80.0), still[1]),
+        (still[0], shape(inner.points, np.ones_like(xi), np.zeros_like(xi))),
+        (still[0], shape(inner.points, (xi - 9.0) / 10.0, np.full_like(xi, 0.1))),
+    ]
+    swing = np.sin(np.pi * TIME) ** 2
+    state = np.stack([0.02 * swing, 0.02 * swing - CLEARANCE, 0.15 * swing], axis=1)
+    triangles = [outer.triangles, inner.triangles + len(outer.points)]
+    return xr.Dataset(
+        {
+            "points": (("point", "component"), np.concatenate([outer.points, inner.points])),
+            "triangles": (("triangle", "corner"), np.concatenate(triangles).astype(np.int32)),
+            "segment": ("triangle", np.repeat(np.int32([0, 1]), [len(t) for t in triangles])),
+            "modes": (
+                ("mode", "point", "component"),
+                np.array([np.concatenate(mode) for mode in modes], dtype=np.float32),
+            ),
+            "state": (("time", "mode"), state.astype(np.float32)),
+        },
+        coords={"time": TIME},
+    )
+
+
+@pytest.fixture(scope="module")
+def trajectories() -> xr.Dataset:
+    """Contact from 0.2 s on; the largest mean force at 0.5 s, the hardest blow at 1.6 s."""
+    swing = np.sin(np.pi * TIME) ** 2
+    force = np.where(TIME[:, None] >= 0.2 - 1e-9, [-2.0e4, 1.8e4] * swing[:, None], 0.0)
+    peak = 1.2 * force
+    peak[320, 0] = -9.0e4
+    per_station = ("model", "time", "station")
+    return xr.Dataset(
+        {
+            "tip": (("model", "time"), (0.17 * swing - CLEARANCE)[None]),
+            "gap": (per_station, np.tile([-CLEARANCE, CLEARANCE], (1, TIME.size, 1))),
+            "contact_force": (per_station, force[None]),
+            "contact_force_peak": (per_station, peak[None]),
+        },
+        coords={"model": ["shell"], "time": TIME, "station": [9.0, 10.0]},
+    )
+
+
+@pytest.fixture(scope="module")
+def _opengl() -> None:
+    try:
+        rendering.require_opengl()
+    except RenderingUnavailable as reason:
+        pytest.skip(str(reason))
+
+
+@pytest.mark.quick
+def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """Reference: analytic. The shapes of the fixture, evaluated point by point."""
+    shell = MovingShell.of(fields, trajectories.sel(model="shell"))
+    moved = shell.displacement(0.5)
+    x, _, z = shell.points.T
+    is_inner = np.arange(x.size) >= shell.members(1).min()
+    deflection = np.where(is_inner, 0.013 + 0.015 * (x - 9.0), 0.02 * x * (x - 2.0) / 80.0)
+    slope = np.where(is_inner, 0.015, 0.02 * (2.0 * x - 2.0) / 80.0)
+    np.testing.assert_allclose(moved[:, 2], deflection, atol=1e-7)
+    np.testing.assert_allclose(moved[:, 0], -z * slope, atol=1e-8)
+    assert not moved[:, 1].any()
+    assert not shell.displacement(0.0)[~is_inner].any()
+
+
+@pytest.mark.quick
+def test_supports_are_where_nothing_moves(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    held = MovingShell.of(fields, trajectories.sel(model="shell")).supports()
+    assert [float(outline[0, 0]) for outline in held] == [0.0, 2.0]
+    assert all(np.ptp(outline[:, 2]) == pytest.approx(OUTER.height) for outline in held)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
+def test_what_touches_in_the_run_touches_in_the_picture(
+    fields: xr.Dataset, trajectories: xr.Dataset, scale: float, section: float
+) -> None:
+    """Reference: analytic. A relative displacement by the clearance leaves one wall between the
+    middles of two walls, and one by its opposite leaves twice the clearance besides."""
+    shell = MovingShell.of(fields, trajectories.sel(model="shell"))
+    (overlap,) = shell.overlaps
+    assert (overlap.outer, overlap.inner, overlap.stations) == (0, 1, [0, 1])
+    assert overlap.clearance == pytest.approx(CLEARANCE)
+    moved = np.zeros_like(shell.points)
+    moved[shell.members(1), 2] = CLEARANCE
+    drawn = shell.drawn(moved, scale, section)
+    for side, apart in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
+        outer, inner = (drawn[shell.flange_in_plane(k, side), 2] for k in (0, 1))
+        between = side * (outer[0] - inner[0]) - section * shell.wall(overlap)
+        assert between == pytest.approx(apart, abs=1e-9)
+
+
+@pytest.mark.quick
+def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """A third segment from 17.5 m on touches the second at 17.5 and 19 m."""
+    motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1])
+    motion = motion.assign_coords(station=[9.0, 10.0, 17.5, 19.0])
+    third = mesh_segment(
+        BoxSection(height=0.44, width=0.22, flange=0.004, web=0.004),
+        {"start": 17.5, "end": 25.0},
+        0.3,
+    )
+    count = fields.sizes["point"]
+    longer = xr.Dataset(
+        {
+            "points": (
+                ("point", "component"),
+                np.concatenate([fields["points"].values, third.points]),
+            ),
+            "triangles": (
+                ("triangle", "corner"),
+                np.concatenate([fields["triangles"].values, third.triangles + count]),
+            ),
+            "segment": (
+                "triangle",
+                np.append(fields["segment"].values, np.full(len(third.triangles), 2)),
+            ),
+            "modes": fields["modes"].pad(point=(0, len(third.points)), constant_values=0.0),
+            "state": fields["state"],
+        }
+    )
+    overlaps = MovingShell.of(longer, motion).overlaps
+    assert [(o.outer, o.inner, o.stations) for o in overlaps] == [(0, 1, [0, 1]), (1, 2, [2, 3])]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("largest", "scale"), [(0.7, 0.5), (1.0, 1.0), (19.9, 10.0), (20.0, 20.0), (0.031, 0.02)]
+)
+def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) -> None:
+    assert round_scale(largest) == pytest.approx(scale)
+
+
+@pytest.mark.quick
+def test_telling_instants_are_those_of_the_motion(trajectories: xr.Dataset) -> None:
+    """Reference: analytic. The tip's sin² has its first peak at 0.5 s."""
+    instants = telling_instants(trajectories.sel(model="shell"))
+    expected = {"first-peak": 0.5, "largest-force": 1.6, "first-contact": 0.2}
+    assert instants == pytest.approx(expected)
+
+
+@pytest.mark.quick
+def test_motion_without_contact_or_peak_still_has_an_instant(trajectories: xr.Dataset) -> None:
+    """Half a period has no peak inside, and a model without stations NaN for its forces."""
+    motion = trajectories.sel(model="shell").where(trajectories["time"] < 0.0)
+    motion["tip"] = trajectories["tip"].sel(model="shell")
+    assert telling_instants(motion.isel(time=slice(0, 100))) == {
+        "largest-deflection": pytest.approx(TIME[99])
+    }
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("probe", "seconds", "message"),
+    [
+        (
+            "import os; os.abort()",
+            60.0,
+            "VTK finds no working OpenGL and dies of SIGABRT; install libegl1 and libgl1-mesa-dri "
+            "beside pip's vtk, or give Debian's VTK a display",
+        ),
+        (
+            "import no_such_pyvista",
+            60.0,
+            "pyvista makes no picture: ModuleNotFoundError: No module named 'no_such_pyvista'",
+        ),
+        (
+            "import time; time.sleep(60.0)",
+            1.0,
+            "VTK makes no picture within 1 s; install libegl1 and libgl1-mesa-dri beside pip's "
+            "vtk, or give Debian's VTK a display",
+        ),
+    ],
+)
+def test_missing_opengl_is_said_and_leaves_nothing(
+    fields: xr.Dataset,
+    trajectories: xr.Dataset,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    probe: str,
+    seconds: float,
+    message: str,
+) -> None:
+    monkeypatch.setattr(rendering, "PROBE", probe)
+    monkeypatch.setattr(rendering, "PROBE_SECONDS", seconds)
+    with pytest.raises(RenderingUnavailable) as caught:
+        render_snapshots(fields, trajectories, "shell", tmp_path)
+    assert str(caught.value) == message
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.quick
+def test_refuses_a_time_outside_the_run(
+    fields: xr.Dataset, trajectories: xr.Dataset, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=r"^time must be between 0 and 2 s, got 2\.5$"):
+        render_snapshots(fields, trajectories, "shell", tmp_path, [0.5, 2.5])
+
+
+@pytest.mark.usefixtures("_opengl")
+@pytest.mark.parametrize("place", [(4.0, 0.0, 1.0), (-6.0, 2.0, -0.5)])
+def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...]) -> None:
+    """Reference: other code. The middle of a small plate that VTK has drawn."""
+    camera = Camera(np.array([0.0, 0.0, 0.5]), 20.0, (400, 160), elevation=10.0)
+    corners = np.array([[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]])
+    two = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+    with Scene(camera.pixels) as scene:
+        scene.surface("plate", np.array(place) + corners, two, color="black", lighting=False)
+        seen = scene.seen_by(camera)
+    row, column = (axis.mean() + 0.5 for axis in np.nonzero(seen[..., 0] < 128))
+    np.testing.assert_allclose(camera.project(place), [column, 160 - row], atol=0.6)
+
+
+@pytest.fixture(scope="module")
+def pictures(
+    _opengl: None,
+    fields: xr.Dataset,
+    trajectories: xr.Dataset,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> list[Path]:
+    folder = tmp_path_factory.mktemp("snapshots")
+    written = render_snapshots(fields, trajectories, "shell", folder)
+    assert sorted(folder.iterdir()) == sorted(written)
+    return written
+
+
+def picture_of(files: list[Path], name: str) -> Array:
+    (path,) = (file for file in files if file.name == name)
+    return np.asarray(Image.open(path).convert("RGB"), dtype=float)
+
+
+def test_pictures_have_the_names_of_what_they_show(pictures: list[Path]) -> None:
+    when = ("first-peak", "largest-force", "first-contact")
+    expected = [f"{what}-{w}.png" for what in ("boom", "overlap") for w in when]
+    assert [path.name for path in pictures] == [*expected, "motion.gif"]
+
+
+def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
+    """Reference: analytic. Columns and rows of coloured pixels against the camera's projection.
+
+    The tip rises from 9 to 163 mm between the two pictures; grey, black and white have no hue.
+    """
+    top = {}
+    for name in ("first-peak", "first-contact"):
+        picture = picture_of(pictures, f"boom-{name}.png")[110:570]
+        coloured = np.ptp(picture, axis=2) > 40.0
+        assert 0.05 < coloured.mean() < 0.5
+        columns = np.flatnonzero(coloured.any(axis=0))
+        assert np.ptp(columns) > 0.75 * picture.shape[1]
+        top[name] = np.flatnonzero(coloured.any(axis=1)).min()
+    assert top["first-contact"] - top["first-peak"] > 100
+
+
+def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> None:
+    """Three colours at the first peak, and red on both sides: up at 10 m, down at 9 m."""
+    picture = picture_of(pictures, "overlap-first-peak.png")[190:800]
+    red, green, blue = np.moveaxis(picture, 2, 0)
+    is_outer, is_inner = blue > red + 60.0, red > blue + 100.0
+    is_force = (red > 120.0) & (green < 70.0) & (blue < 40.0)
+    assert is_outer.mean() > 0.08
+    assert (is_inner & ~is_force).mean() > 0.08
+    left, right = np.array_split(is_force, 2, axis=1)
+    rows = [np.flatnonzero(part.any(axis=1)).mean() for part in (right, left)]
+    assert rows[0] + 200.0 < rows[1]
+
+
+def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
+    assert pictures[-1].stat().st_size < 4.0e6
+    with Image.open(pictures[-1]) as animation:
+        assert 40 <= animation.n_frames <= 60
+        stills = []
+        for frame in (0, animation.n_frames // 4):
+            animation.seek(frame)
+            stills.append(np.asarray(animation.convert("RGB"), dtype=float))
+    assert (np.abs(stills[1] - stills[0]).max(axis=2) > 60.0).mean() > 0.01
+
+
+@pytest.mark.usefixtures("_opengl")
+def test_given_times_name_the_files(
+    fields: xr.Dataset,
+    trajectories: xr.Dataset,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(rendering, "FRAMES", 2)
+    written = render_snapshots(fields, trajectories, "shell", tmp_path, [0.05])
+    assert [path.name for path in written] == ["boom-0.05s.png", "overlap-0.05s.png", "motion.gif"]
+    overlap = picture_of(written, "overlap-0.05s.png")[190:800]
+    assert not ((overlap[..., 0] > 120.0) & (overlap[..., 1:].max(axis=2) < 70.0)).any()

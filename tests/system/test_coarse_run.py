@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A run of every kind of model: every file opens, and what they hold agrees."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+from shell_model.rendering import RenderingUnavailable
+from tests.system.run_folder import (
+    COARSE,
+    SERIES,
+    check_common_files,
+    files,
+    protractile,
+    trajectories,
+)
+
+BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run of all models."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    folder = tmp_path_factory.mktemp("whole") / "out"
+    assert protractile("run", COARSE, "--out", folder) == 0
+    return folder
+
+
+def test_every_file_of_a_whole_run_opens(whole: Path) -> None:
+    check_common_files(whole, [*BEAMS, "shell"])
+    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    assert summary["models"]["shell"]["degrees_of_freedom"] > 10_000
+    assert summary["versions"]["dolfinx"] is not None
+    for name in ("outer", "inner"):
+        groups = meshio.read(whole / "mesh" / f"{name}.msh").field_data
+        assert {"bottom", "right", "top", "left", "station-1:top"} <= set(groups)
+        assert meshio.read(whole / "mesh" / f"{name}.vtu").cell_data["wall"]
+    snapshots = summary["snapshots"]
+    assert snapshots["written"] or snapshots["skipped"]
+    for picture in snapshots["written"]:
+        with Image.open(whole / "snapshots" / picture) as image:
+            image.verify()
+
+
+def test_before_the_first_contact_the_inner_segment_falls_freely(whole: Path) -> None:
+    """Reference: analytic. Its load is its mass times 1 m/s², so its tip moves by t²/2."""
+    data = trajectories(whole)
+    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    for name in (*SERIES, "beam-fe", "timoshenko", "shell"):
+        first = summary["models"][name]["first_contact"]
+        free = data.sel(model=name).where(data["time"] < first, drop=True)
+        expected = 0.5 * free["time"].values ** 2
+        assert free["tip"].values == pytest.approx(expected, abs=1e-9)
+        # The energy put in is the energy held.
+        assert summary["models"][name]["energy_residual"] < 1e-3
+
+
+def test_the_shell_touches_when_the_shear_flexible_beam_does(whole: Path) -> None:
+    """Reference: other model. Shear is all that a beam lacks for the slow motion."""
+    models = json.loads((whole / "summary.json").read_text(encoding="utf-8"))["models"]
+    shell, beam = models["shell"]["first_contact"], models["timoshenko"]["first_contact"]
+    assert shell == pytest.approx(beam, rel=1e-3)
+    slender = models["beam-fe"]["first_contact"]
+    assert abs(shell - beam) < 0.5 * abs(shell - slender)
+
+
+def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
+    """Reference: the trajectory. The tip's section is stiff: its points deflect with it."""
+    with xr.open_dataset(whole / "fields.nc", engine="scipy") as fields:
+        at_tip = np.flatnonzero(np.abs(fields["points"].values[:, 0] - 19.0) < 1e-6)
+        shapes = fields["modes"].values[:, at_tip, 2]
+        moved = (fields["state"].values @ shapes).mean(axis=1)
+        assert fields.attrs["model"] == "shell"
+    tip = trajectories(whole)["tip"].sel(model="shell").values
+    assert np.abs(moved - tip).max() < 1e-3 * np.abs(tip).max()
+
+
+def test_snapshots_are_made_again_at_given_times(whole: Path, tmp_path: Path) -> None:
+    again = tmp_path / "out"
+    shutil.copytree(whole, again)
+    if not (again / "snapshots").exists():
+        pytest.skip("no snapshots can be made here")
+    assert protractile("snapshot", again, "--time", "0.25") == 0
+    names = {path.name for path in (again / "snapshots").iterdir()}
+    assert "boom-0.25s.png" in names
+    assert "boom-first-contact.png" not in names
+    check_common_files(again, [*BEAMS, "shell"])
+
+
+def test_a_time_outside_the_run_is_one_line(
+    whole: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert protractile("snapshot", whole, "--time", "0.7") == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {whole}: --time: must be between 0 and 0.6 s, got 0.7\n"
+    )
+
+
+def test_a_run_without_opengl_says_so_and_goes_on(
+    whole: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def refuse(*arguments: object) -> list[Path]:
+        raise RenderingUnavailable("no OpenGL")
+
+    monkeypatch.setattr("runs.output.render_snapshots", refuse)
+    again = tmp_path / "out"
+    shutil.copytree(whole, again)
+    assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
+    assert capsys.readouterr().out.endswith("no snapshots: no OpenGL\n")
+    summary = json.loads((again / "summary.json").read_text(encoding="utf-8"))
+    assert summary["snapshots"] == {"written": [], "skipped": "no OpenGL"}
+    assert not (again / "snapshots").exists()
+    assert protractile("snapshot", again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: snapshots: cannot be made: no OpenGL\n"
+    )
+
+
+def test_two_shells_of_a_case_keep_their_files_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+    def draw(
+        fields: xr.Dataset, data: xr.Dataset, model: str, folder: Path, times: None
+    ) -> list[Path]:
+        path = folder / "boom-end.png"
+        Image.new("RGB", (8, 8)).save(path)
+        return [path]
+
+    monkeypatch.setattr("runs.output.render_snapshots", draw)
+    text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
+    shell = text[text.index('[[model]]\nname = "shell"') :]
+    text += "\n" + shell.replace('name = "shell"', 'name = "across"').replace("near webs", "across")
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    folder = tmp_path / "out"
+    assert protractile(
+        "run", tmp_path / "case.toml", "--models", "shell,across", "--out", folder
+    ) == 0  # fmt: skip
+    found = files(folder)
+    for model in ("shell", "across"):
+        assert {f"{model}-fields.nc", f"snapshots/{model}-boom-end.png"} <= found
+        assert {f"mesh/{model}-outer.msh", f"mesh/{model}-inner.vtu"} <= found

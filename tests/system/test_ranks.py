@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two ranks leave what one leaves, and say what is wrong once."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.system.run_folder import COARSE, ROOT, check_common_files, protractile, trajectories
+
+Ranks = Callable[..., subprocess.CompletedProcess[str]]
+
+# The command, with pictures left out for the sake of time.
+COMMAND = """
+from runs import cli, output
+
+def refuse(*arguments):
+    raise output.RenderingUnavailable("left out")
+
+output.render_snapshots = refuse
+cli.main()
+"""
+
+# One rank fails while the other waits for it.
+LONELY_FAILURE = """
+from mpi4py import MPI
+from dynamics.failure import NumericsError
+from runs.cli import _all_ranks_end_together
+
+comm = MPI.COMM_WORLD
+with _all_ranks_end_together(comm):
+    if comm.rank == 1:
+        raise NumericsError("case.toml: model[1]: no number is finite")
+    comm.Barrier()
+"""
+
+
+@pytest.fixture
+def two_ranks(tmp_path: Path) -> Ranks:
+    """Runs a command on two ranks in an empty folder."""
+    if shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+
+    def run(*arguments: str, program: str = COMMAND) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["mpirun", "-n", "2", "--oversubscribe", sys.executable, "-c", program, *arguments],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+
+    return run
+
+
+def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
+    """What the command says, without what the launcher adds."""
+    return [line for line in answer.stderr.splitlines() if line.startswith("protractile: ")]
+
+
+def test_two_ranks_run_a_shell_as_one_does(
+    two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the run on one rank until chaos begins with the first contact.
+
+    The last vectors of the reduced bases depend on round-off, and the highest frequencies with
+    them: they ring at the head with less than 1e-4 of its motion.
+    """
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    case = tmp_path / "case.toml"
+    text = Path(COARSE).read_text(encoding="utf-8")
+    case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
+    models = "kantorovich-4,shell"
+    monkeypatch.setattr("runs.output.render_snapshots", lambda *arguments: [])
+    assert protractile("run", case, "--models", models, "--out", tmp_path / "one") == 0
+    answer = two_ranks("run", "case.toml", "--models", models, "--out", "two")
+    assert (answer.returncode, complaints(answer)) == (0, [])
+    assert answer.stdout.count("two/report.html") == 1
+    one, two = trajectories(tmp_path / "one"), trajectories(tmp_path / "two")
+    summaries = [json.loads((tmp_path / n / "summary.json").read_text()) for n in ("one", "two")]
+    low_one, low_two = (s["models"]["shell"]["frequencies"] for s in summaries)
+    assert low_two == pytest.approx(low_one, rel=1e-8, abs=1e-9)
+    for place in ("tip", "head", "tail"):
+        scale = float(np.abs(one[place]).max())
+        assert two[place].values == pytest.approx(one[place].values, abs=2e-4 * scale)
+
+
+def test_two_ranks_run_beams_once(two_ranks: Ranks, tmp_path: Path) -> None:
+    answer = two_ranks("run", COARSE, "--models", "kantorovich-4", "--out", "out")
+    assert (answer.returncode, complaints(answer)) == (0, [])
+    assert answer.stdout.count("out/report.html") == 1
+    check_common_files(tmp_path / "out", ["kantorovich-4"])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "line"),
+    [
+        (
+            ["run", "nowhere.toml"],
+            2,
+            "protractile: nowhere.toml: file: does not exist; give the path of a case file",
+        ),
+        (
+            ["run", COARSE, "--models", "shell", "--out", "/proc/nowhere"],
+            2,
+            f"protractile: {COARSE}: --out /proc/nowhere: cannot be written (No such file or "
+            "directory); give a folder that can",
+        ),
+    ],
+)
+def test_a_mistake_ends_both_ranks_with_one_line(
+    two_ranks: Ranks, arguments: list[str], status: int, line: str
+) -> None:
+    answer = two_ranks(*arguments)
+    assert (answer.returncode, complaints(answer)) == (status, [line])
+
+
+def test_numerics_that_fail_on_one_rank_end_both(two_ranks: Ranks, tmp_path: Path) -> None:
+    """Rank 0 moves the series while rank 1 waits for it in the shell's assembly."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    text = Path(COARSE).read_text(encoding="utf-8")
+    text = text.replace("duration = 0.6", "duration = 0.6\nstep = 1e-3")
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    answer = two_ranks("run", "case.toml", "--models", "kantorovich-4,shell", "--out", "out")
+    assert answer.returncode == 3
+    (line,) = complaints(answer)
+    assert line.startswith("protractile: case.toml: model[1]: the energy residual is ")
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_rank_that_fails_alone_ends_both(two_ranks: Ranks) -> None:
+    pytest.importorskip("mpi4py", reason="ranks need mpi4py")
+    answer = two_ranks(program=LONELY_FAILURE)
+    assert answer.returncode == 3
+    assert complaints(answer) == ["protractile: case.toml: model[1]: no number is finite"]

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Runs of beams alone: every file opens, and a folder that is not whole is refused."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from runs.case import load
+from runs.results import Results
+from tests.system.run_folder import (
+    COARSE,
+    SERIES,
+    check_common_files,
+    files,
+    protractile,
+    trajectories,
+)
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture(scope="module")
+def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run of the series alone."""
+    folder = tmp_path_factory.mktemp("series") / "out"
+    assert protractile("run", COARSE, "--models", ",".join(SERIES), "--out", folder) == 0
+    return folder
+
+
+def test_every_file_of_a_series_run_opens(series: Path) -> None:
+    check_common_files(series, SERIES)
+    assert {name for name in files(series) if not name.startswith("figures/")} == {
+        "case.toml",
+        "trajectories.nc",
+        "trajectories.csv",
+        "summary.json",
+        "verdicts.json",
+        "report.html",
+    }
+
+
+def test_a_run_reads_back(series: Path) -> None:
+    results = Results.load(series)
+    chosen = tuple(model for model in load(COARSE).models if model.name in SERIES)
+    assert results.case == load(COARSE).model_copy(update={"models": chosen})
+    assert [verdict.id for verdict in results.verdicts][:2] == ["S1", "S2"]
+    xr.testing.assert_identical(results.trajectories, trajectories(series))
+
+
+def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path: Path) -> None:
+    """Reference: the run itself; the arithmetic is the same, so the numbers are too."""
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    (again / "figures" / "stale.png").write_bytes(b"of an earlier version")
+    (again / "fields.nc").write_bytes(b"of a shell that is not run now")
+    case = again / "case.toml"
+    assert protractile("run", case, "--out", again) == 0
+    assert files(again) == files(series)
+    for name in ("trajectories.nc", "trajectories.csv", "case.toml", "verdicts.json"):
+        assert (again / name).read_bytes() == (series / name).read_bytes()
+
+
+def test_a_report_is_rendered_again_from_the_data(series: Path, tmp_path: Path) -> None:
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    (again / "report.html").unlink()
+    shutil.rmtree(again / "figures")
+    assert protractile("report", again) == 0
+    assert files(again) == files(series)
+
+
+def test_files_of_two_runs_are_not_mixed(
+    series: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    case = (again / "case.toml").read_text(encoding="utf-8")
+    (again / "case.toml").write_text(case.replace("play = 0.014", "play = 0.013"))
+    assert protractile("report", again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: trajectories.nc: is not of the case in case.toml; run the case "
+        "again\n"
+    )
+
+
+@pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "verdicts.json", "case.toml"])
+def test_a_damaged_folder_is_one_line(
+    series: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    for part in (0.0, 0.001, 0.3, 0.9):
+        whole_file = (series / name).read_bytes()
+        (again / name).write_bytes(whole_file[: int(part * len(whole_file))])
+        assert protractile("report", again) == 2
+        message = capsys.readouterr().err
+        assert message.startswith(f"protractile: {again}")
+        assert (name in message, message.count("\n")) == (True, 1)
+    (again / name).unlink()
+    assert protractile("report", again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: {name}: missing; give the folder of a run that has finished\n"
+    )
+
+
+def test_a_run_without_a_shell_has_no_snapshots(
+    series: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert protractile("snapshot", series) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {series}: fields.nc: missing; give the folder of a run with a shell\n"
+    )
+
+
+def test_a_case_without_play_runs(tmp_path: Path) -> None:
+    """No station at all: the files still open."""
+    folder = tmp_path / "out"
+    assert protractile("run", COARSE, "--models", "beam-fe-tied", "--out", folder) == 0
+    check_common_files(folder, ["beam-fe-tied"])
+    assert np.isnan(trajectories(folder)["contact_force"].values).all()
+
+
+def test_a_beam_without_joints_runs(tmp_path: Path) -> None:
+    """Reference: analytic. A pinned beam's midspan swings to twice 5 q L⁴ / 384 E J, nearly."""
+    (tmp_path / "case.toml").write_text(
+        """title = "one beam"
+[time]
+duration = 0.6
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+[[segment]]
+name = "beam"
+span = [0.0, 10.0]
+supports = [0.0, 10.0]
+mass_per_length = 83.16
+second_moment_of_area = 3.7986e-4
+load = 83.16
+[[model]]
+name = "beam"
+kind = "kantorovich"
+terms = [6]
+base = "pinned"
+"""
+    )
+    folder = tmp_path / "out"
+    assert protractile("run", tmp_path / "case.toml", "--out", folder) == 0
+    check_common_files(folder, ["beam"])
+    data = trajectories(folder)
+    assert "station" not in data.sizes
+    assert protractile("report", folder) == 0
+    static_energy = 83.16**2 * 10.0**5 / (240.0 * 2.1e11 * 3.7986e-4)
+    # The work of a suddenly applied load peaks at four times the static strain energy.
+    assert float(data["work"].max()) == pytest.approx(4.0 * static_energy, rel=0.01)
