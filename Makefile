@@ -64,10 +64,11 @@ clean: ## remove outputs, root file systems and caches
 distclean: clean ## remove .venv too
 	rm -rf .venv
 
-# Exit status 1 with a report is a run whose verdict failed: `report` in `verify` repeats it.
+# Exit status 1 with a report is a run whose verdict failed; `report` in `verify` says so, and
+# prints the tables.
 runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@rm -f $@
-	$(BIN)/protractile run $< --out $(@D) || { [ $$? -eq 1 ] && [ -f $@ ]; }
+	$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -72,6 +72,10 @@ class GapSystem:
                 raise ValueError(f"{name} must have the shape {shape}, got {array.shape}")
             if not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite")
+        if m and not 0 <= self.station_of_row.min() <= self.station_of_row.max() < len(
+            self.stations
+        ):
+            raise ValueError("station_of_row must hold positions in stations")
         if (self.omega2 < 0.0).any() or (self.damping < 0.0).any():
             raise ValueError("omega2 and damping must not be negative")
 

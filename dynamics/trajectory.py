@@ -64,7 +64,7 @@ class Trajectory:
             energies: (num_times, 5), the columns of ``ENERGIES`` in J.
             row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
             step: in s.
-            steps: how many were made.
+            steps: how many were made, several that are made at once counted as one.
             first_contact: in s.
             contact_changes: how often a row opened or closed.
         """

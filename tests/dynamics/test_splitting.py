@@ -371,3 +371,40 @@ def test_complains_of_a_motion_that_is_not_finite(one_mass: OneMass) -> None:
     message = "the motion is not finite at a step of 0.01 s; halve the step"
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
         integrate(one_mass(1.0, stop, force=-10.0), 200.0, output_step=0.1, step=0.01)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("load", [0.0, 3.0])
+def test_steps_made_at_once_miss_no_contact(load: float) -> None:
+    """Reference: the same motion with strides that the gap's bound forbids nowhere.
+
+    A fast and a slow mode bring a gap to its stop in short grazing blows: made one by one (a
+    stop on the other side, so near that it always holds the stride back, but without effect
+    on the motion) and at once, the steps meet the same contacts.
+    """
+    law = PowerContact(stiffness=4.0e4, exponent=2.0, clearance=0.97).upper()
+    rows = np.array([[0.9, 0.2]])
+    start = np.array([-1.0, 0.5])
+
+    def system(*laws: PowerContact) -> GapSystem:
+        return GapSystem(
+            omega2=np.array([4.0, 9.0e4]),
+            load=np.array([load, 0.0]),
+            rows=np.repeat(rows, len(laws), axis=0),
+            laws=laws,
+            station_of_row=np.zeros(len(laws), dtype=np.int64),
+            stations=[0.0],
+            observers={"y": Observer(rows[0])},
+        )
+
+    feather = PowerContact(stiffness=1.0e-30, exponent=1.0, clearance=0.0)
+    arguments = {"duration": 6.0, "output_step": 0.01, "step": 1.0e-5, "position": start}
+    at_once = integrate(system(law), **arguments)
+    one_by_one = integrate(system(law, feather), **arguments)
+    assert one_by_one.data.attrs["steps"] == 600_000
+    assert at_once.data.attrs["steps"] < 200_000
+    assert at_once.data.attrs["contact_changes"] >= 20
+    force, expected = (run.data["contact_force_peak"] for run in (at_once, one_by_one))
+    assert float(expected.max()) > 1.0
+    np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(at_once.data["y"], one_by_one.data["y"], rtol=0.0, atol=1e-9)
