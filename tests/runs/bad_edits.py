@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slips in a case file: what stands in the coarse case, what replaces it, and the line it earns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+CASES = Path(__file__).parents[2] / "runs" / "cases"
+COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
+CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
+
+BAD_EDITS = {
+    "unknown key": (
+        "duration = 0.6",
+        "colour = 1",
+        "time.colour: unknown key; known ones are duration, output_step, step",
+    ),
+    "misspelled key": (
+        "duration = 0.6",
+        "durration = 0.6",
+        "time.durration: unknown key; the nearest known one is duration",
+    ),
+    "misspelled key of a model": (
+        "terms = [2, 3]",
+        "term = [2, 3]",
+        "model[2].term: unknown key; the nearest known one is terms",
+    ),
+    "misspelled table": (
+        "[material]",
+        "[materials]",
+        "materials: unknown key; the nearest known one is material",
+    ),
+    "unknown key in a section": (
+        "height_to_width = 1.5",
+        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065, wall = 2 }",
+        "segment[1].section.wall: unknown key; known ones are height, width, flange, web",
+    ),
+    "missing key": (
+        "density = 7850.0\n",
+        "",
+        "material.density: missing; it is the density in kg/m^3",
+    ),
+    "missing key of a segment": (
+        "span = [9.0, 19.0]\n",
+        "",
+        "segment[2].span: missing; it is the x of its two ends in m, rising",
+    ),
+    "missing key of a law": (
+        CONTACT,
+        "contact = { stiffness = 1e9 }",
+        "model[3].contact.exponent: missing; it is the exponent n of the contact law",
+    ),
+    "missing mass": (
+        "mass_per_length = 55.07\n",
+        "",
+        "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
+        "section unless given",
+    ),
+    "missing kind": (
+        'kind = "shell"\n',
+        "",
+        "model[6].kind: missing; give 'kantorovich', 'finite-element' or 'shell'",
+    ),
+    "missing section": (
+        "height_to_width = 1.5\n",
+        "",
+        "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width",
+    ),
+    "text for a number": (
+        "duration = 0.6",
+        'duration = "0.6"',
+        "time.duration: must be a number, got '0.6'",
+    ),
+    "truth for a number": (
+        "duration = 0.6",
+        "duration = true",
+        "time.duration: must be a number, got true",
+    ),
+    "number for a truth": (
+        "tied = true",
+        "tied = 1",
+        "model[5].tied: must be true or false, got 1",
+    ),
+    "number for a text": (
+        'title = "The paper\'s boom, coarse and short"',
+        "title = 3",
+        "title: must be a text, got 3",
+    ),
+    "number for a table": (
+        CONTACT,
+        "contact = 3",
+        "model[3].contact: must be a table, got 3",
+    ),
+    "number for a list": (
+        "span = [9.0, 19.0]",
+        "span = 9.0",
+        "segment[2].span: must be a list, got 9.0",
+    ),
+    "table for an array of tables": (
+        "[[joint]]",
+        "[joint]",
+        "joint: must be an array of tables, each headed [[joint]], got {'outer': 'outer', "
+        "'inner': 'inner', 'stations': [9.0, 10...",
+    ),
+    "part of a term": (
+        "terms = [2, 3]",
+        "terms = [2, 2.5]",
+        "model[2].terms[2]: must be a whole number, got 2.5",
+    ),
+    "one end": (
+        "span = [9.0, 19.0]",
+        "span = [9.0]",
+        "segment[2].span: must be a list of two numbers, got [9.0]",
+    ),
+    "three ends": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, 14.0, 19.0]",
+        "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
+    ),
+    "negative": (
+        "mass_per_length = 83.16",
+        "mass_per_length = -83.16",
+        "segment[1].mass_per_length: must be a number greater than 0, got -83.16",
+    ),
+    "zero": (
+        "stiffness = 1e13",
+        "stiffness = 0.0",
+        "joint[1].stiffness: must be a number greater than 0, got 0.0",
+    ),
+    "negative play": (
+        "play = 0.014",
+        "play = -0.014",
+        "joint[1].play: must be a number not less than 0, got -0.014",
+    ),
+    "infinite": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, inf]",
+        "segment[2].span[2]: must be a finite number, got inf",
+    ),
+    "not a number": (
+        "youngs_modulus = 2.1e11",
+        "youngs_modulus = nan",
+        "material.youngs_modulus: must be a finite number, got nan",
+    ),
+    "incompressible": (
+        "poissons_ratio = 0.3",
+        "poissons_ratio = 0.5",
+        "material.poissons_ratio: must be a number less than 0.5, got 0.5",
+    ),
+    "exponent below one": (
+        "exponent = 2.0",
+        "exponent = 0.5",
+        "joint[1].exponent: must be a number not less than 1, got 0.5",
+    ),
+    "no terms": (
+        "terms = [2, 3]",
+        "terms = [2, 0]",
+        "model[2].terms[2]: must be a number not less than 1, got 0",
+    ),
+    "unknown kind": (
+        'kind = "shell"',
+        'kind = "plate"',
+        "model[6].kind: must be 'kantorovich', 'finite-element' or 'shell', got 'plate'",
+    ),
+    "unknown option": (
+        'contact_line = "near webs"',
+        'contact_line = "middle"',
+        "model[6].contact_line: must be 'near webs' or 'across', got 'middle'",
+    ),
+    "unknown statement": (
+        "[time]",
+        'demand = ["S1", "S12"]\n[time]',
+        "demand[2]: must be 'S1', 'S2', 'S3', 'S4', 'S5', 'S6', 'S7', 'S8', 'S9', 'S10' or 'S11', "
+        "got 'S12'",
+    ),
+    "name that is no file name": (
+        'name = "beam-fe"',
+        'name = "beam/fe"',
+        "model[3].name: must be made of letters, digits, blanks and . _ + -, starting with one of "
+        "the first, got 'beam/fe'",
+    ),
+    "model name twice": (
+        'name = "kantorovich-5"',
+        'name = "kantorovich-4"',
+        "model[2].name: 'kantorovich-4' is the name of model[1] already; give each its own",
+    ),
+    "segment name twice": (
+        'name = "inner"',
+        'name = "outer"',
+        "segment[2].name: 'outer' is the name of segment[1] already; give each its own",
+    ),
+    "joint of a stranger": (
+        'inner = "inner"',
+        'inner = "innner"',
+        "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'",
+    ),
+    "joint with itself": (
+        'inner = "inner"',
+        'inner = "outer"',
+        "joint[1].inner: must be another segment than the outer one",
+    ),
+    "terms for a third segment": (
+        "terms = [2, 3]",
+        "terms = [2, 3, 1]",
+        "model[2].terms: must have one number for each of the 2 segments, got [2, 3, 1]",
+    ),
+    "contact of a tied model": (
+        "tied = true",
+        f"tied = true\n{CONTACT}",
+        "model[5].contact: a tied model has no contact; leave it out",
+    ),
+    "backward segment": (
+        "span = [9.0, 19.0]",
+        "span = [19.0, 9.0]",
+        "segment[2].span: must run from a smaller to a larger x, got [19, 9] m",
+    ),
+    "no overlap": (
+        "span = [9.0, 19.0]",
+        "span = [11.0, 19.0]",
+        "joint[1]: 'outer' ends at 10 m before 'inner' starts at 11 m; the segments of a joint "
+        "must overlap",
+    ),
+    "station outside the overlap": (
+        "stations = [9.0, 10.0]",
+        "stations = [9.0, 10.5]",
+        "joint[1].stations: 10.5 m lies outside the overlap of 'outer' and 'inner'; it must be "
+        "between 9 and 10 m",
+    ),
+    "no stations": (
+        "stations = [9.0, 10.0]",
+        "stations = []",
+        "joint[1].stations: empty; give at least one",
+    ),
+    "support outside": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 12.0]",
+        "segment[1].supports: 12 m lies outside the segment; it must be between 0 and 10 m",
+    ),
+    "nothing holds": (
+        "supports = [0.0, 2.0]",
+        "supports = []",
+        "segment[1]: nothing holds 'outer': give it two supports, or a joint with two stations to "
+        "a segment that is held",
+    ),
+    "inner box too large": (
+        "mass_per_length = 55.07\n",
+        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }\n",
+        "joint[1].play: 'inner' does not fit in 'outer': -0.014127 m of height and -0.0170849 m of "
+        "width are free, and a play of 0.014 m is asked for; make the inner section or the play "
+        "smaller",
+    ),
+    "section that does not close": (
+        "play = 0.014",
+        "play = 0.028",
+        "segment[2].section: no uniform-wall box with A = 0.00701529 m² and J = 0.00021829 m⁴ "
+        "closes a clearance of 0.014 m inside 0.488874 m x 0.325916 m x 0.00650084 m; give the "
+        "section explicitly: pads then take up the difference to the stated clearance",
+    ),
+    "walls that fill the box": (
+        "height_to_width = 1.5",
+        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.4 }",
+        "segment[1].section: walls of 0.0065 m (flange) and 0.4 m (web) leave no room in a box of "
+        "0.49 m x 0.33 m; the walls must be thinner",
+    ),
+    "part of an output step": (
+        "duration = 0.6",
+        "duration = 0.6005",
+        "time.duration: must be a whole number of output steps of 0.001 s, such as 0.6 s, got "
+        "0.6005 s",
+    ),
+    "too many outputs": (
+        "duration = 0.6",
+        "duration = 1e9",
+        "time.output_step: 0.001 s makes 1e+12 outputs of 1e+09 s; it must be at least 100 s",
+    ),
+    "step above the output step": (
+        "duration = 0.6",
+        "duration = 0.6\nstep = 0.01",
+        "time.step: must not be above the output step of 0.001 s, got 0.01 s",
+    ),
+    "step of a model above the output step": (
+        "terms = [2, 3]",
+        "terms = [2, 3]\nstep = 0.01",
+        "model[2].step: must not be above the output step of 0.001 s, got 0.01 s",
+    ),
+    "damping of a shell": (
+        "load = 55.07",
+        "load = 55.07\nviscous_damping = 10.0",
+        "segment[2].viscous_damping: the shell 'shell' has none; leave it out, or run beams alone",
+    ),
+    "too many elements": (
+        "element_length = 0.5",
+        "element_length = 1e-9",
+        "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
+        "at least 0.002 m",
+    ),
+    "too many triangles": (
+        "mesh_size = 0.25",
+        "mesh_size = 1e-9",
+        "model[6].mesh_size: 1e-09 m makes more than 2e+07 triangles; it must be at least "
+        "0.00176 m",
+    ),
+    "out of proportion": (
+        "play = 0.014",
+        "play = 1e300",
+        "segment: numbers out of proportion (Numerical result out of range); give them in SI units",
+    ),
+    "joint given twice": (
+        "[[model]]",
+        '[[joint]]\nouter = "inner"\ninner = "outer"\nstations = [9.5]\nplay = 0.014\n'
+        "stiffness = 1e13\n\n[[model]]",
+        "joint[2]: 'inner' and 'outer' are joined by joint[1] already; give all their stations "
+        "there",
+    ),
+    "not TOML": (
+        "[time]",
+        "[time",
+        "line 7: not TOML: Expected ']' at the end of a table declaration (column 6); see "
+        "https://toml.io",
+    ),
+}
