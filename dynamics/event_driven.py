@@ -36,9 +36,6 @@ _SHUT = 1.0e-13
 # The shortest jump, as a part of the output step: far below any contact, above round-off.
 _SHORTEST = 1.0e-12
 
-# Part of the highest ω² below which one is zero to round-off.
-_RIGID = 1.0e-14
-
 # Steps between two outputs beyond which something rattles without end.
 _ENDLESS = 10_000_000
 
@@ -244,7 +241,10 @@ class Regime:
         if k.any():
             omega2, basis = eigh(np.diag(omega2) + (system.rows.T * k) @ system.rows)
             # Rigid motions that the springs leave free come out as round-off.
-            omega2 = np.where(omega2 > _RIGID * omega2[-1], omega2, 0.0)
+            rigid = system.rows[:, system.omega2 == 0.0] * np.sqrt(k)[:, None]
+            if rigid.size:
+                omega2[: rigid.shape[1] - np.linalg.matrix_rank(rigid)] = 0.0
+            omega2 = np.maximum(omega2, 0.0)
         above = np.where(law[0] > 0.0, clearance, np.inf)
         below = np.where(law[1] > 0.0, -clearance, -np.inf)
         return cls(

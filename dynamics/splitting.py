@@ -160,10 +160,11 @@ def _stride(y, law, bounds, step, left):  # type: ignore[no-untyped-def]
     """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within."""
     free = float(left)
     for j in range(y.size):
-        if law[0, j] > 0.0:
-            free = min(free, (law[2, j] - y[j]) / (bounds[j] * step))
-        if law[1, j] > 0.0:
-            free = min(free, (law[2, j] + y[j]) / (bounds[j] * step))
+        reach = bounds[j] * step
+        if reach > 0.0 and law[0, j] > 0.0:
+            free = min(free, (law[2, j] - y[j]) / reach)
+        if reach > 0.0 and law[1, j] > 0.0:
+            free = min(free, (law[2, j] + y[j]) / reach)
     stride = 0
     while stride + 1 < STRIDES.size and STRIDES[stride + 1] <= free:
         stride += 1

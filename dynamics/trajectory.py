@@ -118,11 +118,15 @@ class Trajectory:
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:
         """Time in s and height in m of the first peak of the slow motion.
 
-        A peak counts when it stands out by a fifth of the whole range, so that the ripple of
+        Peaks lie on the side to which the motion sets out, and their height has its sign. One
+        counts when it stands out by a fifth of the whole range, so that the ripple of
         micro-impacts does not; NaN where there is none.
         """
         deflection = np.asarray(self.data[observer].values)
-        peaks, _ = find_peaks(deflection, prominence=0.2 * np.ptp(deflection))
+        outstanding = 0.2 * np.ptp(deflection)
+        off = deflection - deflection[0]
+        side = np.sign(off[np.argmax(np.abs(off) > outstanding)])
+        peaks, _ = find_peaks(side * deflection, prominence=outstanding)
         if peaks.size == 0:
             return float("nan"), float("nan")
         return float(self.time[peaks[0]]), float(deflection[peaks[0]])

@@ -128,6 +128,7 @@ class Boom:
             _check_segment(f"segment[{number}]", segment)
         for number, joint in enumerate(self.joints, start=1):
             _check_joint(f"joint[{number}]", joint, self.segments)
+        self._check_order()
         self._check_held()
 
     @property
@@ -155,6 +156,23 @@ class Boom:
             places[f"head{suffix}"] = (joint.outer, self.segments[joint.outer].end)
             places[f"tail{suffix}"] = (joint.inner, self.segments[joint.inner].start)
         return places
+
+    def _check_order(self) -> None:
+        for number, (before, after) in enumerate(pairwise(self.segments), start=2):
+            if after.start < before.start or after.end < before.end:
+                raise BoomError(
+                    f"segment[{number}].span",
+                    f"must start and end beyond {before.name!r}; give the segments from the base "
+                    "to the tip",
+                )
+        for number, joint in enumerate(self.joints, start=1):
+            if joint.outer > joint.inner:
+                inner, outer = self.segments[joint.inner], self.segments[joint.outer]
+                raise BoomError(
+                    f"joint[{number}]",
+                    f"{inner.name!r} is nearer to the base than {outer.name!r}; exchange inner and "
+                    "outer",
+                )
 
     def _check_held(self) -> None:
         held = {i for i, segment in enumerate(self.segments) if len(segment.supports) >= 2}

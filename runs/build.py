@@ -11,6 +11,9 @@ from geometry.section import BoxSection, SectionError, infer_inner_section, infe
 from runs.bad_input import choices
 from runs.schema import Case, FiniteElementTable, Model, SegmentTable, ShellTable
 
+# A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
+SAME_SECTION = 0.01
+
 
 def build_boom(case: Case) -> Boom:
     """The boom that a case declares, its sections inferred where they are not given.
@@ -113,6 +116,7 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
     section = _given_section(table, index)
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
     if section is not None:
+        _check_plates(case, index, section)
         mass = mass or section.mass_per_length(case.material.density)
         second_moment = second_moment or section.second_moment_of_area
     if mass is None:
@@ -120,6 +124,26 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
     if second_moment is None:
         raise _missing(index, "second_moment_of_area")
     return mass, second_moment
+
+
+def _check_plates(case: Case, index: int, section: BoxSection) -> None:
+    """A given section stands alone, and the beam's numbers are its own where a shell is to run."""
+    table = case.segments[index]
+    where = f"segment[{index + 1}]"
+    if table.height_to_width is not None:
+        raise BoomError(f"{where}.height_to_width", "the section is given; leave one of them out")
+    if not any(isinstance(model, ShellTable) for model in case.models):
+        return
+    for key, given, own in (
+        ("mass_per_length", table.mass_per_length, section.mass_per_length(case.material.density)),
+        ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
+    ):
+        if given is not None and abs(given / own - 1.0) > SAME_SECTION:
+            raise BoomError(
+                f"{where}.{key}",
+                f"{given:g} is not the section's own {own:.6g}, and beams and shell would be "
+                "different booms; leave it out, or change the section",
+            )
 
 
 def _missing(index: int, key: str) -> BoomError:

@@ -20,6 +20,8 @@ MOST_OUTPUTS = 10_000_000
 
 # A dense eigenproblem of more elements, or a factorisation of more triangles, is a slip of the pen.
 MOST_ELEMENTS = 5_000
+# Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
+MOST_TERMS = 60
 MOST_TRIANGLES = 20_000_000
 
 
@@ -132,6 +134,12 @@ def _check_models(case: Case, boom: Boom) -> None:
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
+        if isinstance(model, KantorovichTable) and max(model.terms) > MOST_TERMS:
+            raise BoomError(
+                f"{where}.terms",
+                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
+                f"{list(model.terms)}; use finite elements",
+            )
         if isinstance(model, KantorovichTable) and len(model.terms) != len(boom.segments):
             raise BoomError(
                 f"{where}.terms",

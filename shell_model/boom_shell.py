@@ -209,7 +209,10 @@ def _contacts(
         points = contact_points(line, inner.section, outer.section)
         for x in joint.stations:
             inside, around = inner.outline(x), outer.outline(x)
-            for side, one_sided in ((1.0, law.upper()), (-1.0, law.lower())):
+            for side, stiffness in ((1.0, law.stiffness), (-1.0, law.below)):
+                if stiffness == 0.0:
+                    continue
+                one_sided = law.upper() if side > 0.0 else law.lower()
                 contacts += [
                     _Contact(
                         station,

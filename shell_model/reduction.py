@@ -19,6 +19,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import eigh
 
+from dynamics.failure import NumericsError
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
@@ -108,6 +109,9 @@ def reduce_segment(
         inputs: (num_owned, num_inputs) forces that act on it: contact rows, then the load.
         options: shifts and moments.
         progress: called with the part done, 0 to 1.
+
+    Raises:
+        NumericsError: a compliance is not finite.
     """
     stages = len(options.shifts) * options.moments + 1
     rigid = shell.rigid_motions()
@@ -128,7 +132,8 @@ def reduce_segment(
     elastic = basis.vectors[:, rigid_modes:]
     stiffness = basis.gram(elastic, _times(shell.stiffness, elastic) * shell.free[:, None])
     mass = basis.gram(elastic, basis.mass_times(elastic))
-    omega2, combination = eigh(stiffness, mass)
+    # One rank decides on signs and on the bases of multiple modes, for all.
+    omega2, combination = shell.comm.bcast(eigh(stiffness, mass))
     omega2 = np.concatenate([np.zeros(rigid_modes), omega2])
     shapes = np.hstack([basis.vectors[:, :rigid_modes], elastic @ combination])
     gains = np.abs(basis.gram(shapes, inputs))
@@ -199,6 +204,8 @@ def _errors(
     """Compliance error between the shifts, and the frequency up to which modes are right."""
     shifts = sorted(options.shifts)
     tests = np.sqrt(np.array(shifts[:-1]) * np.array(shifts[1:])) if len(shifts) > 1 else shifts
+    # A segment without load has an empty input, which no error is relative to.
+    inputs = inputs[:, basis.gram(inputs, inputs).diagonal() > 0.0]
     gains = basis.gram(reduced.shapes, inputs)
     worst = 0.0
     for frequency in tests:
@@ -207,10 +214,12 @@ def _errors(
         full = basis.gram(inputs, solve(inputs))
         approximate = gains.T @ (gains / (reduced.omega2 + sigma)[:, None])
         scale = np.sqrt(np.outer(np.diag(full), np.diag(full)))
-        worst = max(worst, float(np.abs((approximate - full) / scale).max()))
+        worst = float(np.maximum(worst, np.abs((approximate - full) / scale).max(initial=0.0)))
         if frequency == tests[-1]:
             limit = _frequency_limit(shell, basis, reduced, solve, sigma)
         solve.destroy()
+    if not np.isfinite(worst):
+        raise NumericsError("the reduced compliance is not finite; check the mesh and the material")
     return worst, limit
 
 

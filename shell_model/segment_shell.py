@@ -100,7 +100,9 @@ class SegmentShell:
             motions[self.node_dofs - first, 3 + i] = np.cross(axis, arms)
             motions[self.rotation_dofs - first, 3 + i] = axis
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
-        return motions @ (null_space(held) if held.size else np.eye(6))
+        # One rank decides on the basis of what is left, for all.
+        free = self.comm.bcast(null_space(held) if held.size else np.eye(6))
+        return np.asarray(motions @ free)
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> SegmentShell:

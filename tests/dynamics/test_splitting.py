@@ -374,6 +374,14 @@ def test_complains_of_a_motion_that_is_not_finite(one_mass: OneMass) -> None:
 
 
 @pytest.mark.quick
+def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
+    """A boom may have segments without load: their gaps close at no speed at all."""
+    run = integrate(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1, step=1.0e-4)
+    assert not run.states.any()
+    assert np.isnan(run.first_contact)
+
+
+@pytest.mark.quick
 @pytest.mark.parametrize("load", [0.0, 3.0])
 def test_steps_made_at_once_miss_no_contact(load: float) -> None:
     """Reference: the same motion with strides that the gap's bound forbids nowhere.

@@ -130,5 +130,12 @@ def test_first_peak_is_the_first_and_not_the_highest() -> None:
     assert height == pytest.approx(np.sin(2.0 * time) * (1.0 + 0.3 * time), rel=1e-9)
 
 
+def test_a_motion_downwards_peaks_as_its_mirror_image() -> None:
+    t = np.linspace(0.0, 6.0, 6001)
+    up = 1.0 - np.cos(2.0 * t) + 0.3 * np.sin(9.0 * t)
+    time, height = deflections(up, 6.0).first_peak()
+    assert deflections(-up, 6.0).first_peak() == (time, -height)
+
+
 def test_no_peak_in_a_steady_rise() -> None:
     assert np.isnan(deflections(np.linspace(0.0, 1.0, 100), 1.0).first_peak()).all()

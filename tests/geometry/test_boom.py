@@ -108,6 +108,19 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         "must rise from the base to the tip, each given once",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(10.0, 9.0)),)),
     ),
+    "segments from the tip": (
+        "segment[2].span",
+        "must start and end beyond 'inner'; give the segments from the base to the tip",
+        lambda outer, inner, joint: ((inner, outer), (replace(joint, outer=1, inner=0),)),
+    ),
+    "outer and inner exchanged": (
+        "joint[1]",
+        "'outer' is nearer to the base than 'inner'; exchange inner and outer",
+        lambda outer, inner, joint: (
+            (replace(outer, section=None), replace(inner, section=None)),
+            (replace(joint, outer=1, inner=0),),
+        ),
+    ),
     "station twice": (
         "joint[1].stations",
         "must rise from the base to the tip, each given once",

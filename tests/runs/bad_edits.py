@@ -243,7 +243,7 @@ BAD_EDITS = {
         "a segment that is held",
     ),
     "inner box too large": (
-        "mass_per_length = 55.07\n",
+        "mass_per_length = 55.07\nsecond_moment_of_area = 2.1829e-4\n",
         "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }\n",
         "joint[1].play: 'inner' does not fit in 'outer': -0.014127 m of height and -0.0170849 m of "
         "width are free, and a play of 0.014 m is asked for; make the inner section or the play "
@@ -311,6 +311,24 @@ BAD_EDITS = {
         "stiffness = 1e13\n\n[[model]]",
         "joint[2]: 'inner' and 'outer' are joined by joint[1] already; give all their stations "
         "there",
+    ),
+    "more terms than digits": (
+        "terms = [2, 3]",
+        "terms = [2, 61]",
+        "model[2].terms: must not be above 60, where the polynomials lose their digits, got "
+        "[2, 61]; use finite elements",
+    ),
+    "ratio beside a section": (
+        "height_to_width = 1.5",
+        "height_to_width = 1.5\nsection = { height = 0.49, width = 0.33, flange = 0.0065, "
+        "web = 0.0065 }",
+        "segment[1].height_to_width: the section is given; leave one of them out",
+    ),
+    "mass of another section": (
+        "height_to_width = 1.5",
+        "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }",
+        "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and shell "
+        "would be different booms; leave it out, or change the section",
     ),
     "not TOML": (
         "[time]",

@@ -117,3 +117,27 @@ def test_a_shell_needs_a_section() -> None:
     )
     with pytest.raises(BoomError, match=message):
         reduce_boom(bare, [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
+
+
+@pytest.mark.quick
+def test_a_side_without_stiffness_never_touches() -> None:
+    """One station, pressing up alone: one row, one-sided, above."""
+    law = replace(LAW, stiffness_below=0.0)
+    options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
+    system = reduce_boom(_boom(), [law], options, MPI.COMM_WORLD).system
+    assert system.station_of_row.tolist() == [0, 1]
+    assert all(row.below == 0.0 for row in system.laws)
+
+
+@pytest.mark.quick
+def test_a_segment_without_load_is_reduced_like_any_other() -> None:
+    """Its empty input must not hide the error of its contact points, nor spoil it."""
+    boom = _boom()
+    bare = replace(boom, segments=(boom.segments[0], replace(boom.segments[1], load=0.0)))
+    options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
+    error, expected = (
+        reduce_boom(one, [LAW], options, MPI.COMM_WORLD).errors["contact_compliance"]
+        for one in (bare, boom)
+    )
+    assert error == pytest.approx(expected, rel=0.5)
+    assert error > 1.0e-9
