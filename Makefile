@@ -26,7 +26,7 @@ BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots test quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots bench readings test quick lint matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -39,6 +39,12 @@ verify: $(REPORTS) ## run the paper's cases where they are not up to date, print
 
 snapshots: $(REPORTS) ## pictures of the verify cases
 	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
+
+bench: $(READY) ## what the integrators cost, into runs/out/bench
+	$(BIN)/python -m runs.bench
+
+readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
+	$(BIN)/python -m runs.readings
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
@@ -68,7 +74,8 @@ distclean: clean ## remove .venv too
 # prints the tables.
 runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@rm -f $@
-	$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
+	@echo "running the models of $< ..."
+	@$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

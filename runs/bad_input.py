@@ -14,6 +14,7 @@ from runs import schema
 
 _TABLES: Mapping[str, type[BaseModel]] = {
     "time": schema.TimeTable,
+    "ensemble": schema.EnsembleTable,
     "material": schema.MaterialTable,
     "section": schema.SectionTable,
     "segment": schema.SegmentTable,
@@ -83,6 +84,8 @@ def _explain(
         what = f"must be a number not less than {limits['ge']:g}"
     elif fault == "less_than":
         what = f"must be a number less than {limits['lt']:g}"
+    elif fault == "less_than_equal":
+        what = f"must be a number not greater than {limits['le']:g}"
     elif fault == "literal_error":
         what = f"must be {limits['expected']}"
     elif fault == "too_short":

@@ -16,9 +16,10 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from dynamics.energy import ENERGIES, energy_residual
+from dynamics.horizon import SHARES
 from runs import theme
+from runs.questions import tied
 from runs.results import Results
-from runs.verdicts import tied
 
 Array = npt.NDArray[np.float64]
 
@@ -35,6 +36,8 @@ FORCE_BINS = 100
 LEAST_FORCE = 1000.0
 # Impacts follow one another within milliseconds; their mean over so many s holds the boom.
 FORCE_WINDOW = 0.010
+# Of an ensemble this part of the members lies in its band, in percent.
+BAND = (5.0, 95.0)
 # Of the numbers that an energy is the sum of.
 ROUND_OFF = 1.0e-16
 
@@ -70,6 +73,7 @@ class _Pen:
 
     def __init__(self, results: Results, folder: Path) -> None:
         self.data = results.trajectories
+        self.ensembles = results.ensembles
         self.summary = results.summary["models"]
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
@@ -83,6 +87,7 @@ class _Pen:
         sheet, (axes,) = _sheet(1, 3.9)
         for name in self.models:
             self._line(axes, name, self.time, MILLI * self._of(name, "tip"))
+            self._members(axes, name, "tip")
         axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, self.time[-1]))
         caption = "Deflection of the tip, all models: the counterpart of Fig. 6 of the paper."
         return self._finish(
@@ -99,6 +104,7 @@ class _Pen:
                 if other != name:
                     self._line(axes, other, self.time, heads[other], linewidth=0.9)
             self._line(axes, name, self.time, heads[name], linewidth=1.1)
+            self._members(axes, name, "head")
             axes.set_title(name, color=self.strokes[name].color)
             axes.set(xlim=(0.0, self.time[-1]), ylim=_limits(list(heads.values())))
         panels[-1].set_xlabel("time (s)")
@@ -244,6 +250,15 @@ class _Pen:
     def _sampled(self) -> str:
         if not self.with_play:
             return ""
+        if self.ensembles is not None:
+            low, high = BAND
+            first, last = (f"{100.0 * share:g} %" for share in SHARES)
+            return (
+                f" Shaded: {low:g} to {high:g} % of the {self.ensembles.sizes['member']} members "
+                f"of each model's ensemble. Vertical lines: from when its members are {first} "
+                f"(dotted) and {last} (dashed) of the tip's range around one another, beyond which "
+                "a curve is one sample of a chaotic motion."
+            )
         return " After the first presses a curve with play is one sample of a chaotic motion."
 
     def _of(self, name: str, variable: str) -> Array:
@@ -272,6 +287,21 @@ class _Pen:
             markersize=2.5,
             label=name,
         )
+
+    def _members(self, axes: Axes, name: str, place: str) -> None:
+        """The band of a model's ensemble behind its curve, and its horizons."""
+        if self.ensembles is None or name not in self.ensembles["model"]:
+            return
+        if place not in self.ensembles:
+            return
+        color = self.strokes[name].color
+        members = MILLI * self.ensembles[place].sel(model=name).values
+        low, high = np.percentile(members, BAND, axis=0)
+        axes.fill_between(self.time, low, high, color=color, alpha=0.25, linewidth=0, zorder=1)
+        horizons = self.summary[name]["ensemble"]["horizons"]
+        for share, dashes in zip(SHARES, (":", "--"), strict=True):
+            if horizons[f"{share:g}"] is not None:
+                axes.axvline(horizons[f"{share:g}"], color=color, linestyle=dashes, linewidth=0.9)
 
     def _finish(
         self, sheet: Sheet, legend_of: Axes | None, stem: str, title: str, caption: str

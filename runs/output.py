@@ -22,7 +22,16 @@ from runs.bad_input import BadInput
 from runs.figures import draw
 from runs.pipeline import Run
 from runs.report import render
-from runs.results import CASE, FIELDS, SUMMARY, TRAJECTORIES, VERDICTS, Results, read_netcdf
+from runs.results import (
+    CASE,
+    ENSEMBLES,
+    FIELDS,
+    SUMMARY,
+    TRAJECTORIES,
+    VERDICTS,
+    Results,
+    read_netcdf,
+)
 from shell_model.rendering import RenderingUnavailable, render_snapshots
 
 REPORT = "report.html"
@@ -71,10 +80,14 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
     (folder / REPORT).unlink(missing_ok=True)
     for path in folder.glob(f"*{FIELDS}"):
         path.unlink()
+    (folder / ENSEMBLES).unlink(missing_ok=True)
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
     empty = [name for name, size in results.trajectories.sizes.items() if size == 0]
     with whole(folder / TRAJECTORIES) as path:
         results.trajectories.drop_dims(empty).to_netcdf(path, engine="scipy")
+    if results.ensembles is not None:
+        with whole(folder / ENSEMBLES) as path:
+            results.ensembles.to_netcdf(path, engine="scipy")
     with whole(folder / "trajectories.csv") as path:
         _write_csv(results.trajectories, path)
     _write_text(folder / CASE, toml.dumps(results.case))

@@ -19,16 +19,25 @@ import xarray as xr
 from beam_model.finite_element import finite_element_segment
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
+from dynamics.ensemble import integrate_ensemble
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
-from runs import toml
+from runs import members, toml
 from runs.build import build_boom, contact_laws
 from runs.results import Results, label
-from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable, TimeTable
+from runs.schema import (
+    Case,
+    EnsembleTable,
+    FiniteElementTable,
+    KantorovichTable,
+    Model,
+    ShellTable,
+    TimeTable,
+)
 from runs.verdicts import judge
 
 if TYPE_CHECKING:
@@ -58,6 +67,16 @@ class ShellOutput:
 
 
 @dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one model leaves; ``ensemble`` and ``shell`` where it has one."""
+
+    trajectory: Trajectory
+    summary: dict[str, Any]
+    ensemble: xr.Dataset | None
+    shell: ShellOutput | None
+
+
+@dataclass(frozen=True, slots=True)
 class Run:
     """Results, and by the model's name what each shell leaves."""
 
@@ -82,18 +101,14 @@ def run_case(
     """
     boom = build_boom(case)
     first_rank = comm is None or comm.rank == 0
-    trajectories: dict[str, Trajectory] = {}
-    models: dict[str, Any] = {}
-    shells: dict[str, ShellOutput] = {}
+    outcomes: dict[str, Outcome] = {}
     for number, model in enumerate(case.models, start=1):
         if not (first_rank or isinstance(model, ShellTable)):
             continue
         try:
             # What overflows is found where it matters, and said there.
             with np.errstate(all="ignore"):
-                outcome = _run_model(
-                    boom, model, case.time, comm, mesh_folder / model.name, progress
-                )
+                outcome = _run_model(boom, model, case, comm, mesh_folder / model.name, progress)
         except NumericsError as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         except (ArithmeticError, np.linalg.LinAlgError, ValueError) as error:
@@ -102,31 +117,42 @@ def run_case(
                 "case that is out of proportion, in another unit say"
             ) from error
         if outcome is not None:
-            trajectories[model.name], models[model.name], shell = outcome
-            if shell is not None:
-                shells[model.name] = shell
+            outcomes[model.name] = outcome
     if not first_rank:
         return None
-    summary = {
+    summary: dict[str, Any] = {
         "title": case.title,
         "case_hash": toml.digest(case),
         "versions": _versions(),
-        "models": models,
+        "models": {name: outcome.summary for name, outcome in outcomes.items()},
     }
+    ensembles = members.gather(
+        {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
+    )
+    if ensembles is not None and case.ensemble is not None:
+        cutoff = members.slow_below(boom, case.time)
+        for name, out in outcomes.items():
+            if out.ensemble is not None:
+                summary["models"][name]["ensemble"] = members.sum_up(out.ensemble, cutoff)
+        summary["ensemble"] = {**case.ensemble.model_dump(), "slow_below": cutoff}
+        ensembles = ensembles.assign_attrs(case_hash=summary["case_hash"])
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
+    trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary["case_hash"])
-    return Run(Results(case, data, summary, judge(data, summary, case)), shells)
+    verdicts = judge(data, summary, case, ensembles)
+    shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
+    return Run(Results(case, data, summary, verdicts, ensembles), shells)
 
 
 def _run_model(
     boom: Boom,
     model: Model,
-    time: TimeTable,
+    case: Case,
     comm: MPI.Comm | None,
     mesh_folder: Path,
     progress: Progress,
-) -> tuple[Trajectory, dict[str, Any], ShellOutput | None] | None:
-    """Trajectory, summary and what a shell leaves, on rank 0; None elsewhere."""
+) -> Outcome | None:
+    """What a model leaves, on rank 0; None elsewhere."""
 
     def tell(stage: str, part: float) -> None:
         progress(model.name, stage, part)
@@ -142,12 +168,17 @@ def _run_model(
         start = perf_counter()
         system = _beam_system(boom, model)
         seconds, num_dofs = {"build": perf_counter() - start}, system.num_modes
-    trajectory = _move(system, model, time, seconds, tell)
+    trajectory = _move(system, model, case.time, seconds, tell)
+    ensemble = None
+    if case.ensemble is not None and system.laws:
+        step = trajectory.data.attrs["step"]
+        ensemble = _move_members(system, case.ensemble, case.time, step, seconds, tell)
     summary = _summary(model, system, trajectory, num_dofs, seconds)
     if reduced is None:
-        return trajectory, summary, None
+        return Outcome(trajectory, summary, ensemble, None)
     summary["reduction_errors"] = reduced.errors
-    return trajectory, summary, _shell_output(boom, model.name, reduced, trajectory)
+    shell = _shell_output(boom, model.name, reduced, trajectory)
+    return Outcome(trajectory, summary, ensemble, shell)
 
 
 def _beam_system(boom: Boom, model: KantorovichTable | FiniteElementTable) -> GapSystem:
@@ -214,6 +245,30 @@ def _move(
     )
     seconds["motion"] = perf_counter() - start
     return trajectory
+
+
+def _move_members(
+    system: GapSystem,
+    table: EnsembleTable,
+    time: TimeTable,
+    step: float,
+    seconds: dict[str, float],
+    tell: Callable[[str, float], None],
+) -> xr.Dataset:
+    start = perf_counter()
+    ensemble = integrate_ensemble(
+        system,
+        table.members,
+        table.relative,
+        table.seed,
+        table.vary,
+        time.duration,
+        time.output_step,
+        step,
+        progress=lambda part: tell("ensemble", part),
+    )
+    seconds["ensemble"] = perf_counter() - start
+    return ensemble
 
 
 def _summary(

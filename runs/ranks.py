@@ -40,10 +40,16 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     if comm is None or comm.size == 1:
         if launched_rank() != 0:
             sys.exit(0)
-        print(line, file=sys.stderr, flush=True)
+        _say(line)
         sys.exit(code)
     if comm.rank != 0:
         time.sleep(_GRACE)
-    print(line, file=sys.stderr, flush=True)
+    _say(line)
     comm.Abort(code)
     raise AssertionError("MPI_Abort returned")
+
+
+def _say(line: str) -> None:
+    """One write with its newline, which the launcher's own words cannot come between."""
+    sys.stderr.write(f"{line}\n")
+    sys.stderr.flush()

@@ -18,8 +18,9 @@ from rich.text import Text
 
 from runs import theme, toml
 from runs.figures import Figure
+from runs.questions import tied
 from runs.results import Results
-from runs.verdicts import Verdict, tied
+from runs.verdicts import Verdict
 
 NONE = "–"
 
@@ -112,7 +113,13 @@ def print_table(results: Results, console: Console) -> None:
             row.seconds,
         )
     console.print(models)
+    for caution in results.cautions():
+        console.print(caution, markup=False)
+    if results.judges_the_paper:
+        console.print(_verdict_table(results))
 
+
+def _verdict_table(results: Results) -> Table:
     verdicts = Table(title="Statements of the paper", title_justify="left", box=SIMPLE_HEAD)
     verdicts.add_column("id")
     verdicts.add_column("verdict")
@@ -128,7 +135,7 @@ def print_table(results: Results, console: Console) -> None:
             number(verdict.threshold),
             Text.assemble(verdict.statement, (f" ({verdict.unit})" if verdict.unit else "", "dim")),
         )
-    console.print(verdicts)
+    return verdicts
 
 
 def number(value: float | None, digits: int = 3) -> str:

@@ -17,7 +17,7 @@ from geometry.boom import Boom
 from runs import case as case_file
 from runs import toml
 from runs.bad_input import BadInput
-from runs.schema import Case
+from runs.schema import Case, KantorovichTable
 from runs.verdicts import Verdict
 
 TRAJECTORIES = "trajectories.nc"
@@ -25,6 +25,7 @@ SUMMARY = "summary.json"
 VERDICTS = "verdicts.json"
 CASE = "case.toml"
 FIELDS = "fields.nc"
+ENSEMBLES = "ensembles.nc"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +40,15 @@ class Results:
             energies in J; NaN where a model has none.
         summary: what ``summary.json`` holds.
         verdicts: on the statements of the paper.
+        ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
+            ``time``; ``tip``, ``head`` in m; None where the case asks for none.
     """
 
     case: Case
     trajectories: xr.Dataset
     summary: dict[str, Any]
     verdicts: list[Verdict]
+    ensembles: xr.Dataset | None = None
 
     @classmethod
     def load(cls, folder: Path) -> Results:
@@ -71,16 +75,37 @@ class Results:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
         summary = read(SUMMARY, _read_json)
         verdicts = read(VERDICTS, lambda path: [Verdict(**entry) for entry in _read_json(path)])
+        ensembles = read(ENSEMBLES, read_netcdf) if summary.get("ensemble") else None
         if not (folder / CASE).is_file():
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
         case = case_file.load(str(folder / CASE))
         expected = toml.digest(case)
-        for name, mark in ((TRAJECTORIES, trajectories.attrs), (SUMMARY, summary)):
+        marks = {TRAJECTORIES: trajectories.attrs, SUMMARY: summary}
+        if ensembles is not None:
+            marks[ENSEMBLES] = ensembles.attrs
+        for name, mark in marks.items():
             if mark.get("case_hash") != expected:
                 raise BadInput(
                     str(folder), name, f"is not of the case in {CASE}; run the case again"
                 )
-        return cls(case, trajectories, summary, verdicts)
+        return cls(case, trajectories, summary, verdicts, ensembles)
+
+    @property
+    def judges_the_paper(self) -> bool:
+        """Whether the statements of the paper, which are about its series, are worth a table."""
+        return any(isinstance(model, KantorovichTable) for model in self.case.models)
+
+    def cautions(self) -> list[str]:
+        """What the results are not worth, a line each."""
+        spans = [x for segment in self.case.segments for x in segment.span]
+        length = max(spans) - min(spans)
+        largest = np.abs(self.trajectories["tip"].values).max(axis=1)
+        return [
+            f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
+            "boom's length: small displacements do not hold; check units and loads"
+            for name, move in zip(self.trajectories["model"].values, largest, strict=True)
+            if move > 0.1 * length
+        ]
 
     def broken_demands(self) -> list[Verdict]:
         """The verdicts that the case demands and that are not ``reproduced``."""

@@ -39,6 +39,23 @@ class TimeTable(Table):
     )
 
 
+class EnsembleTable(Table):
+    """Every model with play once more, many times, with data changed a little."""
+
+    members: Annotated[int, Field(strict=True, ge=2, le=10_000)] = Field(
+        description="the number of runs of each model, the unchanged one among them"
+    )
+    relative: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] = Field(
+        1.0e-9, description="the largest relative change"
+    )
+    seed: Annotated[int, Field(strict=True, ge=0)] = Field(
+        1, description="the seed of the changes: the same one gives the same members"
+    )
+    vary: Literal["load", "clearance"] = Field(
+        "load", description="what is changed, all of it by one factor"
+    )
+
+
 class MaterialTable(Table):
     """Isotropic linear elasticity, the same for all segments."""
 
@@ -84,7 +101,7 @@ class SegmentTable(Table):
         "height_to_width, or with the room in the segment around it",
     )
     load: Number = Field(
-        0.0, description="the uniform load along z in N/m, applied at t = 0 and kept"
+        0.0, description="the uniform load in N/m, positive upwards, applied at t = 0 and kept"
     )
     viscous_damping: NotNegative = Field(
         0.0, description="the viscous damping per length in N s/m^2"
@@ -183,6 +200,9 @@ class Case(Table):
         (), description="the statements of the paper that the run must reproduce"
     )
     time: TimeTable = Field(description="the table of the duration and the output step")
+    ensemble: EnsembleTable | None = Field(
+        None, description="the table of the ensembles; none are run unless given"
+    )
     material: MaterialTable = Field(description="the table of the elastic constants and density")
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1)] = Field(
         alias="segment", description="the segments, one [[segment]] each, from the base to the tip"

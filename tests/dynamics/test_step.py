@@ -53,3 +53,12 @@ def test_step_is_a_whole_part_of_the_output_step(one_mass: Callable[..., GapSyst
 
 def test_without_contact_the_output_step_serves(one_mass: Callable[..., GapSystem]) -> None:
     assert contact_step(one_mass(1.0, spring=1.0e12), 0.1) == 0.1
+
+
+def test_a_soft_contact_leaves_the_step_to_the_stiffest_mode(
+    one_mass: Callable[..., GapSystem],
+) -> None:
+    """Reference: analytic, 1/ω: far from half a period, at which impulses pump a mode."""
+    stop = PowerContact(stiffness=1.0e-3, exponent=2.0, clearance=0.1)
+    system = one_mass(1.0, stop, spring=4.0e8, force=1.0)
+    assert contact_step(system, 1.0e-3) == pytest.approx(1.0 / 2.0e4, rel=1e-12)

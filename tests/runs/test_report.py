@@ -193,3 +193,24 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
 )
 def test_numbers_are_written_for_people(value: float | None, expected: str) -> None:
     assert number(value) == expected
+
+
+def test_cautions_against_what_is_no_small_displacement(results: Results) -> None:
+    """A tenth of the boom's 19 m: 1.9 m."""
+    assert results.cautions() == []
+    wild = results.trajectories.copy(deep=True)
+    wild["tip"][0, -1] = 2.0
+    (line,) = replace(results, trajectories=wild).cautions()
+    name = str(wild["model"].values[0])
+    assert line == (
+        f"caution: in {name} the tip moves by 2 m, more than a tenth of the boom's length: small "
+        "displacements do not hold; check units and loads"
+    )
+    assert line in printed(replace(results, trajectories=wild), width=200)
+
+
+def test_prints_no_statements_of_the_paper_without_its_series(results: Results) -> None:
+    beams = tuple(model for model in results.case.models if model.kind != "kantorovich")
+    other = replace(results, case=results.case.model_copy(update={"models": beams}))
+    assert "Statements of the paper" in printed(results)
+    assert "Statements of the paper" not in printed(other)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The ensembles of a run: one for each model with play, and what they say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from beam_model.finite_element import finite_element_segment
+from beam_model.segment_model import tied_system
+from dynamics.horizon import SHARES, horizons_of
+from dynamics.slow_motion import CUTOFF_SHARE, SlowPeaks
+from geometry.boom import Boom
+from runs.schema import TimeTable
+
+# Elements of the closed boom, whose lowest frequency they give to four digits.
+ELEMENT_LENGTH = 0.5
+# Deflections that are kept of every member.
+PLACES = ("tip", "head")
+
+
+def slow_below(boom: Boom, time: TimeTable) -> float | None:
+    """Cut-off in Hz of the slow motion: part of the lowest elastic frequency without play.
+
+    None where the run is too short for it, or too coarsely reported.
+    """
+    segments = [
+        finite_element_segment(
+            segment, ELEMENT_LENGTH, boom.stations_of(number), "euler-bernoulli", True
+        )
+        for number, segment in enumerate(boom.segments)
+    ]
+    frequencies = tied_system(boom, segments).frequencies
+    cutoff = CUTOFF_SHARE * float(frequencies[frequencies > 0.0][0])
+    if not 2.0 * time.output_step < 1.0 / cutoff < time.duration:
+        return None
+    return cutoff
+
+
+def sum_up(ensemble: xr.Dataset, cutoff: float | None) -> dict[str, Any]:
+    """What the summary says of one model's ensemble; None for what there is not.
+
+    Args:
+        ensemble: of :func:`dynamics.ensemble.integrate_ensemble`.
+        cutoff: of the slow motion in Hz.
+    """
+    shares = zip(SHARES, horizons_of(ensemble), strict=True)
+    summary: dict[str, Any] = {
+        "horizons": {f"{share:g}": _known(time) for share, time in shares},
+        "energy_residual": float(ensemble["energy_residual"].max()),
+        "slow_peaks": None,
+    }
+    if cutoff is not None:
+        peaks = SlowPeaks.of(ensemble["tip"].values, ensemble["time"].values, cutoff)
+        summary["slow_peaks"] = {
+            "time": peaks.times.tolist(),
+            "time_spread": peaks.time_spreads.tolist(),
+            "height": peaks.heights.tolist(),
+            "height_spread": peaks.height_spreads.tolist(),
+            "period": _known(peaks.period),
+            "period_spread": _known(peaks.period_spread),
+        }
+    return summary
+
+
+def gather(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
+    """Tip and head of all ensembles in one dataset, in single precision; None without any.
+
+    Args:
+        ensembles: by the model's name, of the same members and times.
+    """
+    if not ensembles:
+        return None
+    kept = [
+        ensemble[[place for place in PLACES if place in ensemble]].astype(np.float32)
+        for ensemble in ensembles.values()
+    ]
+    together = xr.concat(kept, xr.Variable("model", list(ensembles)), combine_attrs="override")
+    return together.drop_vars("station", errors="ignore").assign_attrs(
+        vary=kept[0].attrs["vary"], relative=kept[0].attrs["relative"], seed=kept[0].attrs["seed"]
+    )
+
+
+def _known(number: float) -> float | None:
+    return number if np.isfinite(number) else None

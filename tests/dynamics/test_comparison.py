@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Each level of a comparison finds the difference that was put in, and no other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.stats import norm
+
+from dynamics.comparison import Comparison, Distributions, PeakDifferences, Pointwise, compare
+from dynamics.ensemble import integrate_ensemble
+from dynamics.slow_motion import SlowPeaks
+from tests.dynamics.two_stops import CHAOTIC
+
+pytestmark = pytest.mark.quick
+
+TIME = np.arange(10_001) * 1e-3
+CUTOFF = 1.7
+
+
+def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr.Dataset:
+    """Swings with the period 1 s; members part in phase by ±1e-4 exp(growth t) s."""
+    parting = np.linspace(-1e-4, 1e-4, 9)[:, None] * np.exp(growth * TIME)
+    parting = np.clip(np.vstack([np.zeros(TIME.size), parting]), -0.2, 0.2)
+    tip = height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay - parting)))
+    return xr.Dataset({"tip": (("member", "time"), tip)}, coords={"time": TIME})
+
+
+def test_pointwise_differences_by_hand() -> None:
+    """Reference: analytic. 0.02 sin²(πt) apart up to 0.5 s, so 1/51 of the larger range."""
+    one, other = (ensemble(height=height)["tip"].values[0] for height in (1.0, 1.02))
+    found = Pointwise.of(one, other, TIME, 0.5)
+    assert found.largest == pytest.approx(0.02 / 1.02, rel=1e-6)
+    assert found.rms == pytest.approx(0.02 / 1.02 * np.sqrt(3.0 / 8.0), rel=2e-3)
+    other[501:] += 1.0  # too late to count
+    assert Pointwise.of(one, other, TIME, 0.5) == found
+
+
+def test_levels_of_two_models_that_part() -> None:
+    """Reference: analytic. The spread π·1e-4·exp(t) passes 1 % at 3.5 s and 20 % at 6.5 s, or
+    within a quarter period of it; one delayed by 50 ms differs by sin(0.05 π) up to there."""
+    found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
+    assert found.pointwise.until == pytest.approx(np.log(100.0 / np.pi), abs=0.25)
+    assert found.pointwise.largest == pytest.approx(np.sin(0.05 * np.pi), rel=1e-2)
+    np.testing.assert_allclose(found.peaks.times[1:5], 0.05, atol=2e-3)
+    explained = found.peaks.explained
+    # Both phases are uncertain by 1e-4 exp(t) s: the delay is explained from 5.5 s on.
+    assert explained.tolist()[:4] == [False] * 4
+    assert explained[6:].all()
+    assert found.distributions.since == pytest.approx(np.log(2000.0 / np.pi), abs=0.3)
+    assert found.distributions.distance < 0.05
+
+
+def test_peaks_beyond_the_spread_are_differences_of_the_models() -> None:
+    one = SlowPeaks.of(ensemble()["tip"].values, TIME, CUTOFF)
+    higher = SlowPeaks.of(ensemble(height=1.1)["tip"].values, TIME, CUTOFF)
+    found = PeakDifferences.of(one, higher)
+    np.testing.assert_allclose(found.heights[1:-1], 0.1, rtol=0.01)
+    assert not found.explained.any()
+    assert PeakDifferences.of(one, one).explained.all()
+
+
+def test_distance_of_shifted_distributions() -> None:
+    """Reference: analytic. Two normal laws a shift s apart have the distance 2 Φ(s/2) − 1."""
+    generator = np.random.default_rng(0)
+    values = generator.normal(size=(10, TIME.size))
+    for shift in (0.0, 0.5, 2.0):
+        other = generator.normal(shift, 1.0, size=values.shape)
+        found = Distributions.of(values, other, TIME, 1.0)
+        assert found.distance == pytest.approx(2.0 * norm.cdf(0.5 * shift) - 1.0, abs=0.01)
+        assert found.means[1] - found.means[0] == pytest.approx(shift, abs=0.02)
+        assert found.deviations == pytest.approx((1.0, 1.0), abs=0.02)
+
+
+def test_models_that_stay_predictable_have_no_distribution() -> None:
+    found = compare(ensemble(), ensemble(height=1.1), CUTOFF)
+    assert found.pointwise.until == TIME[-1]
+    assert np.isnan(found.distributions.since)
+    assert np.isnan(found.distributions.distance)
+
+
+def test_a_chaotic_system_is_like_itself() -> None:
+    """Reference: the system itself under other changes. Pointwise within 1 % up to the horizon,
+    and of one distribution after it."""
+    one, other = (
+        integrate_ensemble(CHAOTIC, 16, 1e-6, seed, "load", 60.0, 1e-2) for seed in (1, 2)
+    )
+    found = compare(one, other, 2.0)
+    assert found.pointwise.largest == 0.0  # of the unchanged members
+    assert found.peaks.explained.all()
+    assert found.distributions.distance < 0.05
+    shifted = other.assign(tip=other["tip"] + 0.5 * np.ptp(other["tip"].values))
+    assert compare(one, shifted, 2.0).distributions.distance > 0.5
+
+
+def test_times_must_agree() -> None:
+    with pytest.raises(ValueError, match=r"^the ensembles must have the same times$"):
+        compare(ensemble(), ensemble().isel(time=slice(5000)), CUTOFF)
+
+
+def test_every_level_says_what_it_decides() -> None:
+    for level in (Pointwise, PeakDifferences, Distributions):
+        assert level.decides.count(".") == 1
+        assert "cannot tell" in level.decides
+    assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Members are what a single run of the changed system gives, on any number of cores."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from dynamics.ensemble import Vary, integrate_ensemble, perturbations
+from dynamics.failure import NumericsError
+from dynamics.splitting import integrate
+from tests.dynamics.two_stops import CHAOTIC, LINEAR
+
+pytestmark = pytest.mark.quick
+
+THROWN = np.array([0.5, -1.0])
+
+
+@pytest.mark.parametrize("vary", ["load", "clearance", "velocity"])
+def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
+    """Reference: other code path, single runs of systems changed by hand."""
+    ensemble = integrate_ensemble(CHAOTIC, 3, 1e-3, 7, vary, 5.0, 1e-2, step=1e-3, velocity=THROWN)
+    for member, change in enumerate(ensemble["change"].values):
+        factor = {"load": 1.0, "clearance": 1.0, "velocity": 1.0, vary: 1.0 + change}
+        (law,) = CHAOTIC.laws
+        system = replace(
+            CHAOTIC,
+            load=factor["load"] * CHAOTIC.load,
+            laws=[replace(law, clearance=factor["clearance"] * law.clearance)],
+        )
+        run = integrate(system, 5.0, 1e-2, step=1e-3, velocity=factor["velocity"] * THROWN)
+        one = ensemble.isel(member=member)
+        for name in ("tip", "contact_force"):
+            np.testing.assert_array_equal(one[name], run.data[name])
+        assert float(one["energy_residual"]) == run.energy_residual
+    assert np.ptp(ensemble["tip"].values, axis=0).max() > 1e-4
+
+
+def test_keeps_labels_and_nothing_more() -> None:
+    ensemble = integrate_ensemble(CHAOTIC, 4, 1e-6, 1, "load", 1.0, 1e-2)
+    assert dict(ensemble.sizes) == {"member": 4, "time": 101, "station": 1}
+    assert set(ensemble.data_vars) == {"tip", "contact_force", "energy_residual"}
+    assert ensemble["contact_force"].dims == ("member", "time", "station")
+    units = [ensemble[name].attrs["units"] for name in ("tip", "contact_force", "time")]
+    assert units == ["m", "N", "s"]
+    assert set(ensemble.attrs) == {"vary", "relative", "seed", "step"}
+
+
+def test_changes_are_uniform_and_spare_member_0() -> None:
+    """Reference: analytic. A uniform law within ±ε has the mean 0 and the deviation ε/√3."""
+    changes = perturbations(10_001, 1e-3, 5)
+    assert changes[0] == 0.0
+    assert np.abs(changes).max() < 1e-3
+    assert changes[1:].mean() == pytest.approx(0.0, abs=3e-5)
+    assert changes[1:].std() == pytest.approx(1e-3 / np.sqrt(3.0), rel=0.02)
+
+
+def test_the_same_seed_gives_the_same_on_any_number_of_cores(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Chaotic: a last digit that differed would show."""
+    found = []
+    for cores in ({0}, {0, 1, 2, 3, 4}):
+        monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: cores)
+        found.append(integrate_ensemble(CHAOTIC, 9, 1e-6, 3, "load", 20.0, 1e-2))
+    xr.testing.assert_identical(*found)
+    other = integrate_ensemble(CHAOTIC, 9, 1e-6, 4, "load", 20.0, 1e-2)
+    assert not np.array_equal(other["tip"], found[0]["tip"])
+
+
+def test_tells_its_progress() -> None:
+    parts: list[float] = []
+    integrate_ensemble(LINEAR, 4, 1e-6, 1, "load", 1.0, 1e-2, progress=parts.append)
+    assert parts == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_a_member_that_cannot_be_computed_ends_the_ensemble() -> None:
+    with pytest.raises(NumericsError, match="halve the step"):
+        integrate_ensemble(CHAOTIC, 4, 1e-6, 1, "load", 20.0, 0.1, step=0.1)
+
+
+@pytest.mark.parametrize(
+    ("members", "relative", "vary", "message"),
+    [
+        (1, 1e-9, "load", "an ensemble must have at least 2 members, got 1"),
+        (8, 0.0, "load", "relative must be between 0 and 1, got 0"),
+        (8, float("nan"), "load", "relative must be between 0 and 1, got nan"),
+        (8, 1e-9, "velocity", "the velocity is zero, so that no relative change moves it"),
+        (8, 1e-9, "clearance", "the clearance is zero, so that no relative change moves it"),
+    ],
+)
+def test_refuses_what_is_no_ensemble(
+    members: int, relative: float, vary: Vary, message: str
+) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        integrate_ensemble(LINEAR, members, relative, 1, vary, 1.0)

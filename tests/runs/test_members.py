@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Ensembles of a run: asked for by the case, of the same motion as the trajectories, on disk."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure as Sheet
+
+from runs import case as case_file
+from runs.bad_input import BadInput
+from runs.build import build_boom
+from runs.figures import draw
+from runs.members import slow_below
+from runs.output import prepare, write
+from runs.pipeline import Run, run_case
+from runs.results import Results
+from runs.schema import Case, EnsembleTable
+
+pytestmark = pytest.mark.quick
+
+CASES = Path(case_file.__file__).parent / "cases"
+SERIES = ["kantorovich-4", "kantorovich-5"]
+MODELS = [*SERIES, "beam-fe-tied"]
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    coarse = case_file.select(case_file.load(str(CASES / "coarse.toml")), "", MODELS, None)
+    time = coarse.time.model_copy(update={"duration": 3.0})
+    table = EnsembleTable(members=5, relative=1e-6, seed=3, vary="load")
+    return coarse.model_copy(update={"time": time, "ensemble": table})
+
+
+@pytest.fixture(scope="module")
+def told() -> list[tuple[str, str, float]]:
+    return []
+
+
+@pytest.fixture(scope="module")
+def run(
+    case: Case, told: list[tuple[str, str, float]], tmp_path_factory: pytest.TempPathFactory
+) -> Run:
+    folder = tmp_path_factory.mktemp("mesh")
+    finished = run_case(case, "", None, folder, lambda *what: told.append(what))
+    assert finished is not None
+    return finished
+
+
+@pytest.fixture(scope="module")
+def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
+    write(run, out, out)
+    return out
+
+
+def test_member_0_is_the_trajectory(run: Run) -> None:
+    """Reference: other code path, the model's own run, but for the single precision."""
+    ensembles = run.results.ensembles
+    assert ensembles is not None
+    assert ensembles["model"].values.tolist() == SERIES
+    assert ensembles["tip"].dims == ("model", "member", "time")
+    for place in ("tip", "head"):
+        assert ensembles[place].dtype == np.float32
+        for name in SERIES:
+            own = run.results.trajectories[place].sel(model=name).values
+            found = ensembles[place].sel(model=name).isel(member=0).values
+            np.testing.assert_array_equal(found, own.astype(np.float32))
+
+
+def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
+    """Reference: non-regression; the first press parts members within a second."""
+    models = run.results.summary["models"]
+    assert "ensemble" not in models["beam-fe-tied"]
+    for name in SERIES:
+        ensemble = models[name]["ensemble"]
+        assert 0.5 < ensemble["horizons"]["0.01"] < 1.5
+        peaks = ensemble["slow_peaks"]
+        assert 0.5 < peaks["time"][0] < 0.6
+        assert 0.14 < peaks["height"][0] < 0.17
+        assert peaks["height_spread"][0] < peaks["height_spread"][1] < 0.05
+        assert 0.9 < peaks["period"] < 1.2
+        assert models[name]["seconds"]["ensemble"] > 0.0
+    json.dumps(run.results.summary, allow_nan=False)
+
+
+def test_progress_of_the_ensembles_is_told(run: Run, told: list[tuple[str, str, float]]) -> None:
+    parts = [part for name, stage, part in told if (name, stage) == (SERIES[0], "ensemble")]
+    assert parts == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+
+
+def test_slow_is_below_the_closed_boom(case: Case) -> None:
+    """Reference: other code, the play-free beam's lowest frequency of 2.0852 Hz."""
+    boom = build_boom(case)
+    assert slow_below(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
+    for change in ({"duration": 0.5}, {"output_step": 0.5}):
+        assert slow_below(boom, case.time.model_copy(update=change)) is None
+
+
+def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
+    results = Results.load(folder)
+    assert results.ensembles is not None
+    assert run.results.ensembles is not None
+    xr.testing.assert_equal(results.ensembles, run.results.ensembles)
+    assert results.ensembles["tip"].attrs["units"] == "m"
+    assert results.ensembles.attrs["case_hash"] == results.summary["case_hash"]
+    assert results.case.ensemble == run.results.case.ensemble
+
+
+def test_a_run_without_ensembles_leaves_no_file_of_an_earlier_one(
+    run: Run, case: Case, folder: Path, tmp_path: Path
+) -> None:
+    out = prepare(str(tmp_path / "out"), "")
+    write(run, out, out)
+    assert (out / "ensembles.nc").is_file()
+    short = case.model_copy(
+        update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
+    )
+    without = run_case(short, "", None, tmp_path, lambda *_: None)
+    assert without is not None
+    write(without, out, out)
+    assert not (out / "ensembles.nc").exists()
+    assert Results.load(out).ensembles is None
+
+
+def test_figures_have_bands_and_horizons(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
+    sheets: dict[str, Sheet] = {}
+    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: sheets.update({path.stem: sheet}))
+    captions = {figure.path.stem: figure.caption for figure in draw(run.results, tmp_path)}
+    ensembles = run.results.ensembles
+    assert ensembles is not None
+    for place in ("tip", "head"):
+        assert "5 to 95 % of the 5 members" in captions[place]
+        bands = [b for a in sheets[place].axes for b in a.collections]
+        assert len(bands) == len(SERIES)
+        for name, band in zip(SERIES, bands, strict=True):
+            assert isinstance(band, PolyCollection)
+            members = 1000.0 * ensembles[place].sel(model=name).values
+            low, high = np.percentile(members, (5.0, 95.0), axis=0)
+            (outline,) = band.get_paths()
+            assert outline.vertices[:, 1].max() == pytest.approx(high.max(), rel=1e-6)
+            assert outline.vertices[:, 1].min() == pytest.approx(low.min(), rel=1e-6)
+        marks = {
+            float(np.asarray(line.get_xdata())[0])
+            for axes in sheets[place].axes
+            for line in axes.get_lines()
+            if len(np.asarray(line.get_xdata())) == 2
+        }
+        horizons = [run.results.summary["models"][n]["ensemble"]["horizons"] for n in SERIES]
+        assert marks == {t for h in horizons for t in h.values() if t is not None}
+        assert marks
+
+
+@pytest.mark.parametrize(
+    ("table", "line"),
+    [
+        ("relative = 1e-9", "members: missing; it is the number of runs of each model, the "
+         "unchanged one among them"),
+        ("members = 1", "members: must be a number not less than 2, got 1"),
+        ("members = 20000", "members: must be a number not greater than 10000, got 20000"),
+        ("members = 8\nrelative = 1.0", "relative: must be a number less than 1, got 1.0"),
+        ("members = 8\nseed = -1", "seed: must be a number not less than 0, got -1"),
+        ('members = 8\nvary = "mass"', "vary: must be 'load' or 'clearance', got 'mass'"),
+        ("members = 8\nmember = 3", "member: unknown key; the nearest known one is members"),
+    ],
+)  # fmt: skip
+def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:
+    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
+    path = tmp_path / "case.toml"
+    path.write_text(text.replace("[material]", f"[ensemble]\n{table}\n\n[material]", 1))
+    with pytest.raises(BadInput) as refused:
+        case_file.load(str(path))
+    assert str(refused.value) == f"{path}: ensemble.{line}"
+
+
+def test_the_paper_s_case_asks_for_ensembles() -> None:
+    table = case_file.load(str(CASES / "paper.toml")).ensemble
+    assert table == EnsembleTable(members=32, relative=1e-9, seed=1, vary="load")
+    assert case_file.load(str(CASES / "coarse.toml")).ensemble is None

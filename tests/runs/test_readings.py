@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Readings become the cases that they say, and what a statement contradicts is excluded."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from dynamics.contact import PowerContact
+from runs import case as case_file
+from runs.build import build_boom, contact_laws
+from runs.readings import (
+    COMMON,
+    JUDGED,
+    MODELS,
+    PAPER,
+    Finding,
+    Judged,
+    Reading,
+    all_readings,
+    conclude,
+    judge_exponents,
+    survey,
+)
+from runs.schema import Case, KantorovichTable
+from runs.verdicts import Judgement
+
+LITERAL = Reading(0.007, "literal", "as printed", 2.0)
+RESTORED = Reading(0.007, "restored", "as printed", 2.0)
+
+
+@pytest.fixture
+def paper() -> Case:
+    return case_file.load(str(PAPER))
+
+
+def judged(reading: Reading, peak: float = 0.17, **verdicts: Judgement) -> Judged:
+    """A reading with forced verdicts, reproduced unless given, and one height of all peaks in m."""
+    findings: Mapping[str, Finding] = {
+        key: Finding(verdicts.get(key, "reproduced"), ()) for key in JUDGED
+    }
+    return Judged(reading, findings, dict.fromkeys(MODELS, peak), 0.0)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) -> None:
+    """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand; the slope here is a
+    difference of forces, good to 1e-6.
+    """
+    stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
+    law = PowerContact(stiffness, exponent, 0.0)
+    depth = (2.5e4 / stiffness) ** (1.0 / exponent)
+    assert float(law.force(depth)) == pytest.approx(2.5e4)
+    slope = (law.force(depth * 1.001) - law.force(depth * 0.999)) / (0.002 * depth)
+    assert float(slope) == pytest.approx(1.0e9, rel=1e-6)
+
+
+@pytest.mark.quick
+def test_a_literal_stiffness_is_literal_for_every_exponent() -> None:
+    for reading in all_readings():
+        assert (reading.contact_stiffness == 1.01e6) == (reading.stiffness == "literal")
+
+
+@pytest.mark.quick
+def test_all_combinations_are_read_once() -> None:
+    """Reference: 2 clearances, 2 stiffnesses, 3 bases, 3 exponents."""
+    assert len(set(all_readings())) == len(all_readings()) == 36
+
+
+@pytest.mark.quick
+def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
+    reading = Reading(0.014, "literal", "pinned", 1.5)
+    case = reading.case(paper, 0.5)
+    boom = build_boom(case)
+    assert [model.name for model in case.models] == list(MODELS)
+    for model in case.models:
+        (law,) = contact_laws(boom, model)
+        assert (law.clearance, law.stiffness, law.exponent) == (0.014, 1.01e6, 1.5)
+        assert not isinstance(model, KantorovichTable) or model.base == "pinned"
+    assert [segment.load for segment in boom.segments] == [1.5 * 83.16, 1.5 * 55.07]
+
+
+@pytest.mark.quick
+def test_what_a_statement_contradicts_is_excluded_by_it() -> None:
+    verdicts = [judged(LITERAL, S2="contradicted", S9="contradicted"), judged(RESTORED)]
+    assert [entry.excluded_by() for entry in verdicts] == [["S2", "S9"], []]
+    assert conclude(verdicts) == [
+        "1 of 2 readings are excluded.",
+        "stiffness literal: all excluded, by S2 1 times, S9 1 times.",
+        "stiffness restored: none excluded.",
+    ]
+
+
+@pytest.mark.quick
+def test_an_undecided_statement_excludes_nothing() -> None:
+    verdicts = [judged(LITERAL, S2="undecided"), judged(RESTORED, S4="undecided")]
+    assert conclude(verdicts)[0] == "0 of 2 readings are excluded."
+
+
+@pytest.mark.quick
+def test_a_value_that_is_excluded_in_part_is_said_to_be() -> None:
+    others = [replace(reading, base="pinned") for reading in (LITERAL, RESTORED)]
+    verdicts = [judged(LITERAL, S1="contradicted"), *map(judged, (RESTORED, *others))]
+    assert "stiffness literal: 1 of 2 excluded, by S1 1 times." in conclude(verdicts)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("peak", "verdict"), [(0.171, "reproduced"), (0.1785, "undecided"), (0.34, "contradicted")]
+)
+def test_exponents_are_compared_within_their_group(peak: float, verdict: str) -> None:
+    """Reference: peaks 0.6 %, 5.0 % and 100 % apart by hand, against 5 % ± 0.5 %."""
+    group = [judged(RESTORED), judged(replace(RESTORED, exponent=1.0), peak)]
+    alone = judged(LITERAL, 1.7)
+    *both, other = judge_exponents([*group, alone])
+    for entry in both:
+        assert entry.findings["S9"].verdict == verdict
+        assert entry.findings["S9"].measured == pytest.approx([peak / 0.17 - 1.0])
+    assert other.findings["S9"] == Finding("undecided", ())
+
+
+def test_a_survey_of_two_readings(tmp_path: Path) -> None:
+    """Reference: the literal stiffness gives n = 1 and n = 2 first tip peaks that differ by more
+    than half, and the series stay within a tenth of one another; non-regression.
+    """
+    readings = [replace(LITERAL, exponent=exponent) for exponent in (1.0, 2.0)]
+    found = survey(readings, tmp_path / "out", Console(quiet=True), members=2)
+    for entry in found:
+        assert sorted(entry.findings) == sorted(JUDGED)
+        assert set(COMMON) < set(entry.findings)
+        assert {"S2", "S9"} <= set(entry.excluded_by())
+        assert entry.findings["S9"].measured[0] > 0.5
+        assert max(entry.findings["S2"].measured) < 0.15
+        assert entry.energy_residual < 1e-2
+    data = json.loads((tmp_path / "out" / "readings.json").read_text(encoding="utf-8"))
+    assert [entry["reading"]["exponent"] for entry in data["readings"]] == [1.0, 2.0]
+    assert data["conclusion"] == conclude(found)
+    text = (tmp_path / "out" / "readings.md").read_text(encoding="utf-8")
+    assert text.count("| 7, literal, as printed, ") == 4
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert names == ["readings.json", "readings.md"]
