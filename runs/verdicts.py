@@ -323,7 +323,10 @@ def _s10(run: Run) -> Finding:
         return Finding("reproduced", "This run needed no more.", steps, SERIES_STEPS, "steps")
     if changes > SERIES_STEPS:
         return Finding("contradicted", f"{why} too few.", steps, SERIES_STEPS, "steps")
-    why = f"Equal steps here, adapted ones in the paper: not to be compared. {why} possible."
+    why = (
+        "The step here resolves every contact with its energy, the paper's was adapted to the "
+        f"curve: not to be compared. {why} possible."
+    )
     return Finding("undecided", why, steps, SERIES_STEPS, "steps")
 
 
