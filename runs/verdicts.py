@@ -306,7 +306,7 @@ def _s9(run: Run) -> Finding:
 def _s10(run: Run) -> Finding:
     """Measure: steps of this run, the larger of both series. Threshold: 2000. Fewer here show
     that so few are enough. More do not show that they are needed: the paper's solver adapted
-    its steps, and the splitting keeps them small between contacts too. But each opening or
+    its steps to the curve, and the splitting to the energy of each contact. But each opening or
     closing of a contact takes a step of its own, whatever the solver; more than 2000 of them in
     the seven seconds that the paper's interval has at least would contradict.
     """
