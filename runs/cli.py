@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
@@ -122,6 +123,8 @@ def schema() -> int:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit; whatever the user can mend is one line on stderr."""
+    # The form compiler logs its C compiler's command lines to the root logger.
+    logging.getLogger().addFilter(lambda record: record.levelno >= logging.WARNING)
     command = typer.main.get_command(app)
     try:
         status = command.main(arguments, prog_name="protractile", standalone_mode=False)
