@@ -49,7 +49,7 @@ _FLOWS = np.array([*_A, 0.5 - sum(_A)])
 
 
 @njit(cache=True, nogil=True)
-def _tabulate(omega, load, times, table):  # type: ignore[no-untyped-def]
+def _tabulate(omega: Array, load: Array, times: Array, table: Array) -> None:
     """Flows over some times as (num_times, 5, num_modes): z' = t0 z + t1 v + t2,
     v' = t3 z + t0 v + t4.
     """
@@ -72,7 +72,16 @@ def _tabulate(omega, load, times, table):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _press(z, v, rows, law, table, step, impulses, peaks):  # type: ignore[no-untyped-def]
+def _press(
+    z: Array,
+    v: Array,
+    rows: Array,
+    law: Array,
+    table: Array,
+    step: float,
+    impulses: Array,
+    peaks: Array,
+) -> bool:
     """One step of the fourth-order splitting; tells whether any row still touches."""
     touching = False
     for stage in range(7):
@@ -103,7 +112,17 @@ def _press(z, v, rows, law, table, step, impulses, peaks):  # type: ignore[no-un
 
 
 @njit(cache=True, nogil=True)
-def _march(a, v, system, law, bounds, output_step, step, out, tally):  # type: ignore[no-untyped-def]
+def _march(
+    a: Array,
+    v: Array,
+    system: tuple[Array, ...],
+    law: Array,
+    bounds: tuple[Array, ...],
+    output_step: float,
+    step: float,
+    out: tuple[Array, ...],
+    tally: Array,
+) -> bool:
     """Advance through all output intervals under laws that are not linear.
 
     ``system`` = (omega, load, rows), ``bounds`` = (low, high, shut) of the open rows, ``out`` =
@@ -149,7 +168,7 @@ def _march(a, v, system, law, bounds, output_step, step, out, tally):  # type: i
 
 
 @njit(cache=True, nogil=True)
-def _see(z, regime, law, peaks):  # type: ignore[no-untyped-def]
+def _see(z: Array, regime: tuple[Array, ...], law: Array, peaks: Array) -> None:
     """Keep the largest force of each pressed row."""
     _, _, rows, _, pressed = regime
     for j in range(rows.shape[0]):
@@ -161,7 +180,18 @@ def _see(z, regime, law, peaks):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _march_regime(z, v, regime, law, bounds, output_step, longest, out, place, tally):  # type: ignore[no-untyped-def]
+def _march_regime(
+    z: Array,
+    v: Array,
+    regime: tuple[Array, ...],
+    law: Array,
+    bounds: tuple[Array, ...],
+    output_step: float,
+    longest: float,
+    out: tuple[Array, ...],
+    place: Array,
+    tally: Array,
+) -> int:
     """Advance exactly until a row touches or parts; gives it as :func:`safe_time` does.
 
     0 at the end, and more than all rows if an interval does not end.
@@ -180,7 +210,7 @@ def _march_regime(z, v, regime, law, bounds, output_step, longest, out, place, t
         while place[1] > _SHORTEST * output_step:
             h, leaving = safe_time(z, v, omega, load, rows, low, high, shut, min(longest, place[1]))
             if leaving != 0:
-                return leaving
+                return int(leaving)
             h = min(place[1], max(h, _SHORTEST * output_step))
             for i in range(z.size):
                 w = omega[i]

@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
+
+Array = npt.NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True)
-def flow(z, v, omega, load, time):  # type: ignore[no-untyped-def]
+def flow(z: Array, v: Array, omega: Array, load: Array, time: float) -> None:
     """Move (z, v), each (num_modes,), exactly over ``time`` under a constant load."""
     for i in range(z.size):
         w = omega[i]
@@ -24,7 +27,17 @@ def flow(z, v, omega, load, time):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def safe_time(z, v, omega, load, rows, low, high, shut, longest):  # type: ignore[no-untyped-def]
+def safe_time(
+    z: Array,
+    v: Array,
+    omega: Array,
+    load: Array,
+    rows: Array,
+    low: Array,
+    high: Array,
+    shut: Array,
+    longest: float,
+) -> tuple[float, int]:
     """Longest time in which no gap can leave its interval [low, high], and who is leaving it.
 
     All modes together cannot accelerate a gap by more than A = Σ |B_i| ω_i √(v_i² + ω_i² s_i²),

@@ -77,7 +77,7 @@ def _damped_flow(omega: float, damping: float, step: float) -> Array:
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _forces(a, rows, law, y, force):  # type: ignore[no-untyped-def]
+def _forces(a: Array, rows: Array, law: Array, y: Array, force: Array) -> bool:
     """Relative displacements and contact forces of every row; whether any row touches."""
     touching = False
     for j in range(rows.shape[0]):
@@ -97,7 +97,7 @@ def _forces(a, rows, law, y, force):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _pressed(y, law, j):  # type: ignore[no-untyped-def]
+def _pressed(y: float, law: Array, j: int) -> float:
     """1 where row j presses above, -1 below, 0 where it is open."""
     if y > law[2, j] and law[0, j] > 0.0:
         return 1.0
@@ -107,7 +107,7 @@ def _pressed(y, law, j):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _kick(v, rows, force, duration):  # type: ignore[no-untyped-def]
+def _kick(v: Array, rows: Array, force: Array, duration: float) -> None:
     for j in range(rows.shape[0]):
         if force[j] != 0.0:
             impulse = duration * force[j]
@@ -116,7 +116,7 @@ def _kick(v, rows, force, duration):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _modal_energy(a, v, omega2):  # type: ignore[no-untyped-def]
+def _modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
     kinetic = 0.0
     strain = 0.0
     for i in range(a.size):
@@ -126,7 +126,7 @@ def _modal_energy(a, v, omega2):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _flow(a, v, flow):  # type: ignore[no-untyped-def]
+def _flow(a: Array, v: Array, flow: Array) -> None:
     for i in range(a.size):
         ai = a[i]
         vi = v[i]
@@ -135,7 +135,9 @@ def _flow(a, v, flow):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _closing_bounds(a, v, system, duration, bounds):  # type: ignore[no-untyped-def]
+def _closing_bounds(
+    a: Array, v: Array, system: tuple[Array, ...], duration: float, bounds: Array
+) -> None:
     """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
 
     A mode's amplitude √(v² + ω² s²) about its rest position does not grow; rigid modes fall.
@@ -156,7 +158,7 @@ def _closing_bounds(a, v, system, duration, bounds):  # type: ignore[no-untyped-
 
 
 @njit(cache=True, nogil=True)
-def _stride(y, law, bounds, step, left):  # type: ignore[no-untyped-def]
+def _stride(y: Array, law: Array, bounds: Array, step: float, left: int) -> int:
     """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within."""
     free = float(left)
     for j in range(y.size):
@@ -172,7 +174,17 @@ def _stride(y, law, bounds, step, left):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _march(a, v, flows, system, law, step, substeps, out, tally):  # type: ignore[no-untyped-def]
+def _march(
+    a: Array,
+    v: Array,
+    flows: Array,
+    system: tuple[Array, ...],
+    law: Array,
+    step: float,
+    substeps: int,
+    out: tuple[Array, ...],
+    tally: Array,
+) -> None:
     """Advance by ``len(out[0])`` output intervals and record each.
 
     ``system`` = (omega2, load, damping, rows); ``law`` (4, rows) = k above, k below, Δ, n.
