@@ -239,10 +239,10 @@ class _Pen:
         return self._finish(sheet, axes, "energy-residual", title, caption)
 
     def _reach(self, place: str) -> str:
-        """How far the models deflect at one place."""
+        """How far the models deflect at one place, upwards or downwards."""
         parts = [
-            f"{MILLI * _highest([_highest(self._of(name, place)) for name in names]):.0f} mm{what}"
-            for names, what in ((self.with_play, " with play"), (self.play_free, " without"))
+            f"{MILLI * _farthest([_farthest(self._of(name, place)) for name in names]):.0f} mm{how}"
+            for names, how in ((self.with_play, " with play"), (self.play_free, " without"))
             if names
         ]
         return "up to " + ", ".join(parts)
@@ -322,6 +322,12 @@ def _sheet(panels: int, height: float) -> tuple[Sheet, list[Axes]]:
     FigureCanvasAgg(sheet)
     column = sheet.subplots(panels, 1, sharex=True, squeeze=False)
     return sheet, list(column[:, 0])
+
+
+def _farthest(values: Sequence[float] | Array) -> float:
+    """The finite one that is farthest from zero, with its sign, NaN if there are none."""
+    finite = np.asarray(values)[np.isfinite(values)]
+    return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
 
 
 def _highest(values: Sequence[float] | Array) -> float:

@@ -176,3 +176,14 @@ def test_more_models_than_colours_still_differ() -> None:
 )
 def test_powers_of_ten_are_set_as_such(number: float, digits: int, expected: str) -> None:
     assert theme.scientific(number, digits) == expected
+
+
+def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path) -> None:
+    """A boom under its weight deflects downwards: the title tells how far, with the sign."""
+    down = results.trajectories.copy(deep=True)
+    down["tip"] *= -1.0
+    upwards, downwards = (
+        next(figure.title for figure in draw(run, tmp_path) if figure.path.stem == "tip")
+        for run in (results, replace(results, trajectories=down))
+    )
+    assert downwards == upwards.replace("up to ", "up to -").replace("play, ", "play, -")
