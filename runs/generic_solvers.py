@@ -38,7 +38,7 @@ def compiled_rates(system: GapSystem) -> Rates:
     n = system.num_modes
 
     @njit
-    def rates(t, state):  # type: ignore[no-untyped-def]
+    def rates(t: float, state: Array) -> Array:
         out = np.empty(2 * n)
         for i in range(n):
             out[i] = state[n + i]

@@ -69,11 +69,11 @@ def render(results: Results, figures: Sequence[Figure], snapshots: Sequence[Path
         lstrip_blocks=True,
     )
     environment.filters |= {"data_uri": _data_uri, "caption": _snapshot_caption}
-    judged = [verdict.verdict for verdict in results.verdicts]
+    judged: list[str] = [verdict.verdict for verdict in results.verdicts]
     return environment.get_template("report.html").render(
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
-        counts={kind: judged.count(kind) for kind in _MARKS},  # type: ignore[arg-type]
+        counts={kind: judged.count(kind) for kind in _MARKS},
         marks=_MARKS,
         verdicts=[
             (v, _measured(v.measured, v), _measured(v.threshold, v)) for v in results.verdicts

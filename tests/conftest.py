@@ -3,6 +3,13 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 from hypothesis import settings
 
@@ -63,3 +70,32 @@ def paper_boom(steel: Material) -> Boom:
 def paper_law() -> PowerContact:
     """(4) with the paper's k, n and Δ."""
     return PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
+
+
+@pytest.fixture
+def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs a Python program with its arguments on two ranks in an empty folder."""
+    if shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    # A test worker that has entered MPI by itself must not pass its own rank on.
+    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
+    environment = {
+        **outside,
+        "PYTHONPATH": str(Path(__file__).parents[1]),
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+
+    def run(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["mpirun", "-n", "2", "--oversubscribe", sys.executable, "-c", program, *arguments],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+
+    return run

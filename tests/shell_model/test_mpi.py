@@ -4,20 +4,14 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import subprocess
-import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from shell_model.eigenmodes import natural_frequencies
 from shell_model.segment_shell import SegmentShell
-
-ROOT = Path(__file__).parents[2]
 
 _ON_EACH_RANK = """
 import json
@@ -31,26 +25,12 @@ if comm.rank == 0:
 """
 
 
-def test_two_ranks_give_the_serial_frequencies(box_shell: Callable[..., SegmentShell]) -> None:
+def test_two_ranks_give_the_serial_frequencies(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+    box_shell: Callable[..., SegmentShell],
+) -> None:
     """Reference: the serial run, to 1e-8."""
-    if shutil.which("mpirun") is None:
-        pytest.skip("mpirun is not installed")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(ROOT),
-        "OMP_NUM_THREADS": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    }
-    done = subprocess.run(
-        ["mpirun", "-n", "2", sys.executable, "-c", _ON_EACH_RANK],
-        capture_output=True,
-        text=True,
-        env=environment,
-        cwd=ROOT,
-        timeout=300,
-        check=False,
-    )
+    done = two_ranks(_ON_EACH_RANK)
     assert done.returncode == 0, done.stderr
     answer = json.loads(done.stdout.strip().splitlines()[-1])
     assert answer["ranks"] == 2

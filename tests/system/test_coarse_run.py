@@ -99,8 +99,8 @@ def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
 def test_snapshots_are_made_again_at_given_times(whole: Path, tmp_path: Path) -> None:
     again = tmp_path / "out"
     shutil.copytree(whole, again)
-    if not (again / "snapshots").exists():
-        pytest.skip("no snapshots can be made here")
+    if not can_draw():
+        pytest.skip("VTK finds no working OpenGL")
     assert protractile("snapshot", again, "--time", "0.25") == 0
     names = {path.name for path in (again / "snapshots").iterdir()}
     assert "boom-0.25s.png" in names

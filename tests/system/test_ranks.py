@@ -4,17 +4,14 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.system.run_folder import COARSE, ROOT, check_common_files, protractile, trajectories
+from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
 
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -43,33 +40,6 @@ with _all_ranks_end_together(comm):
 """
 
 
-@pytest.fixture
-def two_ranks(tmp_path: Path) -> Ranks:
-    """Runs a command on two ranks in an empty folder."""
-    if shutil.which("mpirun") is None:
-        pytest.skip("mpirun is not installed")
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(ROOT),
-        "OMP_NUM_THREADS": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    }
-
-    def run(*arguments: str, program: str = COMMAND) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            ["mpirun", "-n", "2", "--oversubscribe", sys.executable, "-c", program, *arguments],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
-
-    return run
-
-
 def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
     """What the command says, without what the launcher adds."""
     return [line for line in answer.stderr.splitlines() if line.startswith("protractile: ")]
@@ -90,7 +60,7 @@ def test_two_ranks_run_a_shell_as_one_does(
     models = "kantorovich-4,shell"
     monkeypatch.setattr("runs.output.render_snapshots", lambda *arguments: [])
     assert protractile("run", case, "--models", models, "--out", tmp_path / "one") == 0
-    answer = two_ranks("run", "case.toml", "--models", models, "--out", "two")
+    answer = two_ranks(COMMAND, "run", "case.toml", "--models", models, "--out", "two")
     assert (answer.returncode, complaints(answer)) == (0, [])
     assert answer.stdout.count("two/report.html") == 1
     one, two = trajectories(tmp_path / "one"), trajectories(tmp_path / "two")
@@ -103,7 +73,7 @@ def test_two_ranks_run_a_shell_as_one_does(
 
 
 def test_two_ranks_run_beams_once(two_ranks: Ranks, tmp_path: Path) -> None:
-    answer = two_ranks("run", COARSE, "--models", "kantorovich-4", "--out", "out")
+    answer = two_ranks(COMMAND, "run", COARSE, "--models", "kantorovich-4", "--out", "out")
     assert (answer.returncode, complaints(answer)) == (0, [])
     assert answer.stdout.count("out/report.html") == 1
     check_common_files(tmp_path / "out", ["kantorovich-4"])
@@ -128,7 +98,7 @@ def test_two_ranks_run_beams_once(two_ranks: Ranks, tmp_path: Path) -> None:
 def test_a_mistake_ends_both_ranks_with_one_line(
     two_ranks: Ranks, arguments: list[str], status: int, line: str
 ) -> None:
-    answer = two_ranks(*arguments)
+    answer = two_ranks(COMMAND, *arguments)
     assert (answer.returncode, complaints(answer)) == (status, [line])
 
 
@@ -138,7 +108,9 @@ def test_numerics_that_fail_on_one_rank_end_both(two_ranks: Ranks, tmp_path: Pat
     text = Path(COARSE).read_text(encoding="utf-8")
     text = text.replace("duration = 0.6", "duration = 0.6\nstep = 1e-3")
     (tmp_path / "case.toml").write_text(text, encoding="utf-8")
-    answer = two_ranks("run", "case.toml", "--models", "kantorovich-4,shell", "--out", "out")
+    answer = two_ranks(
+        COMMAND, "run", "case.toml", "--models", "kantorovich-4,shell", "--out", "out"
+    )
     assert answer.returncode == 3
     (line,) = complaints(answer)
     assert line.startswith("protractile: case.toml: model[1]: the energy residual is ")
@@ -147,6 +119,6 @@ def test_numerics_that_fail_on_one_rank_end_both(two_ranks: Ranks, tmp_path: Pat
 
 def test_a_rank_that_fails_alone_ends_both(two_ranks: Ranks) -> None:
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
-    answer = two_ranks(program=LONELY_FAILURE)
+    answer = two_ranks(LONELY_FAILURE)
     assert answer.returncode == 3
     assert complaints(answer) == ["protractile: case.toml: model[1]: no number is finite"]
