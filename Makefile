@@ -4,11 +4,12 @@
 # pinned Python packages in .venv. If a conda environment is active whose Python has DOLFINx (see
 # environment.yml), that one is used and nothing but protractile itself is installed in it.
 
-VERIFY_CASES := paper
+VERIFY_CASES := paper paper-friction three-segments spatial
 
 ROOMS := geometry dynamics beam_model shell_model runs
 SOURCES := pyproject.toml $(foreach room,$(ROOMS),$(wildcard $(room)/*.py)) $(wildcard runs/templates/*)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
+READINGS := runs/out/readings/readings.json
 
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
 export OMP_NUM_THREADS ?= 1
@@ -26,16 +27,15 @@ BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots bench readings test quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots bench readings convergence test quick lint matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
 
-verify: $(REPORTS) ## run the paper's cases where they are not up to date, print the verdicts
-	@status=0; \
-	for case in $(VERIFY_CASES); do $(BIN)/protractile report runs/out/$$case || status=1; done; \
-	exit $$status
+verify: $(REPORTS) $(READINGS) ## run the cases where they are not up to date, print the verdicts
+	@cp $(READINGS) runs/out/paper/
+	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 
 snapshots: $(REPORTS) ## pictures of the verify cases
 	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
@@ -45,6 +45,9 @@ bench: $(READY) ## what the integrators cost, into runs/out/bench
 
 readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
 	$(BIN)/python -m runs.readings
+
+convergence: $(READY) ## how results settle with steps, terms, elements, meshes, into runs/out/convergence
+	$(BIN)/python -m runs.convergence
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
@@ -76,6 +79,10 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@rm -f $@
 	@echo "running the models of $< ..."
 	@$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
+
+$(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
+	@echo "surveying readings of $< ..."
+	@$(BIN)/python -m runs.readings >/dev/null
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -3,7 +3,9 @@
 
 Both have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s h²)
 the shear-flexible shape functions solve the homogeneous Timoshenko equations (Friedman and
-Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′.
+Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′. Beside a second such element
+for the other plane, a linear one for the twist makes the frame element in space (Przemieniecki
+1968), less the stretching of the axis.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from beam_model.segment_model import SegmentModel
+from beam_model.component import Component, Motion, SegmentModel, products
 from geometry.boom import SAME_PLACE, BoomError, Segment
 
 Array = npt.NDArray[np.float64]
@@ -35,10 +37,11 @@ def finite_element_segment(
     """Assemble one segment.
 
     Args:
-        segment: a beam; its supports get nodes.
+        segment: a beam; its supports and masses get nodes. With lateral numbers it deflects
+            along y and twists as well.
         element_length: largest length of an element in m.
         breaks: further x in m that get nodes: stations.
-        theory: ``timoshenko`` takes the shear area from the segment's box section.
+        theory: ``timoshenko`` takes the shear areas from the segment's box section.
         rotary_inertia: keep I_p of (3).
 
     Raises:
@@ -51,9 +54,18 @@ def finite_element_segment(
             "area; give height_to_width or section",
         )
     nodes = _nodes(segment, element_length, breaks)
+    components: dict[Motion, Component] = {"z": _bending(segment, nodes, theory, rotary_inertia)}
+    if segment.lateral is not None:
+        components["y"] = _bending(segment.turned(), nodes, theory, rotary_inertia)
+        components["twist"] = _twist(segment, nodes)
+    return SegmentModel(components)
+
+
+def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
+    """The deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
-    load = np.zeros(num_dofs)
+    unit_load = np.zeros(num_dofs)
     points, weights = _GAUSS
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(2 * k, 2 * k + 4)
@@ -61,41 +73,84 @@ def finite_element_segment(
         xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
         w, slope = _deflection(xi, h, phi)
         theta, curvature = _rotation(xi, h, phi)
-        stiffness[dofs, dofs] += segment.bending_stiffness * _products(curvature, weight)
+        stiffness[dofs, dofs] += segment.bending_stiffness * products(curvature, weight)
         if phi > 0.0:
             shear_stiffness = 12.0 * segment.bending_stiffness / (phi * h**2)
-            stiffness[dofs, dofs] += shear_stiffness * _products(slope - theta, weight)
-        mass[dofs, dofs] += segment.mass_per_length * _products(w, weight)
+            stiffness[dofs, dofs] += shear_stiffness * products(slope - theta, weight)
+        mass[dofs, dofs] += segment.mass_per_length * products(w, weight)
         if rotary_inertia:
-            mass[dofs, dofs] += segment.rotary_inertia * _products(theta, weight)
-        damping[dofs, dofs] += segment.viscous_damping * _products(w, weight)
-        load[dofs] += segment.load * (w @ weight)
+            mass[dofs, dofs] += segment.rotary_inertia * products(theta, weight)
+        damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
+        unit_load[dofs] += w @ weight
 
-    held = [2 * int(np.argmin(np.abs(nodes - x))) for x in segment.supports]
+    held = []
+    for support in segment.supports:
+        dof = 2 * _nearest(nodes, support.x)
+        if support.stiffness is not None:
+            stiffness[dof, dof] += support.stiffness
+        else:
+            held += [dof, dof + 1] if support.kind == "clamped" else [dof]
+    for point in segment.masses:
+        dof = 2 * _nearest(nodes, point.x)
+        mass[dof, dof] += point.mass
     free = np.setdiff1d(np.arange(num_dofs), held)
 
     def deflection(x: float) -> Array:
-        k = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
-        h = nodes[k + 1] - nodes[k]
+        k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
         shapes, _ = _deflection(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
         row[2 * k : 2 * k + 4] = shapes
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
-    return SegmentModel(
+    return Component(
         stiffness=stiffness[block],
         mass=mass[block],
         damping=damping[block],
-        load=load[free],
-        deflection=deflection,
+        load=segment.load * unit_load[free],
+        unit_load=unit_load[free],
+        at=deflection,
         rigid_modes=segment.rigid_modes,
+    )
+
+
+def _twist(segment: Segment, nodes: Array) -> Component:
+    """The turn about x, linear from node to node, which is exact at the nodes in statics."""
+    lateral = segment.lateral
+    assert lateral is not None
+    stiffness, mass = (np.zeros((nodes.size, nodes.size)) for _ in range(2))
+    unit_load = np.zeros(nodes.size)
+    twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
+    for k, h in enumerate(np.diff(nodes)):
+        dofs = slice(k, k + 2)
+        stiffness[dofs, dofs] += twisting_stiffness / h * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        mass[dofs, dofs] += lateral.polar_inertia * h / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+        unit_load[dofs] += 0.5 * h
+    held = [_nearest(nodes, support.x) for support in segment.supports]
+    free = np.setdiff1d(np.arange(nodes.size), held)
+
+    def twist(x: float) -> Array:
+        k, h = _element(nodes, x)
+        row = np.zeros(nodes.size)
+        row[k : k + 2] = (nodes[k + 1] - x) / h, (x - nodes[k]) / h
+        return np.asarray(row[free])
+
+    block = np.ix_(free, free)
+    return Component(
+        stiffness=stiffness[block],
+        mass=mass[block],
+        damping=np.zeros((free.size, free.size)),
+        load=np.zeros(free.size),
+        unit_load=unit_load[free],
+        at=twist,
+        rigid_modes=segment.rigid_twists,
     )
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
     """Equal elements between the places that must be nodes."""
-    inside = [x for x in (*segment.supports, *breaks) if segment.holds(x)]
+    own = [support.x for support in segment.supports] + [mass.x for mass in segment.masses]
+    inside = [x for x in (*own, *breaks) if segment.holds(x)]
     places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
     places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE])]
     spans = [
@@ -103,6 +158,16 @@ def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> 
         for a, b in pairwise(places)
     ]
     return np.concatenate([*spans, [segment.end]])
+
+
+def _nearest(nodes: Array, x: float) -> int:
+    return int(np.argmin(np.abs(nodes - x)))
+
+
+def _element(nodes: Array, x: float) -> tuple[int, float]:
+    """The element that holds x, and its length in m."""
+    k = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
+    return k, float(nodes[k + 1] - nodes[k])
 
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
@@ -153,8 +218,3 @@ def _rotation(xi: Array, h: float, phi: float) -> tuple[Array, Array]:
         ]
     )
     return theta / (1.0 + phi), curvature / (1.0 + phi)
-
-
-def _products(values: Array, weights: Array) -> Array:
-    """∫ f_i f_j dx over one element from values at its quadrature points."""
-    return (values * weights) @ values.T

@@ -3,22 +3,120 @@
 
 The function spaces are the paper's (29)–(31). Their printed bases are powers of x, singular
 to working precision from about ten terms on; here the same spaces are spanned by Legendre
-polynomials times the lowest function, and the modes come out the same.
+polynomials times the lowest function, and the modes come out the same. The complete base takes
+all polynomials that the supports admit, whatever the supports are.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import Legendre, Polynomial
+from scipy.linalg import null_space, rq
 
-from beam_model.segment_model import SegmentModel
-from geometry.boom import Segment
+from beam_model.component import Component, Motion, SegmentModel, products
+from geometry.boom import BoomError, Segment
 
 Array = npt.NDArray[np.float64]
 Base = Literal["as printed", "pinned", "complete"]
+
+
+def kantorovich_segment(
+    segment: Segment, terms: int, base: Base, rotary_inertia: bool
+) -> SegmentModel:
+    """A segment in the paper's function spaces, in space with the same ones along y.
+
+    Args:
+        segment: a beam; with lateral numbers it deflects along y and twists as well.
+        terms: number of functions of each component.
+        base: which reading of (29) and (31); the twist is not in the paper and always complete.
+        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+
+    Raises:
+        BoomError: clamped or elastic supports with another base than the complete one.
+    """
+    components: dict[Motion, Component] = {
+        "z": kantorovich_bending(segment, terms, base, rotary_inertia)
+    }
+    if segment.lateral is not None:
+        components["y"] = kantorovich_bending(segment.turned(), terms, base, rotary_inertia)
+        components["twist"] = kantorovich_twist(segment, terms)
+    return SegmentModel(components)
+
+
+def kantorovich_bending(
+    segment: Segment, terms: int, base: Base, rotary_inertia: bool
+) -> Component:
+    """Matrices (23)–(26) of one segment's deflection along z; arguments as above."""
+    basis = _Basis(segment, bending_basis(segment, terms, base))
+    # The printed base holds the slope at the first support too.
+    printed = int(bool(segment.supports) and base == "as printed")
+    stiffness = segment.bending_stiffness * products(basis.curvature, basis.weights)
+    mass = segment.mass_per_length * products(basis.value, basis.weights)
+    if rotary_inertia:
+        mass += segment.rotary_inertia * products(basis.slope, basis.weights)
+    for support in segment.supports:
+        if support.stiffness is not None:
+            row = basis.at(support.x)
+            stiffness += support.stiffness * np.outer(row, row)
+    for point in segment.masses:
+        row = basis.at(point.x)
+        mass += point.mass * np.outer(row, row)
+    return Component(
+        stiffness=stiffness,
+        mass=mass,
+        damping=segment.viscous_damping * products(basis.value, basis.weights),
+        load=segment.load * basis.integral,
+        unit_load=basis.integral,
+        at=basis.at,
+        rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
+    )
+
+
+def kantorovich_twist(segment: Segment, terms: int) -> Component:
+    """The twist of a segment with lateral numbers, held at all supports."""
+    lateral = segment.lateral
+    assert lateral is not None
+    held = [(support.x, 0) for support in segment.supports]
+    basis = _Basis(segment, complete_basis(segment, held, terms))
+    twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
+    return Component(
+        stiffness=twisting_stiffness * products(basis.slope, basis.weights),
+        mass=lateral.polar_inertia * products(basis.value, basis.weights),
+        damping=np.zeros((terms, terms)),
+        load=np.zeros(terms),
+        unit_load=basis.integral,
+        at=basis.at,
+        rigid_modes=segment.rigid_twists,
+    )
+
+
+def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
+    """Functions of the deflection in one reading of (29)–(31).
+
+    Raises:
+        BoomError: clamped or elastic supports with another base than the complete one.
+    """
+    if base == "complete":
+        held = [
+            (support.x, order)
+            for support in segment.supports
+            if support.stiffness is None
+            for order in range(2 if support.kind == "clamped" else 1)
+        ]
+        return complete_basis(segment, held, terms)
+    if any(s.kind == "clamped" or s.stiffness is not None for s in segment.supports):
+        raise BoomError(
+            "segment",
+            f"{segment.name!r} has clamped or elastic supports, for which the functions {base!r} "
+            "have no form; use base = 'complete'",
+        )
+    if segment.supports:
+        return outer_basis(segment, terms, base)
+    return inner_basis(segment, terms)
 
 
 def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
@@ -30,64 +128,82 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
         terms: how many: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
         base: as printed, the slope vanishes at x0 too; the others leave it free.
     """
-    supports = sorted(segment.supports)
+    supports = sorted(support.x for support in segment.supports)
     roots = [supports[0], *supports] if base == "as printed" else supports
     return _times_legendre(segment, Polynomial.fromroots(roots), terms)
 
 
-def inner_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
+def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
     """Functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
-    The printed functions lack one: all of them keep x4 on the tangent at x2, and the series does
-    not converge to a free beam however many terms it has. One power less makes them complete.
+    They lack one: all of them keep x4 on the tangent at x2, and the series does not converge to
+    a free beam however many terms it has.
 
     Args:
         segment: runs from x2 to x4.
         terms: how many; the first two are the rigid motions.
-        base: complete, the powers of x − x2 behind the rigid motions start at one; otherwise at
-            two, as printed.
     """
     rigid = _times_legendre(segment, Polynomial([1.0]), min(terms, 2))
-    powers = 1 if base == "complete" else 2
-    bending = Polynomial.fromroots([segment.start] * powers + [segment.end])
+    bending = Polynomial.fromroots([segment.start, segment.start, segment.end])
     return rigid + _times_legendre(segment, bending, terms - 2)
 
 
-def kantorovich_segment(
-    segment: Segment, terms: int, base: Base, rotary_inertia: bool
-) -> SegmentModel:
-    """Matrices (23)–(26) of one segment in the paper's function space.
+def complete_basis(
+    segment: Segment, held: Sequence[tuple[float, int]], terms: int
+) -> list[Legendre]:
+    """Polynomials of rising degree whose held values and slopes vanish, orthonormal.
 
     Args:
-        segment: a beam.
-        terms: number of functions.
-        base: which reading of (29) and (31).
-        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+        segment: where they are orthonormal, over its length.
+        held: (x in m, 0 for the value or 1 for the slope), each once.
+        terms: how many.
     """
-    functions = outer_basis if segment.supports else inner_basis
-    basis = functions(segment, terms, base)
-    # Gauss's rule with as many points as the highest degree is exact for products of two.
-    degree = max(function.degree() for function in basis)
-    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
-    x = segment.start + 0.5 * segment.length * (nodes + 1.0)
-    weights = 0.5 * segment.length * weights
-    value, slope, curvature = (
-        np.array([function.deriv(order)(x) if order else function(x) for function in basis])
-        for order in (0, 1, 2)
-    )
-    # The printed base holds the slope at the first support too.
-    held = len(segment.supports) + int(bool(segment.supports) and base == "as printed")
-    mass = segment.mass_per_length * _products(value, weights)
-    if rotary_inertia:
-        mass = mass + segment.rotary_inertia * _products(slope, weights)
-    return SegmentModel(
-        stiffness=segment.bending_stiffness * _products(curvature, weights),
-        mass=mass,
-        damping=segment.viscous_damping * _products(value, weights),
-        load=segment.load * (value @ weights),
-        deflection=lambda place: np.array([function(place) for function in basis]),
-        rigid_modes=min(max(0, 2 - held), terms),
-    )
+    domain = [segment.start, segment.end]
+    count = terms + len(held)
+    # Legendre's polynomials of unit norm: ∫ P_k² dx = L/(2k + 1).
+    whole = [
+        np.sqrt((2 * k + 1) / segment.length) * Legendre.basis(k, domain=domain)
+        for k in range(count)
+    ]
+    admitted = np.eye(count)
+    if held:
+        conditions = np.array(
+            [[(f.deriv() if order else f)(x) for f in whole] for x, order in held]
+        )
+        admitted = null_space(conditions / np.linalg.norm(conditions, axis=1)[:, None])
+        # Turned among themselves so that the degree rises by one from each to the next: the low
+        # modes then keep their digits beside the stiff ones of high degree.
+        _, turn = rq(admitted[len(held) :])
+        admitted = np.triu(admitted @ turn.T, -len(held))
+    coefficients = np.array([f.coef[-1] for f in whole])
+    return [Legendre(coefficients * column, domain=domain) for column in admitted.T]
+
+
+class _Basis:
+    """Functions on a segment, at the points of a rule that is exact for products of two.
+
+    Attributes:
+        value, slope, curvature: (num_functions, num_points).
+        weights: (num_points,) in m.
+        integral: (num_functions,) ∫ φ_i dx.
+    """
+
+    def __init__(self, segment: Segment, functions: Sequence[Legendre]) -> None:
+        self.functions = functions
+        # Gauss's rule with as many points as the highest degree and one is exact.
+        degree = max(function.degree() for function in functions)
+        nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+        x = segment.start + 0.5 * segment.length * (nodes + 1.0)
+        self.weights = 0.5 * segment.length * weights
+        self.value, self.slope, self.curvature = (
+            np.array([(f.deriv(order) if order else f)(x) for f in functions])
+            for order in (0, 1, 2)
+        )
+        self.integral = self.value @ self.weights
+
+    def at(self, x: float) -> Array:
+        """(num_functions,) values at one place in m."""
+        return np.array([function(x) for function in self.functions])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:
@@ -96,8 +212,3 @@ def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Lege
     lowest = seed.convert(kind=Legendre, domain=domain)
     functions = [lowest * Legendre.basis(k, domain=domain) for k in range(terms)]
     return [function / np.abs(function.coef).max() for function in functions]
-
-
-def _products(values: Array, weights: Array) -> Array:
-    """∫ f_i f_j dx from values at quadrature points."""
-    return (values * weights) @ values.T

@@ -1,133 +1,116 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A segment as a beam in finitely many coordinates, and its way to modal ones.
+"""Segments as beams, and their way to a gap system.
 
-Kantorovich series and beam finite elements both end here; from here on they are the same.
+Kantorovich series and beam finite elements both end here; from here on they are the same. So
+are the flat boom and the one in space, which has more components and more pads.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import block_diag, eigh, null_space
 
+from beam_model.boom_modes import BoomModes
+from beam_model.component import SegmentModel
 from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation
+from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from geometry.boom import Boom, Joint
+from geometry.boom import Boom, Direction
+from geometry.pads import Pad, pads
 
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class SegmentModel:
-    """M q̈ + C q̇ + K q = f, with a rule that reads the deflection anywhere.
-
-    Args:
-        stiffness, mass, damping: (num_dofs, num_dofs).
-        load: (num_dofs,).
-        deflection: x in m → (num_dofs,) row that reads the deflection there.
-        rigid_modes: how many motions the supports leave free of strain.
-    """
-
-    stiffness: Array
-    mass: Array
-    damping: Array
-    load: Array
-    deflection: Callable[[float], Array]
-    rigid_modes: int
-
-
-@dataclass(frozen=True, slots=True)
-class Modes:
-    """Mass-normalised modes: ω² in rad²/s², rising, and the shapes (num_dofs, num_modes)."""
-
-    omega2: Array
-    shapes: Array
-
-
-def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """All natural modes of (K, M), rigid ones with ω² exactly 0."""
-    # A common scale per coordinate: rotations and deflections differ by orders of magnitude.
-    scale = 1.0 / np.sqrt(np.diag(mass))
-    omega2, shapes = eigh(stiffness * np.outer(scale, scale), mass * np.outer(scale, scale))
-    omega2[:rigid_modes] = 0.0
-    return Modes(omega2, shapes * scale[:, None])
-
-
 def gap_system(
-    boom: Boom, models: Sequence[SegmentModel], laws: Sequence[PowerContact]
+    boom: Boom,
+    models: Sequence[SegmentModel],
+    laws: Sequence[PowerContact],
+    lateral_laws: Sequence[PowerContact] = (),
 ) -> GapSystem:
-    """Segments side by side in modal coordinates, coupled by contact alone.
+    """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
 
     Args:
-        boom: where the joints are.
+        boom: its joints, loads and stops.
         models: one for each segment.
-        laws: one for each joint.
+        laws: one for each joint, along z.
+        lateral_laws: one for each joint, along y; none for a flat boom.
     """
-    modes = [natural_modes(m.stiffness, m.mass, m.rigid_modes) for m in models]
-    shapes = block_diag(*(mode.shapes for mode in modes))
-    contacts = [
-        (_relative(boom, models, joint, x) @ shapes, x, law)
-        for joint, law in zip(boom.joints, laws, strict=True)
-        for x in joint.stations
-    ]
+    modes = BoomModes(boom, models)
+    laws_along = {"z": laws, "y": lateral_laws}
+    contacts: list[tuple[Array, PowerContact, int]] = []
+    friction_rows: list[Array] = []
+    frictions: list[DryFriction] = []
+    for pad in pads(boom):
+        law = _law_of(pad, laws_along[pad.direction][pad.number])
+        if law is None:
+            continue
+        if pad.joint.friction > 0.0:
+            friction_rows.append(_relative(modes, pad, pad.rubs))
+            pressed_by = () if pad.joint.normal_forces else (len(contacts),)
+            frictions.append(
+                DryFriction(pad.joint.friction, pad.station, pad.prescribed, pressed_by)
+            )
+        contacts.append((_relative(modes, pad, pad.direction), law, pad.station))
+    stations = boom.stations
+    for station, stop in enumerate(boom.stops, start=len(stations) - len(boom.stops)):
+        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
+        contacts.append((modes.displacement(stop.segment, stop.x, "z"), law, station))
     return GapSystem(
-        omega2=np.concatenate([mode.omega2 for mode in modes]),
-        load=np.concatenate([m.load for m in models]) @ shapes,
-        rows=np.array([row for row, _, _ in contacts]).reshape(-1, shapes.shape[1]),
-        laws=[law for _, _, law in contacts],
-        station_of_row=np.arange(len(contacts)),
-        stations=[x for _, x, _ in contacts],
-        observers=_observers(boom, models, shapes),
-        damping=_modal_damping(models, shapes),
+        omega2=modes.omega2,
+        load=modes.load,
+        rows=np.array([row for row, _, _ in contacts]).reshape(-1, modes.omega2.size),
+        laws=[law for _, law, _ in contacts],
+        station_of_row=np.array([station for _, _, station in contacts], dtype=np.int64),
+        stations=[x for x, _ in stations],
+        observers=_observers(boom, modes),
+        damping=modes.damping,
+        friction_rows=np.array(friction_rows).reshape(-1, modes.omega2.size),
+        frictions=frictions,
+        excitations=_excitations(boom, modes),
+        station_directions=[direction for _, direction in stations],
     )
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
-    """The play-free boom: every joint's segments deflect alike at its stations."""
-    ties = np.array(
-        [_relative(boom, models, joint, x) for joint in boom.joints for x in joint.stations]
-    )
-    stiffness = block_diag(*(m.stiffness for m in models))
-    free = null_space(ties) if ties.size else np.eye(len(stiffness))
-    rigid = max(0, sum(m.rigid_modes for m in models) - len(ties))
-    mass = block_diag(*(m.mass for m in models))
-    modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid)
-    shapes = free @ modes.shapes
-    return GapSystem(
-        omega2=modes.omega2,
-        load=np.concatenate([m.load for m in models]) @ shapes,
-        rows=np.zeros((0, modes.omega2.size)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[],
-        observers=_observers(boom, models, shapes),
-        damping=_modal_damping(models, shapes),
-    )
+    """The play-free boom: every joint's segments move alike at its stations."""
+    tied = tuple(replace(joint, tied=True) for joint in boom.joints)
+    return gap_system(replace(boom, joints=tied), models, ())
 
 
-def _place(models: Sequence[SegmentModel], segment: int, x: float) -> Array:
-    """Row over all coordinates that reads one segment's deflection at x."""
-    rows = [np.zeros(len(m.load)) for m in models]
-    rows[segment] = models[segment].deflection(x)
-    return np.concatenate(rows)
+def _law_of(pad: Pad, law: PowerContact) -> PowerContact | None:
+    """A pad's part of its joint's law; None on a side where the law never touches."""
+    if pad.side == 0:
+        return law
+    if (law.stiffness if pad.side > 0 else law.below) == 0.0:
+        return None
+    return (law.upper() if pad.side > 0 else law.lower()).shared(pad.weight)
 
 
-def _relative(boom: Boom, models: Sequence[SegmentModel], joint: Joint, x: float) -> Array:
-    """Row over all coordinates that reads u − w at x."""
-    return _place(models, joint.inner, x) - _place(models, joint.outer, x)
+def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:
+    """(num_modes,) row that reads u − w of a pad's two points."""
+    inner = modes.displacement(pad.joint.inner, pad.x, direction, pad.inner)
+    return inner - modes.displacement(pad.joint.outer, pad.x, direction, pad.outer)
 
 
-def _observers(boom: Boom, models: Sequence[SegmentModel], shapes: Array) -> dict[str, Observer]:
-    return {
-        name: Observer(_place(models, segment, x) @ shapes)
-        for name, (segment, x) in boom.observed().items()
-    }
+def _observers(boom: Boom, modes: BoomModes) -> dict[str, Observer]:
+    observers = {}
+    for name, (segment, x) in boom.observed().items():
+        observers[name] = Observer(modes.displacement(segment, x, "z"))
+        if boom.spatial:
+            observers[f"{name}_lateral"] = Observer(modes.displacement(segment, x, "y"))
+    return observers
 
 
-def _modal_damping(models: Sequence[SegmentModel], shapes: Array) -> Array:
-    """Diagonal of the modal damping matrix: exact where damping is proportional to mass."""
-    damping = block_diag(*(m.damping for m in models))
-    return np.asarray(np.einsum("ki,kl,li->i", shapes, damping, shapes, optimize=True))
+def _excitations(boom: Boom, modes: BoomModes) -> list[Excitation]:
+    excitations = []
+    for load in boom.loads:
+        if load.x is None:
+            unit = modes.unit_load(load.segment, load.direction)
+        else:
+            unit = modes.displacement(load.segment, load.x, load.direction)
+        excitations.append(Excitation(load.magnitude * unit, load.history))
+    return excitations

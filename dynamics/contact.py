@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import brentq
 
 Array = npt.NDArray[np.float64]
 
@@ -28,6 +29,8 @@ class PowerContact:
         exponent: n, at least 1. Below 1 the force has an infinite slope at touch.
         clearance: Δ in m on each side (half the play), not negative.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
+        damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
+            never adhesive; not negative.
 
     Raises:
         ValueError: an argument is out of its range or not finite.
@@ -37,6 +40,7 @@ class PowerContact:
     exponent: float
     clearance: float
     stiffness_below: float | None = None
+    damping: float = 0.0
 
     def __post_init__(self) -> None:
         for name, k in (("stiffness", self.stiffness), ("stiffness_below", self.below)):
@@ -48,6 +52,8 @@ class PowerContact:
             raise ValueError(f"exponent must be at least 1, got {self.exponent}")
         if not 0.0 <= self.clearance < np.inf:
             raise ValueError(f"clearance must be finite and not negative, got {self.clearance} m")
+        if not 0.0 <= self.damping < np.inf:
+            raise ValueError(f"damping must be finite and not negative, got {self.damping} s/m")
 
     @property
     def below(self) -> float:
@@ -71,7 +77,7 @@ class PowerContact:
         return np.maximum(np.abs(y) - self.clearance, 0.0)
 
     def force(self, y: Array) -> Array:
-        """Force in N that the outer segment feels; the inner one feels its opposite.
+        """Elastic force in N that the outer segment feels; the inner one feels its opposite.
 
         Args:
             y: relative displacement u − w in m, any shape.
@@ -85,3 +91,35 @@ class PowerContact:
 
     def _side(self, y: Array) -> Array:
         return np.where(y > 0.0, self.stiffness, self.below)
+
+
+def restitution_damping(restitution: float, speed: float) -> float:
+    """Damping d in s/m with which a mass that hits a contact rebounds with a part of its speed.
+
+    With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the right side
+    adds up to nothing, whatever k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.
+
+    Args:
+        restitution: e, speed after over speed before the impact, above 0 and at most 1.
+        speed: v before the impact in m/s, positive.
+
+    Raises:
+        ValueError: an argument is out of its range.
+    """
+    e = restitution
+    if not 0.0 < e <= 1.0:
+        raise ValueError(f"restitution must be above 0 and at most 1, got {e}")
+    if not 0.0 < speed < np.inf:
+        raise ValueError(f"speed must be finite and positive, got {speed} m/s")
+    # The root of the series in d v up to third order: right up to a part of its square.
+    first = 1.5 * (1.0 - e**2) / (1.0 + e**3)
+    if first < 1.0e-4:
+        return first / speed
+    # In u = −ln(1 − d e v), which stays a number however near d e v is to 1.
+    u = brentq(
+        lambda u: np.log1p(-np.expm1(-u) / e) + u + (1.0 + e) * np.expm1(-u) / e,
+        -np.log1p(-0.5 * e * first),
+        (1.0 + e) / e,
+        rtol=1.0e-14,
+    )
+    return float(-np.expm1(-u) / (e * speed))

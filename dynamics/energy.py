@@ -13,35 +13,51 @@ Array = npt.NDArray[np.float64]
 # The energy residual, as a part of the energy put in, beyond which a run is not a result.
 ENERGY_BOUND = 1.0e-2
 
-ENERGIES = ("kinetic_energy", "strain_energy", "contact_energy", "work", "dissipation")
+# What there is, what the loads put in, what is lost.
+ENERGIES = (
+    "kinetic_energy",
+    "strain_energy",
+    "contact_energy",
+    "work",
+    "damping_loss",
+    "friction_loss",
+    "contact_loss",
+)
 
 
-def energy_residual(energies: Array) -> Array:
+def energy_residual(energies: Array, least: float = 0.0) -> Array:
     """(num_times,) energy that is not accounted for, as a part of the energy put in.
 
     Args:
-        energies: (num_times, 5), the columns of ``ENERGIES`` in J.
+        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
+        least: an energy in J below which that put in is round-off, as where friction holds all.
     """
-    held = energies[:, :3].sum(axis=1)
-    missing = held - held[0] - energies[:, 3] + energies[:, 4]
-    put_in = max(float(np.abs(energies[:, 3]).max()), float(np.abs(held[0])))
+    work = energies[:, 3]
+    signs = np.ones(energies.shape[1])
+    signs[3] = -1.0
+    initial = float(energies[0, :3].sum())
+    missing = energies @ signs - initial
+    put_in = max(float(np.abs(work).max()), abs(initial), least)
     return np.asarray(missing / put_in if put_in > 0.0 else missing)
 
 
-def check_energy(energies: Array, step: float, bound: float = ENERGY_BOUND) -> None:
+def check_energy(
+    energies: Array, step: float, bound: float = ENERGY_BOUND, least: float = 0.0
+) -> None:
     """Stop a motion whose numbers cannot be trusted.
 
     Args:
-        energies: (num_times, 5), the columns of ``ENERGIES`` in J.
+        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
         step: of the integrator in s, for the message.
         bound: largest energy residual that passes.
+        least: as in :func:`energy_residual`.
 
     Raises:
         NumericsError: an energy is not finite, or the residual passes the bound.
     """
     if not np.isfinite(energies).all():
         raise NumericsError(f"the motion is not finite at a step of {step:.3g} s; halve the step")
-    worst = float(np.abs(energy_residual(energies)).max())
+    worst = float(np.abs(energy_residual(energies, least)).max())
     if worst > bound:
         raise NumericsError(
             f"the energy residual is {worst:.3g} of the work done, above the bound of {bound:.3g}, "

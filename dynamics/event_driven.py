@@ -3,32 +3,30 @@
 
 While no row touches, every gap is a sum of cosines and parabolas: the motion jumps, each time as
 far as the gaps cannot shut even if all modes pulled together, so that no contact is missed however
-short (:mod:`dynamics.flight`). A linear law (n = 1) leaves the motion a sum of cosines, of other
-modes, also while it presses: such systems are exact from event to event. Other laws are
-integrated through contact by a fourth-order splitting of modal flow and contact impulses.
+short (:mod:`dynamics.flight`). While rows press, it goes on by its Taylor series
+(:mod:`dynamics.contact_series`), a few of which make a contact. Outputs are read on the way.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from scipy.linalg import eigh
 
-from dynamics.energy import check_energy
+from dynamics.contact_kicks import law_columns
+from dynamics.contact_series import Series, evaluate, exit_time, expand, farthest, impulse, reach
+from dynamics.energy import ENERGIES, check_energy
 from dynamics.failure import NumericsError
-from dynamics.flight import flow, safe_time
+from dynamics.flight import jump, pulls, safe_time, tabulate
 from dynamics.gap_system import GapSystem
-from dynamics.step import contact_frequencies, initial_speeds
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
 
-# Step times contact frequency for the fourth-order splitting: an energy residual of about 2e-5
-# on the paper's five-term case.
-PHASE = 0.2
+# Truncation of a series, as a part of the motion: an energy residual of about 1e-9 on the paper's
+# five-term case.
+TOLERANCE = 1.0e-10
+
 
 # A gap is shut within this part of its clearance, or of 1 mm without one.
 _SHUT = 1.0e-13
@@ -36,263 +34,184 @@ _SHUT = 1.0e-13
 # The shortest jump, as a part of the output step: far below any contact, above round-off.
 _SHORTEST = 1.0e-12
 
-# Steps between two outputs beyond which something rattles without end.
-_ENDLESS = 10_000_000
-
-# Impulses between flows of the symmetric Runge-Kutta-Nyström splitting with 6 stages and order 4
-# (Blanes and Moan 2002, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nyström
-# methods, table 3).
-_B = (0.0829844064174052, 0.396309801498368, -0.0390563049223486)
-_A = (0.245298957184271, 0.604872665711080)
-_IMPULSES = np.array([*_B, 1.0 - 2.0 * sum(_B), *reversed(_B)])
-_FLOWS = np.array([*_A, 0.5 - sum(_A)])
+# Jumps and series between two outputs beyond which something rattles without end.
+_ENDLESS = 1_000_000
 
 
-@njit(cache=True, nogil=True)
-def _tabulate(omega: Array, load: Array, times: Array, table: Array) -> None:
-    """Flows over some times as (num_times, 5, num_modes): z' = t0 z + t1 v + t2,
-    v' = t3 z + t0 v + t4.
+@njit(nogil=True, inline="always")
+def _fly(
+    a: Array,
+    v: Array,
+    system: tuple[Array, ...],
+    flows: tuple[Array, Array],
+    time: float,
+    output_step: float,
+    out: tuple[Array, ...],
+    place: Array,
+) -> None:
+    """Move over ``time`` while nothing touches, recording the outputs that are passed.
+
+    Where ``time`` would end before the next output, the last one passed is far enough: from there
+    the next jump is longer. ``flows`` are that over an output step, and room for another.
     """
-    for k in range(times.size):
-        for i in range(omega.size):
-            w, time = omega[i], times[k]
-            if w > 0.0:
-                c, s, half = np.cos(w * time), np.sin(w * time), np.sin(0.5 * w * time)
-                table[k, 0, i] = c
-                table[k, 1, i] = s / w
-                table[k, 2, i] = 2.0 * half * half * load[i] / (w * w)
-                table[k, 3, i] = -w * s
-                table[k, 4, i] = s / w * load[i]
-            else:
-                table[k, 0, i] = 1.0
-                table[k, 1, i] = time
-                table[k, 2, i] = 0.5 * time * time * load[i]
-                table[k, 3, i] = 0.0
-                table[k, 4, i] = time * load[i]
+    omega, load, _ = system
+    whole, part = flows
+    states, velocities, _, _ = out
+    while place[0] < states.shape[0]:
+        step = min(time, place[1])
+        if step == output_step:
+            jump(a, v, whole)
+        else:
+            tabulate(omega, load, step, part)
+            jump(a, v, part)
+        if time < place[1]:
+            place[1] -= time
+            return
+        time -= step
+        states[int(place[0])] = a
+        velocities[int(place[0])] = v
+        place[0] += 1.0
+        place[1] = output_step
+        if time < output_step:
+            return
+
+
+@njit(nogil=True, inline="always")
+def _press(
+    series: Series,
+    law: Array,
+    pressed: Array,
+    time: float,
+    output_step: float,
+    out: tuple[Array, ...],
+    place: Array,
+    a: Array,
+    v: Array,
+) -> None:
+    """Move over ``time`` by the series, recording the outputs that are passed."""
+    states, velocities, impulses, peaks = out
+    begin = 0.0
+    while place[0] < states.shape[0]:
+        interval = int(place[0])
+        end = min(begin + place[1], time)
+        for j in range(pressed.size):
+            if pressed[j] != 0.0:
+                impulses[interval, j] += impulse(series.force[j], begin, end)
+                depth = farthest(series.gap[j], pressed[j], begin, end) - law[2, j]
+                k = law[0, j] if pressed[j] > 0.0 else -law[1, j]
+                force = k * max(depth, 0.0) ** law[3, j]
+                if abs(force) > abs(peaks[interval, j]):
+                    peaks[interval, j] = force
+        evaluate(series, end, a, v)
+        if time < begin + place[1]:
+            place[1] -= time - begin
+            return
+        states[interval] = a
+        velocities[interval] = v
+        begin = end
+        place[0] += 1.0
+        place[1] = output_step
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _press(
-    z: Array,
-    v: Array,
-    rows: Array,
-    law: Array,
-    table: Array,
-    step: float,
-    impulses: Array,
-    peaks: Array,
-) -> bool:
-    """One step of the fourth-order splitting; tells whether any row still touches."""
-    touching = False
-    for stage in range(7):
-        touching = False
-        for j in range(rows.shape[0]):
-            y = 0.0
-            for i in range(z.size):
-                y += rows[j, i] * z[i]
-            depth = abs(y) - law[2, j]
-            if depth > 0.0:
-                n = law[3, j]
-                k = law[0, j] if y > 0.0 else -law[1, j]
-                force = k * (depth * depth if n == 2.0 else depth**n)
-                impulse = _IMPULSES[stage] * step * force
-                impulses[j] += impulse
-                touching = touching or force != 0.0
-                if abs(force) > abs(peaks[j]):
-                    peaks[j] = force
-                for i in range(z.size):
-                    v[i] -= rows[j, i] * impulse
-        if stage < 6:
-            t = table[min(stage, 5 - stage)]
-            for i in range(z.size):
-                zi, vi = z[i], v[i]
-                z[i] = t[0, i] * zi + t[1, i] * vi + t[2, i]
-                v[i] = t[3, i] * zi + t[0, i] * vi + t[4, i]
-    return touching
-
-
-@njit(cache=True, nogil=True)
 def _march(
     a: Array,
     v: Array,
     system: tuple[Array, ...],
     law: Array,
-    bounds: tuple[Array, ...],
+    touch: tuple[Array, ...],
+    pressed: Array,
     output_step: float,
-    step: float,
+    tolerance: float,
+    series: Series,
     out: tuple[Array, ...],
     tally: Array,
 ) -> bool:
-    """Advance through all output intervals under laws that are not linear.
+    """Advance through all output intervals; False if contacts follow without end.
 
-    ``system`` = (omega, load, rows), ``bounds`` = (low, high, shut) of the open rows, ``out`` =
-    (states, velocities, impulses, peaks), one row an interval. ``tally`` = first contact, steps,
-    contact changes. False if an interval does not end.
+    ``system`` = (ω, load, rows); ``law`` (5, num_rows) of :func:`law_columns`; ``touch`` = (low,
+    high, shut): the gaps at which each row touches, and what counts as there; ``pressed``
+    (num_rows,) 1 above, −1 below, 0 open. ``out`` = (states, velocities, impulses, peaks), one row
+    an interval. ``tally`` = first contact, steps, contact changes.
     """
     omega, load, rows = system
-    low, high, shut = bounds
-    states, velocities, impulses, peaks = out
-    whole = np.zeros((3, 5, a.size))
-    part = np.zeros((3, 5, a.size))
-    _tabulate(omega, load, _FLOWS * step, whole)
-    touching = False
-    for interval in range(states.shape[0]):
-        left = output_step
-        counted = tally[1]
-        while left > _SHORTEST * output_step:
-            if touching:
-                h = min(step, left)
-                table = whole
-                if h < step:
-                    _tabulate(omega, load, _FLOWS * h, part)
-                    table = part
-                touching = _press(a, v, rows, law, table, h, impulses[interval], peaks[interval])
-                tally[2] += 0.0 if touching else 1.0
-            else:
-                h, leaving = safe_time(a, v, omega, load, rows, low, high, shut, left)
-                if leaving != 0:
-                    touching = True
-                    tally[2] += 1.0
-                    if np.isnan(tally[0]):
-                        tally[0] = interval * output_step + output_step - left
-                    continue
-                h = min(left, max(h, _SHORTEST * output_step))
-                flow(a, v, omega, load, h)
-            left -= h
+    shut = touch[2]
+    # The gaps between which each row stays as it is.
+    low = np.where(pressed > 0.0, touch[1], np.where(pressed < 0.0, -np.inf, touch[0]))
+    high = np.where(pressed < 0.0, touch[0], np.where(pressed > 0.0, np.inf, touch[1]))
+    squares = omega * omega
+    intervals = out[0].shape[0]
+    highest = series.powers.shape[1]
+    pull = np.zeros(shut.size)
+    touching = np.count_nonzero(pressed)
+    # Output interval, and the time that is left in it.
+    place = np.array([0.0, output_step])
+    interval, moves = 0.0, 0
+    pulls(a, v, omega, load, rows, pull)
+    whole, part = np.empty((2, 5, a.size))
+    tabulate(omega, load, output_step, whole)
+    while place[0] < intervals:
+        leaving = 0
+        if touching > 0:
+            expand(series, a, v, (squares, load, rows), law, pressed)
+            time = min(reach(series.state, squares, highest, tolerance), intervals * output_step)
+            for j in range(shut.size):
+                free, side = exit_time(series.gap[j], low[j], high[j], shut[j], time)
+                if side != 0 or free < time:
+                    time, leaving = free, side * (j + 1)
+            time = max(time, _SHORTEST * output_step)
+            _press(series, law, pressed, time, output_step, out, place, a, v)
             tally[1] += 1.0
-            if tally[1] - counted > _ENDLESS:
-                return False
-        states[interval] = a
-        velocities[interval] = v
+        else:
+            time, leaving = safe_time(a, v, rows, pull, low, high, shut)
+            if leaving == 0:
+                time = max(time, _SHORTEST * output_step)
+                _fly(a, v, system, (whole, part), time, output_step, out, place)
+                tally[1] += 1.0
+        if leaving != 0 and place[0] < intervals:
+            j = abs(leaving) - 1
+            if pressed[j] != 0.0:
+                pressed[j], low[j], high[j] = 0.0, touch[0][j], touch[1][j]
+                touching -= 1
+            elif leaving > 0:
+                pressed[j], low[j], high[j] = 1.0, touch[1][j], np.inf
+                touching += 1
+            else:
+                pressed[j], low[j], high[j] = -1.0, -np.inf, touch[0][j]
+                touching += 1
+            if touching == 0:
+                pulls(a, v, omega, load, rows, pull)
+            tally[2] += 1.0
+            if np.isnan(tally[0]):
+                tally[0] = (place[0] + 1.0) * output_step - place[1]
+        moves = moves + 1 if place[0] == interval else 0
+        interval = place[0]
+        if moves > _ENDLESS:
+            return False
     return True
 
 
-@njit(cache=True, nogil=True)
-def _see(z: Array, regime: tuple[Array, ...], law: Array, peaks: Array) -> None:
-    """Keep the largest force of each pressed row."""
-    _, _, rows, _, pressed = regime
-    for j in range(rows.shape[0]):
-        if pressed[j] != 0.0:
-            k = law[0, j] if pressed[j] > 0.0 else law[1, j]
-            force = k * (np.dot(rows[j], z) - pressed[j] * law[2, j])
-            if abs(force) > abs(peaks[j]):
-                peaks[j] = force
-
-
-@njit(cache=True, nogil=True)
-def _march_regime(
-    z: Array,
-    v: Array,
-    regime: tuple[Array, ...],
-    law: Array,
-    bounds: tuple[Array, ...],
-    output_step: float,
-    longest: float,
-    out: tuple[Array, ...],
-    place: Array,
-    tally: Array,
-) -> int:
-    """Advance exactly until a row touches or parts; gives it as :func:`safe_time` does.
-
-    0 at the end, and more than all rows if an interval does not end.
-
-    ``regime`` = (omega, load, rows, basis, pressed), in the modes z of the rows that press:
-    a = basis z, pressed (num_rows,) 1 above, -1 below, 0 open. ``place`` = interval and the time
-    left in it, carried over from call to call.
-    """
-    omega, load, rows, basis, pressed = regime
-    low, high, shut = bounds
-    states, velocities, impulses, peaks = out
-    counted = tally[1]
-    integral = np.zeros(z.size)
-    while place[0] < states.shape[0]:
-        interval = int(place[0])
-        while place[1] > _SHORTEST * output_step:
-            h, leaving = safe_time(z, v, omega, load, rows, low, high, shut, min(longest, place[1]))
-            if leaving != 0:
-                return int(leaving)
-            h = min(place[1], max(h, _SHORTEST * output_step))
-            for i in range(z.size):
-                w = omega[i]
-                if w > 0.0:
-                    rest = load[i] / (w * w)
-                    half = np.sin(0.5 * w * h)
-                    turned = 2.0 * half * half / (w * w)
-                    integral[i] = rest * h + (z[i] - rest) * np.sin(w * h) / w + v[i] * turned
-                else:
-                    integral[i] = h * (z[i] + h * (0.5 * v[i] + h * load[i] / 6.0))
-            _see(z, regime, law, peaks[interval])
-            flow(z, v, omega, load, h)
-            _see(z, regime, law, peaks[interval])
-            for j in range(rows.shape[0]):
-                if pressed[j] != 0.0:
-                    k = law[0, j] if pressed[j] > 0.0 else law[1, j]
-                    mean = np.dot(rows[j], integral) / h - pressed[j] * law[2, j]
-                    impulses[interval, j] += k * mean * h
-            place[1] -= h
-            tally[1] += 1.0
-            if tally[1] - counted > _ENDLESS:
-                return rows.shape[0] + 1
-        states[interval] = basis @ z
-        velocities[interval] = basis @ v
-        place[0] += 1.0
-        place[1] = output_step
-        counted = tally[1]
-    return 0
-
-
-@dataclass(frozen=True, slots=True)
-class Regime:
-    """A system with linear contact while the same rows press: cosines in modes of its own.
-
-    Args:
-        omega, load: (num_modes,) of these modes, the rest position of the springs included.
-        rows: (num_rows, num_modes) contact rows in these modes.
-        basis: (num_modes, num_modes), a = basis z.
-        pressed: (num_rows,) 1 above, -1 below, 0 open.
-        low, high: (num_rows,) the gaps between which each row stays as it is, in m.
-    """
-
-    omega: Array
-    load: Array
-    rows: Array
-    basis: Array
-    pressed: Array
-    low: Array
-    high: Array
-
-    @classmethod
-    def of(cls, system: GapSystem, law: Array, pressed: tuple[int, ...]) -> Regime:
-        """Natural modes with the springs of the pressed rows in place."""
-        side = np.array(pressed, dtype=np.float64)
-        k = np.where(side > 0.0, law[0], law[1]) * (side != 0.0)
-        clearance = law[2]
-        omega2, basis = system.omega2, np.eye(system.num_modes)
-        if k.any():
-            omega2, basis = eigh(np.diag(omega2) + (system.rows.T * k) @ system.rows)
-            # Rigid motions that the springs leave free come out as round-off.
-            rigid = system.rows[:, system.omega2 == 0.0] * np.sqrt(k)[:, None]
-            if rigid.size:
-                omega2[: rigid.shape[1] - np.linalg.matrix_rank(rigid)] = 0.0
-            omega2 = np.maximum(omega2, 0.0)
-        above = np.where(law[0] > 0.0, clearance, np.inf)
-        below = np.where(law[1] > 0.0, -clearance, -np.inf)
-        return cls(
-            omega=np.sqrt(omega2),
-            load=(system.load + (k * side * clearance) @ system.rows) @ basis,
-            rows=np.ascontiguousarray(system.rows @ basis),
-            basis=np.ascontiguousarray(basis),
-            pressed=side,
-            low=np.where(side > 0.0, clearance, np.where(side < 0.0, -np.inf, below)),
-            high=np.where(side < 0.0, -clearance, np.where(side > 0.0, np.inf, above)),
-        )
+def what_hinders(system: GapSystem) -> str | None:
+    """What of a system cannot be moved from contact to contact; None if all can."""
+    if system.damping.any():
+        return "a damped system has no closed form from contact to contact"
+    if system.excitations:
+        return "loads that change with time leave no closed form from contact to contact"
+    if system.frictions:
+        return "dry friction leaves no closed form from contact to contact"
+    if any(law.damping > 0.0 for law in system.laws):
+        return "contact damping is not analytic where a press ends"
+    broken = [law.exponent for law in system.laws if law.exponent % 1.0 != 0.0]
+    if broken:
+        return f"a force of the exponent {broken[0]:g} is not analytic where a press begins"
+    return None
 
 
 def integrate_events(
     system: GapSystem,
     duration: float,
     output_step: float = 1.0e-3,
-    phase: float = PHASE,
+    tolerance: float = TOLERANCE,
     position: Array | None = None,
     velocity: Array | None = None,
 ) -> Trajectory:
@@ -303,53 +222,54 @@ def integrate_events(
             highest frequencies.
         duration: in s; a whole number of output steps is made, at least one.
         output_step: in s.
-        phase: step times contact frequency while a law that is not linear presses.
-        position: (num_modes,) initial a in √kg·m, zero unless given, with every gap open.
+        tolerance: of a series while rows press, as a part of the motion.
+        position: (num_modes,) initial a in √kg·m, zero unless given.
         velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
 
     Raises:
-        ValueError: the system is damped, or the initial position presses a contact.
+        ValueError: :func:`what_hinders` names something.
         NumericsError: the energy residual passes its bound, or contacts follow without end.
+
+    The trajectory's ``step`` is the mean of its jumps and series.
     """
-    if system.damping.any():
-        raise ValueError("a damped system has no closed form from contact to contact")
+    hindrance = what_hinders(system)
+    if hindrance is not None:
+        raise ValueError(f"{hindrance}; integrate by splitting")
     n, m = system.num_modes, len(system.laws)
     a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
     v = np.zeros(n) if velocity is None else np.array(velocity, dtype=np.float64)
-    gaps = system.rows @ a
-    if any(float(law.energy(y)) > 0.0 for law, y in zip(system.laws, gaps, strict=True)):
-        raise ValueError("the initial position presses a contact; start with every gap open")
     outputs = max(1, round(duration / output_step))
-    law = np.array(
-        [[law.stiffness, law.below, law.clearance, law.exponent] for law in system.laws]
-    ).reshape(m, 4).T.copy()  # fmt: skip
+    law = law_columns(system.laws)
     states, velocities = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, n))
     impulses, peaks = np.zeros((outputs + 1, m)), np.zeros((outputs + 1, m))
     states[0], velocities[0] = a, v
     out = (states[1:], velocities[1:], impulses[1:], peaks[1:])
-    tally = np.array([np.nan, 0.0, 0.0])
-    linear = bool((law[3] == 1.0).all())
-    fastest = contact_frequencies(system, initial_speeds(system, a, v)) if m else np.zeros(1)
-    step = min(output_step, phase / max(float(fastest.max()), phase / output_step))
-    if linear:
-        ended = _through_regimes(system, law, a, v, output_step, step, out, tally)
-    else:
-        regime = Regime.of(system, law, (0,) * m)
-        bounds = (regime.low, regime.high, _shut(law))
-        arrays = (regime.omega, regime.load, regime.rows)
-        ended = _march(a, v, arrays, law, bounds, output_step, step, out, tally)
-    if not ended:
+    arrays = tuple(
+        np.ascontiguousarray(array) for array in (np.sqrt(system.omega2), system.load, system.rows)
+    )
+    touch = (
+        np.where(law[1] > 0.0, -law[2], -np.inf),
+        np.where(law[0] > 0.0, law[2], np.inf),
+        _SHUT * np.where(law[2] > 0.0, law[2], 1.0e-3),
+    )
+    gaps = system.rows @ a
+    pressed = 1.0 * (gaps > touch[1]) - (gaps < touch[0])
+    tally = np.array([0.0 if pressed.any() else np.nan, 0.0, 0.0])
+    series = Series.room(n, law[3])
+    if not _march(a, v, arrays, law, touch, pressed, output_step, tolerance, series, out, tally):
         raise NumericsError(
             f"more than {_ENDLESS} contacts follow within {output_step:g} s; make the contact "
             "softer"
         )
+    steps = max(1, int(tally[1]))
+    mean_step = outputs * output_step / steps
     row_gaps = states @ system.rows.T
-    energies = np.zeros((outputs + 1, 5))
-    energies[:, 0] = 0.5 * (velocities**2).sum(axis=1)
+    energies = np.zeros((outputs + 1, len(ENERGIES)))
+    energies[:, 0] = 0.5 * np.einsum("ti,ti->t", velocities, velocities)
     energies[:, 1] = 0.5 * states**2 @ system.omega2
     energies[:, 2] = sum(w.energy(y) for w, y in zip(system.laws, row_gaps.T, strict=True))
     energies[:, 3] = (states - states[0]) @ system.load
-    check_energy(energies, step)
+    check_energy(energies, mean_step)
     return Trajectory.record(
         system,
         time=output_step * np.arange(outputs + 1),
@@ -358,48 +278,9 @@ def integrate_events(
         row_gaps=row_gaps,
         row_forces=impulses / output_step,
         row_peaks=peaks,
-        step=step,
-        steps=int(tally[1]),
+        row_frictions=np.zeros((outputs + 1, 0)),
+        step=mean_step,
+        steps=steps,
         first_contact=float(tally[0]),
         contact_changes=int(tally[2]),
     )
-
-
-def _shut(law: Array) -> Array:
-    return _SHUT * np.where(law[2] > 0.0, law[2], 1.0e-3)
-
-
-def _through_regimes(
-    system: GapSystem,
-    law: Array,
-    a: Array,
-    v: Array,
-    output_step: float,
-    step: float,
-    out: tuple[Array, Array, Array, Array],
-    tally: Array,
-) -> bool:
-    """March from regime to regime of a linear law; False if contacts follow without end."""
-    regimes: dict[tuple[int, ...], Regime] = {}
-    pressed = (0,) * law.shape[1]
-    place = np.array([0.0, output_step])
-    shut = _shut(law)
-    while True:
-        if pressed not in regimes:
-            regimes[pressed] = Regime.of(system, law, pressed)
-        now = regimes[pressed]
-        z, w = a @ now.basis, v @ now.basis
-        arrays = (now.omega, now.load, now.rows, now.basis, now.pressed)
-        bounds = (now.low, now.high, shut)
-        # While a row presses, jumps stay short enough to see the peak of its force.
-        longest = step if any(pressed) else output_step
-        leaving = _march_regime(z, w, arrays, law, bounds, output_step, longest, out, place, tally)
-        if leaving == 0 or leaving > len(pressed):
-            return bool(leaving == 0)
-        if np.isnan(tally[0]):
-            tally[0] = (place[0] + 1.0) * output_step - place[1]
-        tally[2] += 1.0
-        a, v = now.basis @ z, now.basis @ w
-        row = abs(leaving) - 1
-        side = int(np.sign(leaving)) if pressed[row] == 0 else 0
-        pressed = (*pressed[:row], side, *pressed[row + 1 :])

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The one form that every model takes before it moves.
 
-    ä_i + c_i ȧ_i + ω_i² a_i = Q_i − Σ_j B_ji F_j(y_j),    y_j = Σ_i B_ji a_i
+    ä_i + c_i ȧ_i + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
+    y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i
 
 in mass-normalised modal coordinates a. Segments that only contact couples stand side by
-side in a; a contact row B_j reads the relative displacement u − w of one place.
+side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
+D_l a relative displacement along which two places slide.
 """
 
 from __future__ import annotations
@@ -17,6 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation
+from dynamics.friction import DryFriction
 
 Array = npt.NDArray[np.float64]
 
@@ -30,7 +34,7 @@ class Observer(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class GapSystem:
-    """Modal equations of motion with gap contact.
+    """Modal equations of motion with gap contact and dry friction.
 
     Args:
         omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0.
@@ -41,6 +45,11 @@ class GapSystem:
         stations: x of the stations in m.
         observers: name → what a trajectory records.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
+        friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
+        frictions: (num_frictions) the friction of each row.
+        excitations: loads that change with time.
+        station_directions: the direction of each station's relative displacement; "z" for all
+            unless given.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -54,17 +63,27 @@ class GapSystem:
     stations: Sequence[float]
     observers: Mapping[str, Observer]
     damping: Array = field(default_factory=lambda: np.zeros(0))
+    friction_rows: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    frictions: Sequence[DryFriction] = ()
+    excitations: Sequence[Excitation] = ()
+    station_directions: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
         if self.damping.size == 0:
             object.__setattr__(self, "damping", np.zeros(n))
+        if self.friction_rows.size == 0:
+            object.__setattr__(self, "friction_rows", np.zeros((0, n)))
+        if not self.station_directions:
+            object.__setattr__(self, "station_directions", ("z",) * len(self.stations))
         expected = {
             "omega2": (self.omega2, (n,)),
             "load": (self.load, (n,)),
             "damping": (self.damping, (n,)),
             "rows": (self.rows, (m, n)),
             "station_of_row": (self.station_of_row, (m,)),
+            "friction_rows": (self.friction_rows, (len(self.frictions), n)),
+            **{f"excitation {e}": (x.load, (n,)) for e, x in enumerate(self.excitations)},
             **{f"observer {name!r}": (row, (n,)) for name, (row, _) in self.observers.items()},
         }
         for name, (array, shape) in expected.items():
@@ -72,10 +91,18 @@ class GapSystem:
                 raise ValueError(f"{name} must have the shape {shape}, got {array.shape}")
             if not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite")
-        if m and not 0 <= self.station_of_row.min() <= self.station_of_row.max() < len(
-            self.stations
-        ):
+        places = len(self.stations)
+        if any(not 0 <= station < places for station in self.station_of_row):
             raise ValueError("station_of_row must hold positions in stations")
+        if any(not 0 <= friction.station < places for friction in self.frictions):
+            raise ValueError("the station of a friction must be a position in stations")
+        if any(not 0 <= row < m for friction in self.frictions for row in friction.pressed_by):
+            raise ValueError("pressed_by must hold positions in rows")
+        if len(self.station_directions) != places:
+            raise ValueError(
+                f"station_directions must be one for each of {places} stations, "
+                f"got {len(self.station_directions)}"
+            )
         if (self.omega2 < 0.0).any() or (self.damping < 0.0).any():
             raise ValueError("omega2 and damping must not be negative")
 
@@ -93,6 +120,12 @@ class GapSystem:
     def row_masses(self) -> Array:
         """(num_rows,) 1 / B_j B_jᵀ in kg: the mass that a blow on one row moves at once."""
         return np.asarray(1.0 / np.einsum("ij,ij->i", self.rows, self.rows))
+
+    @property
+    def largest_load(self) -> Array:
+        """(num_modes,) |Q| and the largest of every excitation, in N/√kg."""
+        excited = [np.abs(x.load) * x.peak for x in self.excitations]
+        return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
     def static_response(self, force: Array) -> Array:
         """(num_modes,) rest position under a modal force, for a system without rigid modes.

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of a gap system by splitting: exact modal flow between contact impulses.
+"""Motion of a gap system by splitting: exact modal flow between impulses of contact and friction.
 
 One step is half a contact impulse, the exact flow of every mode under its load, and half an
 impulse at the new place (Strang 1968; for stiff springs known as the impulse method, Grubmüller
 et al. 1991). It is second order, symplectic without damping and time-reversible, so the energy
-error stays bounded over any number of contacts, which Newmark's method does not give.
+error stays bounded over any number of contacts, which Newmark's method does not give. Dry
+friction acts in the middle of the flow (:mod:`dynamics.friction_step`); a step in which a sliding
+row turns is made in two, so that it turns between them.
 
 While the gaps are so wide that none can shut for some steps, these are made at once: the flow is
 exact over any time.
@@ -13,15 +15,34 @@ exact over any time.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from scipy.linalg import expm
 
-from dynamics.energy import ENERGY_BOUND, check_energy
+from dynamics.contact_kicks import contact_energy, contact_forces, elastic_kick
+from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.gap_system import GapSystem
+from dynamics.integrator_state import (
+    CHANGES,
+    DAMPING,
+    FIRST_CONTACT,
+    STEPS,
+    WORK,
+    Dry,
+    Excitations,
+    State,
+    System,
+    enter,
+    excitation_arrays,
+    excite,
+    friction_arrays,
+    initial_state,
+    look,
+    system_arrays,
+)
+from dynamics.lossy_steps import Space, lossy_steps, space_for
+from dynamics.modal_flow import ModalFlow, modal_energy, move, travel
 from dynamics.step import contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 
@@ -31,118 +52,14 @@ Array = npt.NDArray[np.float64]
 STRIDES = np.array([1, 8, 64, 512])
 
 
-@dataclass(frozen=True, slots=True)
-class ModalFlow:
-    """The exact map (a, v) → (a, v) of uncoupled damped modes over one step.
-
-    Each array is (num_modes,): a' = aa a + av v + ap, v' = va a + vv v + vp.
-    """
-
-    aa: Array
-    av: Array
-    ap: Array
-    va: Array
-    vv: Array
-    vp: Array
-
-    @classmethod
-    def over(cls, system: GapSystem, step: float) -> ModalFlow:
-        """The flow of ``system`` without contact over ``step`` seconds."""
-        omega = np.sqrt(system.omega2)
-        cosine = np.cos(omega * step)
-        # h·sinc and h²·sinc²/2 reach through ω = 0, where the mode is rigid.
-        sine = step * np.sinc(omega * step / np.pi)
-        rise = 0.5 * step**2 * np.sinc(0.5 * omega * step / np.pi) ** 2
-        rows = np.array([cosine, sine, rise, -system.omega2 * sine, cosine, sine])
-        for i in np.flatnonzero(system.damping):
-            rows[:, i] = _damped_flow(float(omega[i]), float(system.damping[i]), step)
-        rows[[2, 5]] *= system.load
-        return cls(*rows)
-
-    def stacked(self) -> Array:
-        """(6, num_modes), the layout of the compiled loop."""
-        return np.array([self.aa, self.av, self.ap, self.va, self.vv, self.vp])
-
-
-def _damped_flow(omega: float, damping: float, step: float) -> Array:
-    """(6,) aa, av, ap, va, vv, vp of one damped mode under a unit load.
-
-    By the matrix exponential: its closed forms cancel where damping or step is small. Lengths are
-    scaled so that both unknowns are velocities.
-    """
-    scale = max(omega, 1.0 / step)
-    generator = np.array([[0.0, scale, 0.0], [-(omega**2) / scale, -damping, 1.0], [0.0] * 3])
-    (aa, av, ap), (va, vv, vp), _ = expm(step * generator)
-    return np.array([aa, av / scale, ap / scale, va * scale, vv, vp])
-
-
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _forces(a: Array, rows: Array, law: Array, y: Array, force: Array) -> bool:
-    """Relative displacements and contact forces of every row; whether any row touches."""
-    touching = False
-    for j in range(rows.shape[0]):
-        total = 0.0
-        for i in range(a.size):
-            total += rows[j, i] * a[i]
-        y[j] = total
-        depth = abs(total) - law[2, j]
-        if depth > 0.0:
-            n = law[3, j]
-            power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
-            force[j] = law[0, j] * power if total > 0.0 else -law[1, j] * power
-            touching = touching or force[j] != 0.0
-        else:
-            force[j] = 0.0
-    return touching
-
-
-@njit(cache=True, nogil=True)
-def _pressed(y: float, law: Array, j: int) -> float:
-    """1 where row j presses above, -1 below, 0 where it is open."""
-    if y > law[2, j] and law[0, j] > 0.0:
-        return 1.0
-    if y < -law[2, j] and law[1, j] > 0.0:
-        return -1.0
-    return 0.0
-
-
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _kick(v: Array, rows: Array, force: Array, duration: float) -> None:
-    for j in range(rows.shape[0]):
-        if force[j] != 0.0:
-            impulse = duration * force[j]
-            for i in range(v.size):
-                v[i] -= rows[j, i] * impulse
-
-
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
-    kinetic = 0.0
-    strain = 0.0
-    for i in range(a.size):
-        kinetic += v[i] * v[i]
-        strain += omega2[i] * a[i] * a[i]
-    return 0.5 * kinetic, 0.5 * strain
-
-
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
-def _flow(a: Array, v: Array, flow: Array) -> None:
-    for i in range(a.size):
-        ai = a[i]
-        vi = v[i]
-        a[i] = flow[0, i] * ai + flow[1, i] * vi + flow[2, i]
-        v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i]
-
-
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
 def _closing_bounds(
-    a: Array, v: Array, system: tuple[Array, ...], duration: float, bounds: Array
+    a: Array, v: Array, omega2: Array, load: Array, rows: Array, duration: float, bounds: Array
 ) -> None:
     """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
 
     A mode's amplitude √(v² + ω² s²) about its rest position does not grow; rigid modes fall.
     """
-    omega2, load, _, rows = system
     for j in range(rows.shape[0]):
         swing = 0.0
         speed = 0.0
@@ -157,7 +74,7 @@ def _closing_bounds(
         bounds[j] = swing + speed + fall * duration
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _stride(y: Array, law: Array, bounds: Array, step: float, left: int) -> int:
     """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within."""
     free = float(left)
@@ -173,95 +90,91 @@ def _stride(y: Array, law: Array, bounds: Array, step: float, left: int) -> int:
     return stride
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _march(
-    a: Array,
-    v: Array,
+    state: State,
     flows: Array,
-    system: tuple[Array, ...],
-    law: Array,
+    system: System,
+    dry: Dry,
+    excitations: Excitations,
+    space: Space,
     step: float,
     substeps: int,
     out: tuple[Array, ...],
-    tally: Array,
 ) -> None:
     """Advance by ``len(out[0])`` output intervals and record each.
 
-    ``system`` = (omega2, load, damping, rows); ``law`` (4, rows) = k above, k below, Δ, n.
-    ``out`` = (states, energies, gaps, mean forces, peak forces), one row an interval;
-    energies are kinetic, strain, contact, work, damping. ``tally`` carries over from call to
-    call: time, first contact, contact changes, work, dissipation, steps. ``flows`` has one
-    (6, num_modes) for each of ``STRIDES``.
+    ``out`` = (states, energies, gaps, mean forces, peak forces, friction forces), one row an
+    interval. ``flows`` has one (8, num_modes) for each of ``STRIDES``.
     """
-    omega2, load, damping, rows = system
-    states, energies, gaps, means, peaks = out
-    num_rows = rows.shape[0]
-    y = np.zeros(num_rows)
-    before = np.zeros(num_rows)
-    force = np.zeros(num_rows)
-    damped = damping.any()
-    bounds = np.zeros(num_rows)
-    touching = _forces(a, rows, law, y, force)
+    _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
+    omega2, load, _, rows, law, damped = system
+    friction_rows, given, _, _ = dry
+    loads, samples, factors = excitations
+    states, energies, gaps, means, peaks, frictions = out
+    bounds = np.zeros(y.size)
+    # Excitations are lines over one step; a prescribed normal force rubs always.
+    excited = loads.shape[0] > 0
+    single = excited or (given[0] * given[1]).any()
+    lossy = friction.size > 0 or law[4].any()
+    touching = force.any()
     for interval in range(states.shape[0]):
         start = a.copy()
+        mean[:] = 0.0
+        peak[:] = 0.0
+        friction[:] = 0.0
         done = 0
         flying = False
         while done < substeps:
             stride = 0
-            if not touching:
+            if not (touching or single):
                 if not flying:
-                    _closing_bounds(a, v, system, substeps * step, bounds)
+                    _closing_bounds(a, v, omega2, load, rows, substeps * step, bounds)
                 stride = _stride(y, law, bounds, step, substeps - done)
-            flying = not touching
-            time = STRIDES[stride] * step
-            flow = flows[stride]
-            if touching:
-                _kick(v, rows, force, 0.5 * step)
-                for j in range(num_rows):
-                    means[interval, j] += 0.5 * force[j] / substeps
-            if damped:
-                kinetic, strain = _modal_energy(a, v, omega2)
-                held = kinetic + strain - np.dot(load, a)
-                _flow(a, v, flow)
-                kinetic, strain = _modal_energy(a, v, omega2)
-                tally[4] += held - (kinetic + strain - np.dot(load, a))
-            else:
-                _flow(a, v, flow)
+            flying = not (touching or lossy)
+            if lossy and stride == 0:
+                first = interval * substeps
+                done = -first + lossy_steps(
+                    state, system, dry, excitations, space, step,
+                    first + done, first + substeps, substeps, single,
+                )  # fmt: skip
+                touching = force.any()
+                continue
             before[:] = y
-            touching = _forces(a, rows, law, y, force)
-            done += STRIDES[stride]
-            tally[0] += time
-            tally[5] += 1.0
-            closing = np.inf
-            for j in range(num_rows):
-                side = _pressed(y[j], law, j)
-                if side != _pressed(before[j], law, j):
-                    tally[2] += 1.0
-                    if side != 0.0:
-                        deep = side * y[j] - law[2, j]
-                        since = time * deep / (side * (y[j] - before[j]))
-                        closing = min(closing, tally[0] - since)
-            if np.isnan(tally[1]) and closing < np.inf:
-                tally[1] = closing
+            time = STRIDES[stride] * step
             if touching:
-                _kick(v, rows, force, 0.5 * step)
-                for j in range(num_rows):
-                    means[interval, j] += 0.5 * force[j] / substeps
-                    if abs(force[j]) > abs(peaks[interval, j]):
-                        peaks[interval, j] = force[j]
-        tally[3] += np.dot(load, a - start)
-        kinetic, strain = _modal_energy(a, v, omega2)
+                elastic_kick(v, rows, force, 0.5 * step)
+                for j in range(y.size):
+                    mean[j] += 0.5 * force[j] / substeps
+            if excited or damped:
+                excite(samples, interval * substeps + done, 0.0, 1.0, factors)
+                work, lost = travel(
+                    a, v, flows[stride], time, omega2, load, damped, loads, factors[0], factors[2]
+                )
+                tally[WORK] += work
+                tally[DAMPING] += lost
+            else:
+                move(a, v, flows[stride])
+            touching = contact_forces(a, rows, law, y, force)
+            done += STRIDES[stride]
+            enter(y, before, law, time, tally)
+            if touching:
+                elastic_kick(v, rows, force, 0.5 * step)
+                for j in range(y.size):
+                    mean[j] += 0.5 * force[j] / substeps
+                    if abs(force[j]) > abs(peak[j]):
+                        peak[j] = force[j]
+            if friction.size > 0:
+                look(a, v, friction_rows, grip)
+        tally[WORK] += np.dot(load, a - start)
         states[interval] = a
         gaps[interval] = y
-        energies[interval, 0] = kinetic
-        energies[interval, 1] = strain
-        for j in range(num_rows):
-            depth = abs(y[j]) - law[2, j]
-            if depth > 0.0:
-                side = law[0, j] if y[j] > 0.0 else law[1, j]
-                energies[interval, 2] += side * depth ** (law[3, j] + 1.0) / (law[3, j] + 1.0)
-        energies[interval, 3] = tally[3]
-        energies[interval, 4] = tally[4]
+        means[interval] = mean
+        peaks[interval] = peak
+        frictions[interval] = friction
+        energies[interval, 0], energies[interval, 1] = modal_energy(a, v, omega2)
+        energies[interval, 2] = contact_energy(y, law)
+        energies[interval, 3:] = tally[WORK:]
 
 
 def integrate(
@@ -297,30 +210,30 @@ def integrate(
         step = contact_step(system, output_step, initial_speeds(system, a, v))
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     h = output_step / substeps
-    law = np.array(
-        [[law.stiffness, law.below, law.clearance, law.exponent] for law in system.laws]
-    ).reshape(m, 4).T.copy()  # fmt: skip
-    arrays = tuple(
-        np.ascontiguousarray(array)
-        for array in (system.omega2, system.load, system.damping, system.rows)
-    )
+    state = initial_state(system, a, v)
+    y, tally = state[3], state[6]
+    arrays, dry, space = system_arrays(system), friction_arrays(system), space_for(system)
     flows = np.array([ModalFlow.over(system, stride * h).stacked() for stride in STRIDES])
 
-    states, gaps = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, m))
-    means, peaks = np.zeros((outputs + 1, m)), np.zeros((outputs + 1, m))
-    energies = np.zeros((outputs + 1, 5))
-    states[0], gaps[0] = a, system.rows @ a
+    f = len(system.frictions)
+    states, frictions = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, f))
+    gaps, means, peaks = np.zeros((3, outputs + 1, m))
+    energies = np.zeros((outputs + 1, len(ENERGIES)))
+    states[0], gaps[0] = a, y
     energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
     energies[0, 2] = sum(float(w.energy(y)) for w, y in zip(system.laws, gaps[0], strict=True))
-    pressed = energies[0, 2] > 0.0
-    tally = np.array([0.0, 0.0 if pressed else np.nan, 0.0, 0.0, 0.0, 0.0])
+    recorded = (states, energies, gaps, means, peaks, frictions)
 
+    # What the loads give within one step.
+    least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
     chunk = max(1, outputs // 100)
     for begin in range(1, outputs + 1, chunk):
         part = slice(begin, min(begin + chunk, outputs + 1))
-        out = (states[part], energies[part], gaps[part], means[part], peaks[part])
-        _march(a, v, flows, arrays, law, h, substeps, out, tally)
-        check_energy(energies[: part.stop], h, energy_bound)
+        times = h * np.arange((part.start - 1) * substeps, (part.stop - 1) * substeps + 1)
+        out = tuple(array[part] for array in recorded)
+        excitations = excitation_arrays(system, times)
+        _march(state, flows, arrays, dry, excitations, space, h, substeps, out)
+        check_energy(energies[: part.stop], h, energy_bound, least)
         if progress is not None:
             progress((part.stop - 1) / outputs)
     return Trajectory.record(
@@ -331,8 +244,10 @@ def integrate(
         row_gaps=gaps,
         row_forces=means,
         row_peaks=peaks,
+        row_frictions=frictions,
         step=h,
-        steps=int(tally[5]),
-        first_contact=float(tally[1]),
-        contact_changes=int(tally[2]),
+        steps=int(tally[STEPS]),
+        first_contact=float(tally[FIRST_CONTACT]),
+        contact_changes=int(tally[CHANGES]),
+        least_energy=least,
     )

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The time step that a contact needs.
+"""The time step that contacts, friction and excitations need.
 
 Between contacts the motion is exact at any step; a contact is resolved when the step is a
-small part of the period that the pressed spring and the mass at its row would have alone.
+small part of the period that the pressed spring and the mass at its row would have alone, sliding
+when it is a small part of the period with which the row swings, an excitation when it is a small
+part of its own.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from dynamics.gap_system import GapSystem
 
 Array = npt.NDArray[np.float64]
 
-# Step times contact frequency. The energy error of the splitting is second order in it.
+# Step times the highest frequency. The energy error of the splitting is second order in it.
 PHASE = 0.03
 
 
@@ -23,23 +25,32 @@ def initial_speeds(system: GapSystem, position: Array, velocity: Array) -> Array
     return np.asarray(np.sqrt(velocity**2 + system.omega2 * position**2))
 
 
+def modal_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
+    """(num_modes,) estimate in m/s·√kg of how fast each elastic mode swings, |Q_i|/ω_i and more.
+
+    Excitations count with their largest value, as if it came at once. Rigid modes keep their
+    initial speed.
+    """
+    load, omega = system.largest_load, np.sqrt(system.omega2)
+    return np.asarray(np.divide(load, omega, out=np.zeros(load.size), where=omega > 0.0) + initial)
+
+
 def closing_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
     """(num_rows,) estimate in m/s of how fast each row closes.
 
-    Elastic modes swing to |Q_i|/ω_i under the load; rigid ones fall freely across the whole play
+    Elastic modes swing as :func:`modal_speeds` says; rigid ones fall freely across the whole play
     2Δ. The initial state adds its own.
 
     Args:
         system: with contact rows.
         initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
     """
-    elastic = system.omega2 > 0.0
-    omega = np.sqrt(system.omega2[elastic])
-    swing = np.abs(system.rows[:, elastic] * system.load[elastic]) @ (1.0 / omega)
-    fall = np.abs(system.rows[:, ~elastic] @ system.load[~elastic])
+    rigid = system.omega2 == 0.0
+    loads = [(system.load, 1.0), *((x.load, x.peak) for x in system.excitations)]
+    fall = sum(np.abs(system.rows[:, rigid] @ load[rigid]) * peak for load, peak in loads)
     play = np.array([2.0 * law.clearance for law in system.laws])
-    thrown = (np.abs(system.rows) * initial).sum(axis=1)
-    return np.asarray(swing + np.sqrt(2.0 * fall * play) + thrown)
+    swing = np.abs(system.rows) @ modal_speeds(system, initial)
+    return np.asarray(swing + np.sqrt(2.0 * fall * play))
 
 
 def contact_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Array:
@@ -56,23 +67,35 @@ def contact_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Arra
     return np.asarray(np.sqrt(n * k * depth ** (n - 1.0) / mass))
 
 
+def sliding_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Array:
+    """(num_frictions,) mean ω of the modes in a friction row in rad/s, weighted by their speeds."""
+    weights = np.abs(system.friction_rows) * modal_speeds(system, initial)
+    total = weights.sum(axis=1)
+    change = weights @ np.sqrt(system.omega2)
+    return np.asarray(np.divide(change, total, out=np.zeros(total.size), where=total > 0.0))
+
+
 def contact_step(
     system: GapSystem, output_step: float, initial: Array | float = 0.0, phase: float = PHASE
 ) -> float:
-    """The largest whole part of the output step that resolves every contact, in s.
+    """The largest whole part of the output step that resolves contacts, friction, excitations.
 
-    It is also at most 1/ω of the highest mode.
+    With contact or friction it is also at most 1/ω of the highest mode.
 
     Args:
-        system: without contact rows the motion is exact, and the output step itself serves.
+        system: without any of these the motion is exact, and the output step itself serves.
         output_step: in s.
         initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
-        phase: step times the highest contact frequency.
+        phase: step times the highest frequency.
     """
-    if not system.laws:
-        return output_step
-    # An impulse every half period of a mode pumps it (García-Archilla et al. 1999): stay well
-    # away from that for all modes, however soft the contact.
-    stiffest = phase * float(np.sqrt(system.omega2.max()))
-    fastest = max(float(contact_frequencies(system, initial).max()), stiffest)
+    frequencies = [x.fastest for x in system.excitations]
+    if system.laws:
+        frequencies.extend(contact_frequencies(system, initial))
+    if system.frictions:
+        frequencies.extend(sliding_frequencies(system, initial))
+    if system.laws or system.frictions:
+        # An impulse every half period of a mode pumps it (García-Archilla et al. 1999): stay well
+        # away from that for all modes, however soft the contact.
+        frequencies.append(phase * float(np.sqrt(system.omega2.max())))
+    fastest = max(frequencies, default=0.0)
     return output_step / max(1, int(np.ceil(output_step * fastest / phase)))

@@ -2,7 +2,8 @@
 """What leaves every model: deflections, contact forces and energies over time.
 
 A trajectory is labelled (xarray) and carries its energy residual: kinetic, strain and contact
-energy, less the work of the load, plus what damping took, should add up to what there was.
+energy, less the work of the loads, plus what damping, friction and contact took, should add up to
+what there was.
 """
 
 from __future__ import annotations
@@ -30,8 +31,10 @@ class Trajectory:
         data: dims ``time`` and ``station``; the output of each observer;
             ``contact_force`` in N, positive where the inner segment presses up, as the mean
             over the output interval that ends at the time (so that its sum is the impulse);
-            ``contact_force_peak``, the largest in that interval; ``gap`` in m, the mean of
-            u − w over a station's rows; the energies in J. Attributes: ``step`` in s,
+            ``contact_force_peak``, the largest in that interval; ``friction_force`` in N, the
+            mean likewise, positive where it pushes the inner segment along its row; ``gap`` in m,
+            the mean of u − w over a station's rows; the energies in J. Coordinate ``direction``
+            (station). Attributes: ``step`` in s,
             ``steps``, ``first_contact`` in s (NaN if none), ``contact_changes``,
             ``energy_residual``.
         states: (num_times, num_modes) modal coordinates.
@@ -51,24 +54,30 @@ class Trajectory:
         row_gaps: Array,
         row_forces: Array,
         row_peaks: Array,
+        row_frictions: Array,
         step: float,
         steps: int,
         first_contact: float,
         contact_changes: int,
+        least_energy: float = 0.0,
     ) -> Trajectory:
         """Label what an integrator leaves; rows are gathered by station.
 
         Args:
             time: (num_times,) in s.
             states: (num_times, num_modes).
-            energies: (num_times, 5), the columns of ``ENERGIES`` in J.
+            energies: (num_times, 7), the columns of ``ENERGIES`` in J.
             row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
+            row_frictions: (num_times, num_frictions) in N.
             step: in s.
             steps: how many were made, several that are made at once counted as one.
             first_contact: in s.
             contact_changes: how often a row opened or closed.
+            least_energy: below which the energy put in is round-off, in J.
         """
-        belongs = np.equal.outer(system.station_of_row, np.arange(len(system.stations)))
+        stations = np.arange(len(system.stations))
+        belongs = np.equal.outer(system.station_of_row, stations)
+        rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
         variables: dict[str, tuple[Dims, Array, dict[str, str]]] = {
             name: ("time", states @ row, {"units": unit})
@@ -78,6 +87,7 @@ class Trajectory:
         variables |= {
             "contact_force": (by_station, row_forces @ belongs, {"units": "N"}),
             "contact_force_peak": (by_station, row_peaks @ belongs, {"units": "N"}),
+            "friction_force": (by_station, row_frictions @ rubs, {"units": "N"}),
             "gap": (by_station, row_gaps @ belongs / rows_at, {"units": "m"}),
         }
         variables |= {
@@ -89,13 +99,14 @@ class Trajectory:
             coords={
                 "time": ("time", time, {"units": "s"}),
                 "station": ("station", np.array(system.stations, dtype=float), {"units": "m"}),
+                "direction": ("station", np.array(system.station_directions, dtype=str)),
             },
             attrs={
                 "step": step,
                 "steps": steps,
                 "first_contact": first_contact,
                 "contact_changes": contact_changes,
-                "energy_residual": float(np.abs(energy_residual(energies)).max()),
+                "energy_residual": float(np.abs(energy_residual(energies, least_energy)).max()),
             },
         )
         return cls(data, states)

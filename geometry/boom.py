@@ -1,90 +1,45 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom: segments that slide in one another, their supports, joints and loads.
+"""The boom: segments that slide in one another, their joints, loads and stops.
 
 x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
-from geometry.section import BoxSection
+import numpy as np
+import numpy.typing as npt
 
-# Two lengths closer than this (m) are the same place: far below any plate, far above round-off.
-SAME_PLACE = 1.0e-9
+from geometry.segment import (
+    SAME_PLACE,
+    BoomError,
+    Lateral,
+    Material,
+    PointMass,
+    Segment,
+    Support,
+)
 
+__all__ = [
+    "SAME_PLACE",
+    "Boom",
+    "BoomError",
+    "Direction",
+    "Joint",
+    "Lateral",
+    "Load",
+    "Material",
+    "PointMass",
+    "Segment",
+    "Stop",
+    "Support",
+]
 
-class BoomError(ValueError):
-    """A boom that cannot be. ``where`` is the key of the fault, ``segment[2].span`` say."""
-
-    def __init__(self, where: str, what: str) -> None:
-        super().__init__(f"{where}: {what}")
-        self.where = where
-        self.what = what
-
-
-@dataclass(frozen=True, slots=True)
-class Material:
-    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³."""
-
-    youngs_modulus: float
-    poissons_ratio: float
-    density: float
-
-    @property
-    def shear_modulus(self) -> float:
-        """G = E / 2(1 + ν) in Pa."""
-        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
-
-
-@dataclass(frozen=True, slots=True)
-class Segment:
-    """One box of the boom, with the numbers of its beam and, where known, its plates.
-
-    Args:
-        name: how messages and results call it.
-        start, end: x of its ends in m.
-        material: elastic constants and density.
-        mass_per_length: m̄ in kg/m.
-        second_moment_of_area: J in m⁴.
-        rotary_inertia: I_p in kg·m.
-        section: the box; only shear-flexible beams and shells need it.
-        load: uniform load along z in N/m, applied at t = 0 and kept.
-        supports: x of the places whose deflection is held at zero.
-        viscous_damping: μ̄ of (25) in N·s/m².
-    """
-
-    name: str
-    start: float
-    end: float
-    material: Material
-    mass_per_length: float
-    second_moment_of_area: float
-    rotary_inertia: float
-    section: BoxSection | None = None
-    load: float = 0.0
-    supports: tuple[float, ...] = ()
-    viscous_damping: float = 0.0
-
-    @property
-    def length(self) -> float:
-        """Length in m."""
-        return self.end - self.start
-
-    @property
-    def bending_stiffness(self) -> float:
-        """E J in N·m²."""
-        return self.material.youngs_modulus * self.second_moment_of_area
-
-    @property
-    def rigid_modes(self) -> int:
-        """How many motions in the plane of bending the supports leave free of strain."""
-        return max(0, 2 - len(self.supports))
-
-    def holds(self, x: float) -> bool:
-        """Whether x lies on the segment, its ends included."""
-        return self.start - SAME_PLACE <= x <= self.end + SAME_PLACE
+Direction = Literal["z", "y"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +53,11 @@ class Joint:
         stiffness: k of (4) in N/mⁿ when the inner segment presses up.
         stiffness_below: k when it presses down.
         exponent: n of (4).
+        lateral_clearance: Δ along y in m each way; None in a flat boom.
+        friction: μ of (28), and of (10) and (11) in space.
+        normal_forces: N of (28) in N, one for each station; empty in space, where what presses
+            is the contact force of the other plane.
+        tied: the segments deflect (and in space twist) alike at the stations, without play.
     """
 
     outer: int
@@ -107,41 +67,121 @@ class Joint:
     stiffness: float
     stiffness_below: float
     exponent: float
+    lateral_clearance: float | None = None
+    friction: float = 0.0
+    normal_forces: tuple[float, ...] = ()
+    tied: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A force on a segment's axis that follows a history.
+
+    Args:
+        segment: position in ``Boom.segments``.
+        direction: along which it acts.
+        magnitude: in N/m along the whole segment, or in N at one place.
+        x: the place in m; None for the whole segment.
+        history: (num_times,) in s → (num_times,), what multiplies the magnitude.
+    """
+
+    segment: int
+    direction: Direction
+    magnitude: float
+    x: float | None
+    history: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """A rest on the ground that a segment meets when it deflects along z.
+
+    Args:
+        segment: position in ``Boom.segments``.
+        x: m.
+        clearance: Δ in m each way.
+        stiffness: k of (4) in N/mⁿ against a deflection upwards; 0 where nothing is above.
+        stiffness_below: k against a deflection downwards.
+        exponent: n of (4).
+    """
+
+    segment: int
+    x: float
+    clearance: float
+    stiffness: float
+    stiffness_below: float
+    exponent: float
 
 
 @dataclass(frozen=True, slots=True)
 class Boom:
-    """Segments from the base to the tip, and the joints between them.
+    """Segments from the base to the tip, the joints between them, and what acts on them.
 
     Raises:
-        BoomError: supports or stations outside the segments, an inner box that does not fit
-            its outer one, a segment that nothing holds.
+        BoomError: supports, stations, loads or stops outside the segments, an inner box that
+            does not fit its outer one, a segment that nothing holds, friction without what
+            presses, a boom in space that lacks lateral numbers.
     """
 
     segments: tuple[Segment, ...]
     joints: tuple[Joint, ...]
+    loads: tuple[Load, ...] = ()
+    stops: tuple[Stop, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.segments:
             raise BoomError("segment", "a boom needs at least one segment")
         for number, segment in enumerate(self.segments, start=1):
-            _check_segment(f"segment[{number}]", segment)
+            segment.check(f"segment[{number}]")
         for number, joint in enumerate(self.joints, start=1):
             _check_joint(f"joint[{number}]", joint, self.segments)
         self._check_order()
         self._check_held()
+        if self.spatial:
+            self._check_space()
+        for number, joint in enumerate(self.joints, start=1):
+            _check_friction(f"joint[{number}]", joint, self.spatial)
+        self._check_loads()
+        self._check_stops()
 
     @property
     def tip(self) -> float:
         """x of the free end of the last segment in m."""
         return self.segments[-1].end
 
+    @property
+    def spatial(self) -> bool:
+        """Whether the segments move along y and twist, too."""
+        return any(joint.lateral_clearance is not None for joint in self.joints)
+
+    @property
+    def stations(self) -> list[tuple[float, Direction]]:
+        """x in m and direction of all places of contact, tied joints left out.
+
+        Those of the joints along z, in space those of the joints along y, those of the stops.
+        """
+        directions: tuple[Direction, ...] = ("z", "y") if self.spatial else ("z",)
+        between: list[tuple[float, Direction]] = [
+            (x, direction)
+            for direction in directions
+            for joint in self.joints
+            if not joint.tied
+            for x in joint.stations
+        ]
+        return between + [(stop.x, "z") for stop in self.stops]
+
     def stations_of(self, segment: int) -> tuple[float, ...]:
-        """x of all places at which a segment may touch another, rising."""
+        """x of all places at which something acts on a segment, rising.
+
+        Stations of its joints, stops, point loads and point masses.
+        """
         places = {
             x for joint in self.joints if segment in (joint.outer, joint.inner)
             for x in joint.stations
         }  # fmt: skip
+        places |= {stop.x for stop in self.stops if stop.segment == segment}
+        places |= {load.x for load in self.loads if load.segment == segment and load.x is not None}
+        places |= {mass.x for mass in self.segments[segment].masses}
         return tuple(sorted(places))
 
     def observed(self) -> dict[str, tuple[int, float]]:
@@ -175,7 +215,7 @@ class Boom:
                 )
 
     def _check_held(self) -> None:
-        held = {i for i, segment in enumerate(self.segments) if len(segment.supports) >= 2}
+        held = {i for i, segment in enumerate(self.segments) if segment.rigid_modes == 0}
         for _ in self.joints:
             for joint in self.joints:
                 if len(joint.stations) >= 2 and held & {joint.outer, joint.inner}:
@@ -188,23 +228,46 @@ class Boom:
                     "stations to a segment that is held",
                 )
 
+    def _check_space(self) -> None:
+        for number, joint in enumerate(self.joints, start=1):
+            if joint.lateral_clearance is None:
+                raise BoomError(
+                    f"joint[{number}].lateral_play",
+                    "missing, and another joint has it; a boom is flat or in space as a whole",
+                )
+        for number, segment in enumerate(self.segments, start=1):
+            for key, use in (
+                ("lateral", "bend along y and twist"),
+                ("section", "touch in corners"),
+            ):
+                if getattr(segment, key) is None:
+                    raise BoomError(
+                        f"segment[{number}].{key}",
+                        f"missing; with lateral play the segments {use}",
+                    )
 
-def _check_segment(where: str, segment: Segment) -> None:
-    if not segment.start < segment.end:
-        raise BoomError(
-            f"{where}.span",
-            f"must run from a smaller to a larger x, got [{segment.start:g}, {segment.end:g}] m",
-        )
-    for x in segment.supports:
-        if not segment.holds(x):
-            raise BoomError(
-                f"{where}.supports",
-                f"{x:g} m lies outside the segment; it must be between {segment.start:g} and "
-                f"{segment.end:g} m",
-            )
-    places = sorted(segment.supports)
-    if any(right - left <= SAME_PLACE for left, right in pairwise(places)):
-        raise BoomError(f"{where}.supports", "a place is given twice; give each once")
+    def _check_loads(self) -> None:
+        for number, load in enumerate(self.loads, start=1):
+            if load.x is not None:
+                _check_place(f"load[{number}].x", load.x, self.segments[load.segment])
+            if load.direction == "y" and not self.spatial:
+                raise BoomError(
+                    f"load[{number}].direction",
+                    "the boom is flat, and nothing moves along 'y'; give 'z', or the joints "
+                    "lateral_play",
+                )
+
+    def _check_stops(self) -> None:
+        for number, stop in enumerate(self.stops, start=1):
+            segment = self.segments[stop.segment]
+            _check_place(f"stop[{number}].x", stop.x, segment)
+            for support in segment.supports:
+                if support.stiffness is None and abs(support.x - stop.x) <= SAME_PLACE:
+                    raise BoomError(
+                        f"stop[{number}].x",
+                        f"a support holds {segment.name!r} at {stop.x:g} m already; move one of "
+                        "them",
+                    )
 
 
 def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> None:
@@ -235,4 +298,35 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
             f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
             f"{width:.6g} m of width are free, and a play of {2.0 * joint.clearance:.6g} m is "
             "asked for; make the inner section or the play smaller",
+        )
+    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - SAME_PLACE:
+        raise BoomError(
+            f"{where}.lateral_play",
+            f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
+            f"a lateral play of {2.0 * joint.lateral_clearance:.6g} m is asked for; make the inner "
+            "section or the lateral play smaller",
+        )
+
+
+def _check_friction(where: str, joint: Joint, spatial: bool) -> None:
+    if joint.friction > 0.0 and not joint.normal_forces and not spatial:
+        raise BoomError(
+            f"{where}.normal_forces",
+            "missing, and the joint has friction; give normal_forces, one in N for each station, "
+            "since in a flat boom no other plane presses",
+        )
+    if joint.normal_forces and len(joint.normal_forces) != len(joint.stations):
+        raise BoomError(
+            f"{where}.normal_forces",
+            f"must have one number for each of the {len(joint.stations)} stations, got "
+            f"{len(joint.normal_forces)}",
+        )
+
+
+def _check_place(where: str, x: float, segment: Segment) -> None:
+    if not segment.holds(x):
+        raise BoomError(
+            where,
+            f"{x:g} m lies outside {segment.name!r}; it must be between {segment.start:g} and "
+            f"{segment.end:g} m",
         )

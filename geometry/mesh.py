@@ -4,7 +4,8 @@
 Every wall is cut into transfinite patches, so that mesh lines lie exactly where supports,
 stations and contact points are, whatever the lengths and the mesh size, and so that the mesh
 does not depend on gmsh's version. The triangles mirror each other in y and in z: a load in
-the plane of bending then moves the section in that plane, to round-off.
+the plane of bending then moves the section in that plane, to round-off. The mesh of a box on
+its side lies on its side.
 """
 
 from __future__ import annotations
@@ -135,12 +136,11 @@ def _build_patches(
             loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
             surface = geo.addPlaneSurface([loop])
             surfaces[walls[j]].append(surface)
-            # The diagonals turn around from quadrant to quadrant, which makes the mesh a
-            # mirror image of itself.
-            quadrant = (y0 + y1) * (z0 + z1)
+            # Along x every diagonal runs from a wall's middle towards a corner, which makes the
+            # mesh a mirror image of itself, and that of the box on its side lie on its side.
             geo.mesh.setTransfiniteSurface(
                 surface,
-                "Left" if quadrant > 0.0 else "Right",
+                "Left" if j % 2 == 0 else "Right",
                 [points[i][j], points[i + 1][j], points[i + 1][k], points[i][k]],
             )
             for ring in (rings[i][j], rings[i + 1][j]):

@@ -68,6 +68,11 @@ class BoxSection:
         return _hollow_rectangle(self.height, self.width, self.flange, self.web)
 
     @property
+    def polar_second_moment_of_area(self) -> float:
+        """Second moment about the axis (density times it is the polar inertia) in m⁴."""
+        return self.second_moment_of_area + self.lateral_second_moment_of_area
+
+    @property
     def torsion_constant(self) -> float:
         """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
         enclosed = self.height * self.width
@@ -82,6 +87,10 @@ class BoxSection:
     def lateral_shear_area(self) -> float:
         """Area that carries a shear force along y: the two flanges, in m²."""
         return 2.0 * self.width * self.flange
+
+    def turned(self) -> BoxSection:
+        """The box lying on its side, y and z exchanged."""
+        return BoxSection(self.width, self.height, self.web, self.flange)
 
     def mass_per_length(self, density: float) -> float:
         """Mass of a unit of length in kg/m, for a density in kg/m³."""

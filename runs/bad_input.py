@@ -17,9 +17,18 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "ensemble": schema.EnsembleTable,
     "material": schema.MaterialTable,
     "section": schema.SectionTable,
+    "supports": schema.SupportTable,
+    "masses": schema.MassTable,
     "segment": schema.SegmentTable,
+    "restitution": schema.RestitutionTable,
     "joint": schema.JointTable,
     "contact": schema.ContactTable,
+    "stop": schema.StopTable,
+    "load": schema.LoadTable,
+    "payload": schema.PayloadTable,
+    "base": schema.BaseTable,
+    "start": schema.StartTable,
+    "damping": schema.DampingTable,
     "kantorovich": schema.KantorovichTable,
     "finite-element": schema.FiniteElementTable,
     "shell": schema.ShellTable,
@@ -94,7 +103,7 @@ def _explain(
         what = "must be a list of two numbers"
     elif fault == "string_pattern_mismatch":
         what = "must be made of letters, digits, blanks and . _ + -, starting with one of the first"
-    elif fault == "tuple_type" and key in ("segment", "joint", "model"):
+    elif fault == "tuple_type" and key in ("segment", "joint", "stop", "load", "base", "model"):
         what = f"must be an array of tables, each headed [[{key}]]"
     elif fault == "tuple_type":
         what = "must be a list"

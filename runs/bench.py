@@ -143,7 +143,7 @@ def five_terms(case: Case) -> GapSystem:
         kantorovich_segment(segment, terms, model.base, model.rotary_inertia)
         for segment, terms in zip(boom.segments, model.terms, strict=True)
     ]
-    return gap_system(boom, segments, contact_laws(boom, model))
+    return gap_system(boom, segments, contact_laws(case, model))
 
 
 def compare(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
@@ -310,7 +310,7 @@ def _shell_system(case: Case) -> GapSystem | None:
     options = boom_shell.ShellOptions(
         mesh_size=models[0].mesh_size, contact_line=models[0].contact_line
     )
-    reduced = boom_shell.reduce_boom(boom, contact_laws(boom, models[0]), options, mpi.COMM_SELF)
+    reduced = boom_shell.reduce_boom(boom, contact_laws(case, models[0]), options, mpi.COMM_SELF)
     system: GapSystem = reduced.system
     return system
 

@@ -5,11 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.contact import PowerContact
-from geometry.boom import Boom, BoomError, Joint, Material, Segment
+from dynamics.contact import PowerContact, restitution_damping
+from geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment, Support
 from geometry.section import BoxSection, SectionError, infer_inner_section, infer_outer_section
+from runs import actions
 from runs.bad_input import choices
-from runs.schema import Case, FiniteElementTable, Model, SegmentTable, ShellTable
+from runs.schema import (
+    Case,
+    ContactTable,
+    FiniteElementTable,
+    JointTable,
+    Model,
+    SegmentTable,
+    ShellTable,
+)
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -25,16 +34,39 @@ def build_boom(case: Case) -> Boom:
     joints = tuple(_joint(case, number) for number in range(len(case.joints)))
     sections = _sections(case, joints)
     segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
-    return Boom(segments, joints)
+    return Boom(segments, joints, actions.loads(case, segments), actions.stops(case, segments))
 
 
-def contact_laws(boom: Boom, model: Model) -> list[PowerContact]:
-    """The contact law of each joint, as a model sees it."""
-    laws = [(joint.clearance, model.contact or joint) for joint in boom.joints]
+def contact_laws(case: Case, model: Model) -> list[PowerContact]:
+    """The contact law of each joint along z, as a model sees it."""
     return [
-        PowerContact(law.stiffness, law.exponent, clearance, law.stiffness_below)
-        for clearance, law in laws
+        _law(law, 0.5 * joint.play, law.stiffness, law.stiffness_below, law.exponent)
+        for joint, law in ((joint, model.contact or joint) for joint in case.joints)
     ]
+
+
+def lateral_laws(case: Case, model: Model) -> list[PowerContact]:
+    """The same along y; none for a flat boom."""
+    laws = []
+    for joint in case.joints:
+        if joint.lateral_play is not None:
+            law = model.contact or joint
+            stiffness = law.stiffness if model.contact else joint.lateral_stiffness or law.stiffness
+            exponent = law.exponent if model.contact else joint.lateral_exponent or law.exponent
+            laws.append(_law(law, 0.5 * joint.lateral_play, stiffness, None, exponent))
+    return laws
+
+
+def _law(
+    table: JointTable | ContactTable,
+    clearance: float,
+    stiffness: float,
+    below: float | None,
+    exponent: float,
+) -> PowerContact:
+    blow = table.restitution
+    damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
+    return PowerContact(stiffness, exponent, clearance, below, damping)
 
 
 def needs_plates(model: Model) -> bool:
@@ -87,6 +119,10 @@ def _joint(case: Case, index: int) -> Joint:
             table.stiffness if table.stiffness_below is None else table.stiffness_below
         ),
         exponent=table.exponent,
+        lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
+        friction=table.friction,
+        normal_forces=table.normal_forces,
+        tied=table.tied,
     )
 
 
@@ -105,8 +141,42 @@ def _segment(case: Case, index: int, section: BoxSection | None) -> Segment:
         rotary_inertia=material.density * second_moment if rotary is None else rotary,
         section=section,
         load=table.load,
-        supports=table.supports,
+        supports=tuple(Support(**support.model_dump()) for support in table.supports),
         viscous_damping=table.viscous_damping,
+        masses=_masses(case, index),
+        lateral=_lateral(table, material, section) if _in_space(case) else None,
+    )
+
+
+def _masses(case: Case, index: int) -> tuple[PointMass, ...]:
+    table = case.segments[index]
+    masses = [PointMass(mass.x, mass.mass) for mass in table.masses]
+    if case.payload is not None and index == len(case.segments) - 1:
+        masses.append(PointMass(table.span[1], case.payload.mass))
+    return tuple(masses)
+
+
+def _in_space(case: Case) -> bool:
+    return any(joint.lateral_play is not None for joint in case.joints)
+
+
+def _lateral(table: SegmentTable, material: Material, section: BoxSection | None) -> Lateral | None:
+    """What bends sideways and twists, given or of the section; None where something is unknown."""
+    second_moment, torsion = table.lateral_second_moment_of_area, table.torsion_constant
+    polar = table.polar_inertia
+    if section is not None:
+        second_moment = second_moment or section.lateral_second_moment_of_area
+        torsion = torsion or section.torsion_constant
+        polar = polar or material.density * section.polar_second_moment_of_area
+    if second_moment is None or torsion is None or polar is None:
+        return None
+    rotary = table.lateral_rotary_inertia
+    return Lateral(
+        second_moment_of_area=second_moment,
+        rotary_inertia=material.density * second_moment if rotary is None else rotary,
+        torsion_constant=torsion,
+        polar_inertia=polar,
+        load=table.lateral_load,
     )
 
 

@@ -6,17 +6,30 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from pydantic import ValidationError
 
+from beam_model.kantorovich import bending_basis
 from geometry.boom import Boom, BoomError
 from runs.bad_input import BadInput, choices
 from runs.build import build_boom, check_names, needs_plates
-from runs.schema import Case, FiniteElementTable, KantorovichTable, ShellTable, TimeTable
+from runs.schema import (
+    MOST_MEMBERS,
+    Case,
+    EnsembleTable,
+    FiniteElementTable,
+    HistoryTable,
+    KantorovichTable,
+    ShellTable,
+    TimeTable,
+)
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
 MOST_OUTPUTS = 10_000_000
+
+History = TypeVar("History", bound=HistoryTable)
 
 # A dense eigenproblem of more elements, or a factorisation of more triangles, is a slip of the pen.
 MOST_ELEMENTS = 5_000
@@ -32,9 +45,19 @@ def load(path: str) -> Case:
         BadInput: the file cannot be read, or what it says cannot be.
     """
     try:
-        case = Case.model_validate(_read(path))
+        case = _read_tables(Case.model_validate(_read(path)), path)
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
+    check(case, path)
+    return case
+
+
+def check(case: Case, path: str) -> None:
+    """Whether a case can be, beyond what its tables say each for itself.
+
+    Raises:
+        BadInput: it cannot.
+    """
     try:
         _check_time(case.time)
         boom = build_boom(case)
@@ -45,15 +68,27 @@ def load(path: str) -> Case:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
         ) from None
-    return case
 
 
-def select(case: Case, path: str, models: Sequence[str] | None, mesh_size: float | None) -> Case:
-    """The case with the named models alone, and with another mesh for its shells.
+def select(
+    case: Case,
+    path: str,
+    models: Sequence[str] | None = None,
+    mesh_size: float | None = None,
+    members: int | None = None,
+) -> Case:
+    """The case with the named models alone, another mesh for its shells, other ensembles.
+
+    Args:
+        case: a checked one.
+        path: of its file, for messages.
+        models: names; all unless given.
+        mesh_size: in m.
+        members: of each ensemble; 0 for none.
 
     Raises:
         BadInput: a name that the case does not know, a mesh size that is not positive, or one
-            that nothing would use.
+            that nothing would use, a single member.
     """
     chosen = case.models
     if models is not None:
@@ -81,7 +116,17 @@ def select(case: Case, path: str, models: Sequence[str] | None, mesh_size: float
             else model
             for model in chosen
         )
-    return case.model_copy(update={"models": chosen})
+    ensemble = case.ensemble
+    if members is not None:
+        if members == 1 or not 0 <= members <= MOST_MEMBERS:
+            raise BadInput(
+                path,
+                "--members",
+                f"must be from 2 to {MOST_MEMBERS}, or 0 for no ensembles, got {members}",
+            )
+        given = {} if ensemble is None else ensemble.model_dump()
+        ensemble = EnsembleTable.model_validate({**given, "members": members}) if members else None
+    return case.model_copy(update={"models": chosen, "ensemble": ensemble})
 
 
 def _read(path: str) -> dict[str, object]:
@@ -94,6 +139,37 @@ def _read(path: str) -> dict[str, object]:
         raise BadInput(path, "file", "is a directory; give the path of a case file") from None
     except (OSError, ValueError, RecursionError) as error:
         raise BadInput(path, *_unreadable(error)) from None
+
+
+def _read_tables(case: Case, path: str) -> Case:
+    """The case with the CSV files of its histories in place, so that it stands alone."""
+
+    def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
+        return tuple(
+            history
+            if history.file is None
+            else history.model_copy(
+                update={"file": None, "table": _pairs(path, f"{key}[{i}].file", history.file)}
+            )
+            for i, history in enumerate(histories, start=1)
+        )
+
+    return case.model_copy(
+        update={"loads": standing("load", case.loads), "base": standing("base", case.base)}
+    )
+
+
+def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
+    remedy = "give a CSV file of two columns, time in s and factor"
+    try:
+        pairs = np.loadtxt(Path(path).parent / file, delimiter=",", ndmin=2)
+    except OSError as error:
+        raise BadInput(path, key, f"{file!r} cannot be read ({error.strerror}); {remedy}") from None
+    except ValueError:
+        raise BadInput(path, key, f"{file!r} holds other than numbers; {remedy}") from None
+    if pairs.size == 0 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise BadInput(path, key, f"{file!r} has other columns; {remedy}")
+    return tuple((float(t), float(factor)) for t, factor in pairs)
 
 
 def _unreadable(error: Exception) -> tuple[str, str]:
@@ -146,6 +222,12 @@ def _check_models(case: Case, boom: Boom) -> None:
                 f"must have one number for each of the {len(boom.segments)} segments, got "
                 f"{list(model.terms)}",
             )
+        if isinstance(model, KantorovichTable):
+            for segment, terms in zip(boom.segments, model.terms, strict=True):
+                try:
+                    bending_basis(segment, terms, model.base)
+                except BoomError as error:
+                    raise BoomError(f"{where}.base", error.what) from None
         if isinstance(model, FiniteElementTable) and model.tied and model.contact:
             raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
         if isinstance(model, FiniteElementTable):
@@ -165,6 +247,11 @@ def _check_models(case: Case, boom: Boom) -> None:
                     )
         if isinstance(model, ShellTable):
             _check_mesh_size(f"{where}.mesh_size", model.mesh_size, boom)
+            if boom.spatial and model.contact_line == "across":
+                raise BoomError(
+                    f"{where}.contact_line",
+                    "'across' is for a flat boom; in space the segments touch 'near webs'",
+                )
             for i, segment in enumerate(boom.segments, start=1):
                 if segment.viscous_damping > 0.0:
                     raise BoomError(

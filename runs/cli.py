@@ -7,7 +7,7 @@ import json
 import logging
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
@@ -20,12 +20,13 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from dynamics.failure import NumericsError
 from runs import case as case_file
-from runs import output, ranks
+from runs import output, ranks, sweep_output, sweep_points
+from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
 from runs.inferred import print_inferred
 from runs.pipeline import Progress as Tell
 from runs.pipeline import run_case
-from runs.report import print_table
+from runs.printed import print_models, print_verdicts
 from runs.results import FIELDS, Results
 from runs.schema import Case, ShellTable
 from shell_model.rendering import RenderingUnavailable
@@ -55,11 +56,16 @@ def run(
     mesh_size: Annotated[
         float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
     ] = None,
+    members: Annotated[
+        int | None, typer.Option(metavar="N", help="Runs in each model's ensemble, 0 for none.")
+    ] = None,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
     names = None if models is None else [name.strip() for name in models.split(",")]
-    effective = case_file.select(case_file.load(case), case, names, mesh_size)
+    effective = case_file.select(case_file.load(case), case, names, mesh_size, members)
     comm = _enter_mpi(effective, case)
+    if comm is None and effective.ensemble is not None:
+        comm = sweep_runs.launched_world(case)
     with _all_ranks_end_together(comm), TemporaryDirectory(prefix="protractile-") as scratch:
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
@@ -71,15 +77,18 @@ def run(
         assert finished is not None
         output.write(finished, folder, Path(scratch))
         print(f"{folder / output.REPORT}")
-        return _show(finished.results, case)
+        return _show({case: finished.results})
 
 
 @app.command()
-def report(folder: Folder) -> int:
-    """Render the report of a run again from its data, and print its tables."""
-    results = Results.load(Path(folder))
-    output.write_report(results, Path(folder))
-    return _show(results, folder)
+def report(
+    folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
+) -> int:
+    """Render the reports of runs again from their data, and print their tables."""
+    runs = {folder: Results.load(Path(folder)) for folder in folders}
+    for folder, results in runs.items():
+        output.write_report(results, Path(folder))
+    return _show(runs)
 
 
 @app.command()
@@ -105,6 +114,52 @@ def snapshot(
     for name in results.summary["snapshots"]["written"]:
         print(Path(folder) / output.SNAPSHOTS / name)
     return 0
+
+
+@app.command()
+def sweep(
+    case: CaseFile,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEY=VALUES",
+            help="What takes which values: joint.play=0:0.02:11 (start, stop, count), "
+            "segment[2].load=20,40,60. May be repeated; all combinations are run.",
+        ),
+    ],
+    out: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
+    ] = None,
+    models: Annotated[
+        str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")
+    ] = None,
+    mesh_size: Annotated[
+        float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
+    ] = None,
+) -> int:
+    """Run a case over values of its numbers, and chart its models.
+
+    Finished points stay in the folder and are not run again. Sections that the case infers are
+    those of its own play, whatever play a point has. Under mpirun the ranks but the first run the
+    points, else the cores do. Ensembles are left out.
+    """
+    names = None if models is None else [name.strip() for name in models.split(",")]
+    plan = sweep_points.plan(case, vary, names, mesh_size)
+    comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
+    with _all_ranks_end_together(comm):
+        folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
+        if comm is None or comm.rank == 0:
+            sweep_runs.prepare(folder, case)
+        with sweep_runs.workers(comm) as pool:
+            if pool is None:
+                return 0
+            with _progress_bars() as tell:
+                outcomes = sweep_runs.run_points(plan.points, folder, pool, tell)
+        data = sweep_output.write(plan, outcomes, folder)
+        print(folder / sweep_output.CSV)
+        sweep_output.show(data, Console())
+        return _show_failures(plan, outcomes)
 
 
 @app.command()
@@ -167,7 +222,7 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
         ranks.fail(*(known or (traceback.format_exc(), 1)), comm)
 
 
-def _enter_mpi(case: Case, file: str) -> MPI.Comm | None:
+def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
     """The ranks that share the shells, None for a case without one.
 
     Raises:
@@ -214,20 +269,32 @@ def _silence(model: str, stage: str, part: float) -> None:
     """Progress is rank 0's to show."""
 
 
-def _show(results: Results, file: str) -> int:
-    """Print the tables and what is amiss; the exit status."""
-    print_table(results, Console())
-    skipped = results.summary["snapshots"]["skipped"]
-    if skipped is not None:
-        print(f"no snapshots: {skipped}")
-    broken = results.broken_demands()
-    for verdict in broken:
+def _show(runs: Mapping[str, Results]) -> int:
+    """Print the tables of runs, by their file, and what is amiss; the exit status."""
+    console = Console()
+    for results in runs.values():
+        print_models(results, console)
+        skipped = results.summary["snapshots"]["skipped"]
+        if skipped is not None:
+            print(f"no snapshots: {skipped}")
+    print_verdicts({Path(file).stem: results for file, results in runs.items()}, console)
+    broken = [(file, verdict) for file, run in runs.items() for verdict in run.broken_demands()]
+    for file, verdict in broken:
         print(
             f"protractile: {file}: demand: {verdict.id} is {verdict.verdict}, and the case demands "
             f"that it is reproduced: {verdict.why}",
             file=sys.stderr,
         )
     return 1 if broken else 0
+
+
+def _show_failures(plan: sweep_points.Plan, outcomes: Sequence[sweep_runs.Outcome]) -> int:
+    """A line for each model that failed at a point; the exit status, 3 if nothing else is left."""
+    for point, outcome in zip(plan.points, outcomes, strict=True):
+        for model, why in outcome.failures.items():
+            line = f"protractile: {plan.file}: --vary {point.label}: {model}: {why}"
+            print(" ".join(line.split()), file=sys.stderr)
+    return 0 if any(outcome.models for outcome in outcomes) else 3
 
 
 if __name__ == "__main__":

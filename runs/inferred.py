@@ -6,7 +6,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from geometry.boom import Boom
+from geometry.boom import Boom, Joint
 from geometry.section import BoxSection
 from runs.build import build_boom, contact_laws
 from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
@@ -19,7 +19,7 @@ def print_inferred(case: Case, console: Console) -> None:
     console.print(_segments(case, boom))
     if boom.joints:
         console.print(_joints(boom))
-    console.print(_models(case, boom))
+    console.print(_models(case))
 
 
 def _segments(case: Case, boom: Boom) -> Table:
@@ -49,7 +49,7 @@ def _plates(section: BoxSection | None) -> str:
 
 
 def _joints(boom: Boom) -> Table:
-    table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)")
+    table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)", "friction")
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         room = "unknown"
@@ -61,17 +61,32 @@ def _joints(boom: Boom) -> Table:
             f"{inner.name} in {outer.name}",
             f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",
             ", ".join(f"{x:g}" for x in joint.stations),
-            f"± {1e3 * joint.clearance:g}",
+            "tied" if joint.tied else _clearance(joint),
             room,
+            _friction(joint),
         )
     return table
 
 
-def _models(case: Case, boom: Boom) -> Table:
+def _clearance(joint: Joint) -> str:
+    vertical = f"± {1e3 * joint.clearance:g}"
+    if joint.lateral_clearance is None:
+        return vertical
+    return f"{vertical}, ± {1e3 * joint.lateral_clearance:g} to the sides"
+
+
+def _friction(joint: Joint) -> str:
+    if joint.friction == 0.0:
+        return "none"
+    forces = ", ".join(f"{force:g}" for force in joint.normal_forces)
+    return f"{joint.friction:g}, pressed by {f'{forces} N' if forces else 'the contacts'}"
+
+
+def _models(case: Case) -> Table:
     table = Table("model", "kind", "", "contact (k in N/mⁿ)")
     for model in case.models:
         tied = isinstance(model, FiniteElementTable) and model.tied
-        laws = {f"k {law.stiffness:g}, n {law.exponent:g}" for law in contact_laws(boom, model)}
+        laws = {f"k {law.stiffness:g}, n {law.exponent:g}" for law in contact_laws(case, model)}
         contact = "tied" if tied else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, _resolution(model), contact)
     return table

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -16,10 +18,28 @@ from dynamics.slow_motion import CUTOFF_SHARE, SlowPeaks
 from geometry.boom import Boom
 from runs.schema import TimeTable
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
 # Elements of the closed boom, whose lowest frequency they give to four digits.
 ELEMENT_LENGTH = 0.5
 # Deflections that are kept of every member.
 PLACES = ("tip", "head")
+
+
+@contextmanager
+def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
+    """Who makes the runs of an ensemble: all ranks but the first, or None for our own threads.
+
+    Collective. Other ranks than the first get None, once they have nothing to do any more.
+    """
+    if comm is None or comm.size == 1:
+        yield None
+        return
+    from mpi4py.futures import MPICommExecutor
+
+    with MPICommExecutor(comm, root=0) as ranks:
+        yield ranks
 
 
 def slow_below(boom: Boom, time: TimeTable) -> float | None:

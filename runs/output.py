@@ -5,10 +5,8 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import shutil
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,9 +15,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from runs import toml
+from runs import readings, snapshots, toml
 from runs.bad_input import BadInput
 from runs.figures import draw
+from runs.files import whole, whole_folder
 from runs.pipeline import Run
 from runs.report import render
 from runs.results import (
@@ -81,6 +80,7 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
     for path in folder.glob(f"*{FIELDS}"):
         path.unlink()
     (folder / ENSEMBLES).unlink(missing_ok=True)
+    (folder / readings.FILE).unlink(missing_ok=True)
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
     empty = [name for name, size in results.trajectories.sizes.items() if size == 0]
     with whole(folder / TRAJECTORIES) as path:
@@ -131,44 +131,24 @@ def write_snapshots(results: Results, folder: Path, times: Sequence[float] | Non
 
 
 def write_report(results: Results, folder: Path) -> None:
-    """Write what is derived from the trajectories: summary, verdicts, figures, report."""
+    """Write what is derived from the trajectories: summary, verdicts, figures, report.
+
+    A survey of the case's readings that lies in the folder is shown, too.
+
+    Raises:
+        BadInput: the survey is damaged, or of another case.
+    """
+    surveyed = readings.load(folder, results.case)
     _write_text(folder / SUMMARY, _json(results.summary))
     _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in results.verdicts]))
     with whole_folder(folder / "figures") as part:
         drawn = draw(results, part)
     figures = [replace(figure, path=folder / "figures" / figure.path.name) for figure in drawn]
-    pictures = [folder / SNAPSHOTS / name for name in results.summary["snapshots"]["written"]]
-    _write_text(folder / REPORT, render(results, figures, pictures))
-
-
-@contextmanager
-def whole(path: Path) -> Iterator[Path]:
-    """A name to write to; the file gets its own when it is complete."""
-    part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        yield part
-        os.replace(part, path)
-    except OSError as error:
-        # A full disk does not say which file it was.
-        raise OSError(error.errno, error.strerror, str(path)) from error
-    finally:
-        part.unlink(missing_ok=True)
-
-
-@contextmanager
-def whole_folder(folder: Path) -> Iterator[Path]:
-    """A folder to write to; its files replace those of ``folder`` when all are complete."""
-    with TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}-") as part:
-        yield Path(part)
-        folder.mkdir(exist_ok=True)
-        new = {path.name for path in Path(part).iterdir()}
-        for name in new:
-            os.replace(Path(part) / name, folder / name)
-    for path in folder.iterdir():
-        if path.name not in new:
-            path.unlink()
-    if not new:
-        folder.rmdir()
+    pictures = [
+        snapshots.describe(results, folder / SNAPSHOTS / name)
+        for name in results.summary["snapshots"]["written"]
+    ]
+    _write_text(folder / REPORT, render(results, figures, pictures, surveyed))
 
 
 def _write_text(path: Path, text: str) -> None:
@@ -181,12 +161,17 @@ def _json(data: Any) -> str:
 
 
 def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """One line for each model and time; a station's columns are headed ``NAME@X``."""
+    """One line for each model and time; a station's columns are headed ``NAME@X``.
+
+    Behind the X stands ``y`` where the station works to the sides, and ``#2`` and so forth where
+    others are at the same place.
+    """
     columns: dict[str, xr.DataArray] = {}
+    places = _places(trajectories)
     for name, variable in trajectories.data_vars.items():
         if "station" in variable.dims:
-            for i, x in enumerate(trajectories["station"].values):
-                columns[f"{name}@{x:g}"] = variable.isel(station=i)
+            for place, values in zip(places, variable.transpose("station", ...), strict=True):
+                columns[f"{name}@{place}"] = values
         else:
             columns[str(name)] = variable
     with path.open("w", newline="", encoding="utf-8") as file:
@@ -197,3 +182,18 @@ def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
             table = np.column_stack([times, *(c.isel(model=i).values for c in columns.values())])
             for row in table.tolist():
                 writer.writerow([model, *("" if np.isnan(v) else f"{v:.9g}" for v in row)])
+
+
+def _places(trajectories: xr.Dataset) -> list[str]:
+    """What each station is called in a heading."""
+    stations = trajectories["station"]
+    names = [f"{x:g}" for x in stations.values]
+    if "direction" in stations.coords:
+        sides = stations["direction"].values
+        names = [
+            name + ("y" if side == "y" else "") for name, side in zip(names, sides, strict=True)
+        ]
+    before = [names[:i].count(name) for i, name in enumerate(names)]
+    return [
+        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
+    ]

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 import platform
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -16,28 +17,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from beam_model.finite_element import finite_element_segment
-from beam_model.kantorovich import kantorovich_segment
-from beam_model.segment_model import gap_system, tied_system
-from dynamics.ensemble import integrate_ensemble
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs import members, toml
-from runs.build import build_boom, contact_laws
+from runs.build import build_boom
+from runs.comparisons import compare_models
+from runs.economy import steps_for_peaks
+from runs.motion import Motion
 from runs.results import Results, label
-from runs.schema import (
-    Case,
-    EnsembleTable,
-    FiniteElementTable,
-    KantorovichTable,
-    Model,
-    ShellTable,
-    TimeTable,
-)
+from runs.schema import Case, Model, ShellTable
+from runs.systems import beam_system, reduce_shell
 from runs.verdicts import judge
 
 if TYPE_CHECKING:
@@ -48,9 +39,6 @@ if TYPE_CHECKING:
 
 # Called with the model's name, the stage, and the part of it that is done.
 Progress = Callable[[str, str, float], None]
-
-# Days of computing: what asks for more is a slip of the pen.
-MOST_STEPS = 1.0e10
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,14 +73,15 @@ class Run:
 
 
 def run_case(
-    case: Case, file: str, comm: MPI.Comm | None, mesh_folder: Path, progress: Progress
+    case: Case, file: str, comm: MPI.Intracomm | None, mesh_folder: Path, progress: Progress
 ) -> Run | None:
     """Run all models of a case. Collective; None but on rank 0.
 
     Args:
         case: a checked one.
         file: how messages call it.
-        comm: the ranks that share the shells; only a case with a shell needs it.
+        comm: the ranks that share the shells and the ensembles; a case without shells can do
+            without.
         mesh_folder: where gmsh's files go, ``MODEL/SEGMENT.msh``.
         progress: told about every stage.
 
@@ -101,14 +90,15 @@ def run_case(
     """
     boom = build_boom(case)
     first_rank = comm is None or comm.rank == 0
+    cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
     outcomes: dict[str, Outcome] = {}
     for number, model in enumerate(case.models, start=1):
-        if not (first_rank or isinstance(model, ShellTable)):
-            continue
         try:
             # What overflows is found where it matters, and said there.
             with np.errstate(all="ignore"):
-                outcome = _run_model(boom, model, case, comm, mesh_folder / model.name, progress)
+                outcome = _run_model(
+                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress
+                )
         except NumericsError as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         except (ArithmeticError, np.linalg.LinAlgError, ValueError) as error:
@@ -130,15 +120,12 @@ def run_case(
         {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
     )
     if ensembles is not None and case.ensemble is not None:
-        cutoff = members.slow_below(boom, case.time)
-        for name, out in outcomes.items():
-            if out.ensemble is not None:
-                summary["models"][name]["ensemble"] = members.sum_up(out.ensemble, cutoff)
         summary["ensemble"] = {**case.ensemble.model_dump(), "slow_below": cutoff}
         ensembles = ensembles.assign_attrs(case_hash=summary["case_hash"])
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary["case_hash"])
+    summary["comparisons"] = compare_models(case, data, ensembles, summary)
     verdicts = judge(data, summary, case, ensembles)
     shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
     return Run(Results(case, data, summary, verdicts, ensembles), shells)
@@ -148,127 +135,65 @@ def _run_model(
     boom: Boom,
     model: Model,
     case: Case,
-    comm: MPI.Comm | None,
+    cutoff: float | None,
+    comm: MPI.Intracomm | None,
     mesh_folder: Path,
     progress: Progress,
 ) -> Outcome | None:
     """What a model leaves, on rank 0; None elsewhere."""
+    first_rank = comm is None or comm.rank == 0
 
     def tell(stage: str, part: float) -> None:
         progress(model.name, stage, part)
 
+    seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(name: str) -> Iterator[Callable[[float], None]]:
+        begin = perf_counter()
+        yield lambda part: tell(name, part)
+        seconds[name] = perf_counter() - begin
+
     reduced = None
     if isinstance(model, ShellTable):
         assert comm is not None
-        reduced = _reduce(boom, model, comm, mesh_folder, tell)
-        system, seconds, num_dofs = reduced.system, dict(reduced.seconds), reduced.num_dofs
-        if comm.rank != 0:
+        reduced = reduce_shell(case, boom, model, comm, mesh_folder, tell)
+        system, num_dofs = reduced.system, reduced.num_dofs
+        seconds |= reduced.seconds
+    elif first_rank:
+        with stage("build"):
+            system = beam_system(case, boom, model)
+        num_dofs = system.num_modes
+    with members.workers(comm if case.ensemble else None) as executor:
+        if not first_rank:
             return None
-    else:
-        start = perf_counter()
-        system = _beam_system(boom, model)
-        seconds, num_dofs = {"build": perf_counter() - start}, system.num_modes
-    trajectory = _move(system, model, case.time, seconds, tell)
-    ensemble = None
-    if case.ensemble is not None and system.laws:
-        step = trajectory.data.attrs["step"]
-        ensemble = _move_members(system, case.ensemble, case.time, step, seconds, tell)
-    summary = _summary(model, system, trajectory, num_dofs, seconds)
+        motion = Motion.of(system, case, boom, model)
+        motion.warm()
+        with stage("motion") as told:
+            trajectory = motion.trajectory(told)
+        summary = _summary(model, system, trajectory, num_dofs, seconds)
+        # Under prescribed forces friction makes the motion regular; what contacts press does not.
+        if system.frictions and not any(friction.pressed_by for friction in system.frictions):
+            with stage("half the step") as told:
+                summary["step_halving"] = motion.change_by_finer_steps(trajectory, told)
+        ensemble = None
+        if case.ensemble is not None and system.laws:
+            with stage("ensemble") as told:
+                ensemble = motion.ensemble(case.ensemble, executor, told)
+            summary["ensemble"] = members.sum_up(ensemble, cutoff)
+            with stage("horizons") as told:
+                summary["horizons"] = motion.horizons(case.ensemble, executor, told)
+            if cutoff is not None and motion.from_rest:
+                peaks = summary["ensemble"]["slow_peaks"]
+                with stage("step counts"):
+                    summary["steps_for_peaks"] = steps_for_peaks(
+                        motion.system, peaks, cutoff, case.time.output_step
+                    )
     if reduced is None:
         return Outcome(trajectory, summary, ensemble, None)
     summary["reduction_errors"] = reduced.errors
     shell = _shell_output(boom, model.name, reduced, trajectory)
     return Outcome(trajectory, summary, ensemble, shell)
-
-
-def _beam_system(boom: Boom, model: KantorovichTable | FiniteElementTable) -> GapSystem:
-    if isinstance(model, KantorovichTable):
-        segments = [
-            kantorovich_segment(segment, terms, model.base, model.rotary_inertia)
-            for segment, terms in zip(boom.segments, model.terms, strict=True)
-        ]
-        return gap_system(boom, segments, contact_laws(boom, model))
-    segments = [
-        finite_element_segment(
-            segment,
-            model.element_length,
-            boom.stations_of(number),
-            model.theory,
-            model.rotary_inertia,
-        )
-        for number, segment in enumerate(boom.segments)
-    ]
-    if model.tied:
-        return tied_system(boom, segments)
-    return gap_system(boom, segments, contact_laws(boom, model))
-
-
-def _reduce(
-    boom: Boom,
-    model: ShellTable,
-    comm: MPI.Comm,
-    mesh_folder: Path,
-    tell: Callable[[str, float], None],
-) -> ReducedShell:
-    from shell_model.boom_shell import ShellOptions, reduce_boom
-
-    if comm.rank == 0:
-        mesh_folder.mkdir(parents=True)
-    options = ShellOptions(
-        mesh_size=model.mesh_size, contact_line=model.contact_line, mesh_folder=mesh_folder
-    )
-    return reduce_boom(boom, contact_laws(boom, model), options, comm, tell)
-
-
-def _move(
-    system: GapSystem,
-    model: Model,
-    time: TimeTable,
-    seconds: dict[str, float],
-    tell: Callable[[str, float], None],
-) -> Trajectory:
-    step = model.step or time.step or contact_step(system, time.output_step)
-    if time.duration / step > MOST_STEPS:
-        raise NumericsError(
-            f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make the contact "
-            "softer or the step longer"
-        )
-    # One output compiles the time loop, so that the wall time is the motion's own.
-    integrate(system, time.output_step, time.output_step, step)
-    start = perf_counter()
-    trajectory = integrate(
-        system,
-        time.duration,
-        time.output_step,
-        step,
-        progress=lambda part: tell("motion", part),
-    )
-    seconds["motion"] = perf_counter() - start
-    return trajectory
-
-
-def _move_members(
-    system: GapSystem,
-    table: EnsembleTable,
-    time: TimeTable,
-    step: float,
-    seconds: dict[str, float],
-    tell: Callable[[str, float], None],
-) -> xr.Dataset:
-    start = perf_counter()
-    ensemble = integrate_ensemble(
-        system,
-        table.members,
-        table.relative,
-        table.seed,
-        table.vary,
-        time.duration,
-        time.output_step,
-        step,
-        progress=lambda part: tell("ensemble", part),
-    )
-    seconds["ensemble"] = perf_counter() - start
-    return ensemble
 
 
 def _summary(

@@ -65,7 +65,7 @@ class Run:
         """A number of the model's summary."""
         value: Any = self.summary["models"].get(model.name)
         for key in keys:
-            value = None if value is None else value[key]
+            value = value.get(key) if isinstance(value, Mapping) else value and value[key]
         if value is None or not np.isfinite(value):
             raise Lacking(f"{model.name!r} has no {str(keys[0]).replace('_', ' ')}.")
         return float(value)
@@ -121,6 +121,16 @@ class Run:
         if len(models) < 2:
             raise Lacking("It takes two models with play to compare.")
         return models
+
+    def with_friction(self) -> None:
+        """Refuse a case without friction."""
+        if not any(joint.friction > 0.0 for joint in self.case.joints):
+            raise Lacking("This case has no friction; it takes the case with friction.")
+
+    def without_friction(self) -> None:
+        """Refuse a case with friction."""
+        if any(joint.friction > 0.0 for joint in self.case.joints):
+            raise Lacking("This case has friction; it takes the case without.")
 
     def last_until(self, end: float) -> None:
         """Refuse a run that ends before ``end`` in s."""

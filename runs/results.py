@@ -18,7 +18,7 @@ from runs import case as case_file
 from runs import toml
 from runs.bad_input import BadInput
 from runs.schema import Case, KantorovichTable
-from runs.verdicts import Verdict
+from runs.statements import Verdict
 
 TRAJECTORIES = "trajectories.nc"
 SUMMARY = "summary.json"
@@ -35,9 +35,10 @@ class Results:
     Args:
         case: the effective one, with every default filled in.
         trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
-            m; deflections ``tip``, ``head``, ``tail`` in m (from the second joint on ``head-2``
-            and so forth), ``contact_force`` and ``contact_force_peak`` in N, ``gap`` in m,
-            energies in J; NaN where a model has none.
+            m, with the ``direction`` in which it touches; deflections ``tip``, ``head``, ``tail``
+            in m (from the second joint on ``head-2`` and so forth), ``contact_force``,
+            ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m, energies in J; NaN
+            where a model has none.
         summary: what ``summary.json`` holds.
         verdicts: on the statements of the paper.
         ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
@@ -125,10 +126,10 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     """Gather the trajectories of all models, which share their times, in one dataset.
 
     Args:
-        boom: its joints' stations are the dimension ``station``.
+        boom: its stations are the dimension ``station``.
         trajectories: by the model's name.
     """
-    stations = [x for joint in boom.joints for x in joint.stations]
+    stations = [x for x, _ in boom.stations]
     everything = [trajectory.data for trajectory in trajectories.values()]
     time = everything[0]["time"]
     units = {
@@ -151,6 +152,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
             "model": list(trajectories),
             "time": time,
             "station": ("station", np.array(stations, dtype=float), {"units": "m"}),
+            "direction": ("station", np.array([along for _, along in boom.stations], dtype="U1")),
         },
     )
 

@@ -6,9 +6,9 @@ The descriptions are what the JSON Schema shows, and what the message for a miss
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
@@ -19,6 +19,9 @@ Flag = Annotated[bool, Field(strict=True)]
 # A name becomes a file name and an element of a comma-separated list.
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$")]
 StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
+
+# Whole tips are kept of each.
+MOST_MEMBERS = 10_000
 
 
 class Table(BaseModel):
@@ -42,7 +45,7 @@ class TimeTable(Table):
 class EnsembleTable(Table):
     """Every model with play once more, many times, with data changed a little."""
 
-    members: Annotated[int, Field(strict=True, ge=2, le=10_000)] = Field(
+    members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)] = Field(
         description="the number of runs of each model, the unchanged one among them"
     )
     relative: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] = Field(
@@ -75,14 +78,40 @@ class SectionTable(Table):
     web: Positive = Field(description="the thickness of the two webs in m")
 
 
+class SupportTable(Table):
+    """A place where the ground holds a segment; in space it holds sideways and in twist too."""
+
+    x: Number = Field(description="the x in m")
+    kind: Literal["pinned", "clamped"] = Field(
+        "pinned", description="whether the slope is free or held"
+    )
+    stiffness: Positive | None = Field(
+        None, description="the stiffness of an elastic support in N/m; rigid unless given"
+    )
+
+
+class MassTable(Table):
+    """A mass on a segment."""
+
+    x: Number = Field(description="the x in m")
+    mass: Positive = Field(description="the mass in kg")
+
+
+def _support(given: Any) -> Any:
+    """A place alone is a pinned support."""
+    number = isinstance(given, int | float) and not isinstance(given, bool)
+    return {"x": float(given)} if number else given
+
+
 class SegmentTable(Table):
     """One box of the boom."""
 
     name: Name = Field(description="what the joints and the results call the segment")
     span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
-    supports: tuple[Number, ...] = Field(
-        (), description="the x in m of the places whose deflection is held at zero"
+    supports: tuple[Annotated[SupportTable, BeforeValidator(_support)], ...] = Field(
+        (), description="the places that the ground holds: an x in m each, or a table"
     )
+    masses: tuple[MassTable, ...] = Field((), description="the masses on the segment")
     mass_per_length: Positive | None = Field(
         None, description="the mass per length in kg/m; follows from the section unless given"
     )
@@ -106,6 +135,34 @@ class SegmentTable(Table):
     viscous_damping: NotNegative = Field(
         0.0, description="the viscous damping per length in N s/m^2"
     )
+    lateral_load: Number = Field(
+        0.0, description="the uniform load along y in N/m, applied at t = 0 and kept"
+    )
+    lateral_second_moment_of_area: Positive | None = Field(
+        None,
+        description="the second moment of area for bending along y in m^4; follows from the "
+        "section unless given",
+    )
+    lateral_rotary_inertia: NotNegative | None = Field(
+        None, description="the same in kg m; density times second moment unless given"
+    )
+    torsion_constant: Positive | None = Field(
+        None, description="the torsion constant in m^4; follows from the section unless given"
+    )
+    polar_inertia: Positive | None = Field(
+        None,
+        description="the mass moment of inertia about the axis per length in kg m; follows from "
+        "the section unless given",
+    )
+
+
+class RestitutionTable(Table):
+    """How much of its speed a blow gives back."""
+
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = Field(
+        description="the coefficient of restitution"
+    )
+    speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
 
 
 class JointTable(Table):
@@ -126,6 +183,29 @@ class JointTable(Table):
         "same as above unless given",
     )
     exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+    friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
+    normal_forces: tuple[NotNegative, ...] = Field(
+        (),
+        description="the forces in N that press the segments at each station for the friction; in "
+        "space the contact forces of the other plane do unless given",
+    )
+    lateral_play: NotNegative | None = Field(
+        None,
+        description="the play to the sides in m, left and right together; with it the boom moves "
+        "in space",
+    )
+    lateral_stiffness: Positive | None = Field(
+        None, description="the contact stiffness to the sides in N/m^n; the same unless given"
+    )
+    lateral_exponent: Exponent | None = Field(
+        None, description="the exponent n to the sides; the same unless given"
+    )
+    tied: Flag = Field(
+        False, description="whether the two deflect alike at the stations, without play"
+    )
 
 
 class ContactTable(Table):
@@ -136,6 +216,88 @@ class ContactTable(Table):
         None, description="the contact stiffness in N/m^n below; the same as above unless given"
     )
     exponent: Exponent = Field(description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+
+
+class StopTable(Table):
+    """A rest on the ground that a segment may touch across a play."""
+
+    segment: str = Field(description="the name of the segment")
+    x: Number = Field(description="the x in m")
+    play: NotNegative = Field(description="the play in m, above and below together")
+    stiffness: NotNegative = Field(
+        description="the contact stiffness in N/m^n where the segment presses up; 0 for none"
+    )
+    stiffness_below: NotNegative | None = Field(
+        None, description="the same where it presses down; the same unless given"
+    )
+    exponent: Exponent = Field(1.0, description="the exponent n of the contact law")
+
+
+class HistoryTable(Table):
+    """How something goes with time: at once and kept, unless one of these is given."""
+
+    ramp: Positive | None = Field(None, description="the time in s in which it rises to its value")
+    frequency: Positive | None = Field(None, description="the frequency of a sine in Hz")
+    table: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] | None = Field(
+        None,
+        description="pairs of a time in s and a factor, linear between them and constant beyond",
+    )
+    file: str | None = Field(
+        None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+
+
+class LoadTable(HistoryTable):
+    """A load on one segment."""
+
+    segment: str = Field(description="the name of the segment")
+    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
+    x: Number | None = Field(
+        None, description="the x in m of a point load; along the whole segment unless given"
+    )
+    magnitude: Number = Field(description="the load in N at x, or in N/m along the segment")
+    released: Flag = Field(
+        False, description="whether it has acted for ever, and is let go at t = 0"
+    )
+
+
+class PayloadTable(Table):
+    """A mass at the tip."""
+
+    mass: Positive = Field(description="the mass in kg")
+    gravity: NotNegative = Field(
+        9.80665,
+        description="the acceleration in m/s^2 by which it weighs down from t = 0; 0 for none",
+    )
+
+
+class BaseTable(HistoryTable):
+    """An acceleration of the ground, which is felt as a load on all masses."""
+
+    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
+    acceleration: Number = Field(description="the acceleration in m/s^2")
+
+
+class StartTable(Table):
+    """The state at t = 0."""
+
+    state: Literal["rest", "equilibrium"] = Field(
+        "rest", description="straight and unloaded, or at rest under the loads of t = 0"
+    )
+    velocity: dict[str, Number] = Field(
+        default_factory=dict, description="segment = velocity along z in m/s"
+    )
+
+
+class DampingTable(Table):
+    """Damping of all modes."""
+
+    modal: NotNegative = Field(0.0, description="the damping ratio of every mode")
+    mass: NotNegative = Field(0.0, description="Rayleigh's factor of the mass in 1/s")
+    stiffness: NotNegative = Field(0.0, description="Rayleigh's factor of the stiffness in s")
 
 
 class ModelTable(Table):
@@ -209,6 +371,20 @@ class Case(Table):
     )
     joints: tuple[JointTable, ...] = Field(
         (), alias="joint", description="the joints, one [[joint]] each, from the base to the tip"
+    )
+    stops: tuple[StopTable, ...] = Field(
+        (), alias="stop", description="the rests that segments may touch, one [[stop]] each"
+    )
+    loads: tuple[LoadTable, ...] = Field(
+        (), alias="load", description="the loads that are not uniform or not constant"
+    )
+    payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
+    base: tuple[BaseTable, ...] = Field((), description="the accelerations of the ground")
+    start: StartTable = Field(
+        StartTable.model_validate({}), description="the table of the state at t = 0"
+    )
+    damping: DampingTable = Field(
+        DampingTable.model_validate({}), description="the table of the damping of all modes"
     )
     models: Annotated[tuple[Model, ...], Field(min_length=1)] = Field(
         alias="model", description="the models to run, one [[model]] each"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of text, for the terminal and as Markdown."""
+"""Tables of text, for the terminal, for the report and as Markdown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from runs.output import whole
+from runs.files import whole
+
+# Letters that fit in a line of the report with its usual font.
+ROOMY = 110
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +27,32 @@ class TextTable:
     Args:
         title: above it.
         headings: of the columns; the first column is flush left, the others are right.
-        rows: as long as the headings each.
+        rows: as long as the headings each; a cell may have several lines.
         notes: sentences below it.
+        name: of its place in the report.
+        statements: of the paper, S1 … S11, that it bears on.
     """
 
     title: str
     headings: Sequence[str]
     rows: Sequence[Sequence[str]]
     notes: Sequence[str] = ()
+    name: str = ""
+    statements: Sequence[str] = ()
+
+    @property
+    def anchor(self) -> str:
+        """What a link in the report points to."""
+        return f"table-{self.name}"
+
+    @property
+    def crowded(self) -> bool:
+        """Whether it takes smaller letters to fit the report's page."""
+        letters = [
+            max(len(line) for cell in column for line in cell.split("\n"))
+            for column in zip(*self.rows, strict=True)
+        ]
+        return sum(letters) + 2 * len(letters) > ROOMY
 
     def show(self, console: Console) -> None:
         """Print it."""
@@ -48,6 +69,7 @@ class TextTable:
         """A heading, the table, the notes."""
         ruler = [":--", *["--:"] * (len(self.headings) - 1)]
         lines = [f"| {' | '.join(row)} |" for row in (self.headings, ruler, *self.rows)]
+        lines = [line.replace("\n", " ") for line in lines]
         return "\n".join(
             [f"## {self.title}", "", *lines, "", *(f"{note}\n" for note in self.notes)]
         )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,9 +17,12 @@ DPI = 150
 INK = "#222222"
 RULE = "#d9d9d9"
 PLAY_FREE = "#6b6b6b"
+# What an energy was lost to, beside the colours of the models.
+LOSS = "#8c6d1f"
 
-# Okabe and Ito (2008), without what is too pale for a line on white; the purple a little darker.
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c")
+# Okabe and Ito (2008), without what is too pale for a line on white; the purple a little darker,
+# and a violet and an ochre for the series of models that are longer.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
 RC: dict[Any, Any] = {
     "figure.dpi": DPI,
@@ -89,4 +93,30 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def scientific(number: float, digits: int = 1) -> str:
     """8 × 10⁻⁵ for 8e-05, with at most so many significant digits."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
-    return f"{float(mantissa):g} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+    return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+
+
+def signed(text: str) -> str:
+    """A number with a minus sign in place of a hyphen."""
+    return text.replace("-", "−")
+
+
+NONE = "–"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number for people, with so many significant digits; ``NONE`` for none."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e5:
+        rounded = float(f"{value:.{digits}g}")
+        whole = abs(rounded) >= 10.0 ** (digits - 1)
+        return signed(f"{rounded:.0f}" if whole else f"{rounded:g}")
+    return scientific(value, digits)
+
+
+def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
+    """A number times a factor, with so many decimals; ``NONE`` for none."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    return signed(f"{factor * value:.{decimals}f}")

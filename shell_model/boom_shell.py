@@ -1,11 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom as shells that touch at its stations: from plates to a gap system.
-
-At a station the inner segment's top flange may press up against the outer one's, its bottom
-flange down. Which side is which comes from the joint, never from a facet's normal, whose
-direction a mesh does not promise. Each flange touches in points whose weights sum to one, so
-that a uniform approach gives the paper's law (4) exactly.
-"""
+"""The boom as shells that touch at its stations: from plates to a gap system."""
 
 from __future__ import annotations
 
@@ -14,7 +8,6 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,17 +15,23 @@ import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
-from geometry.boom import Boom, BoomError, Joint
+from geometry.boom import Boom, BoomError, Load
 from geometry.mesh import SegmentMesh, mesh_segment
-from geometry.section import BoxSection
+from shell_model.coordinates import BoomCoordinates
 from shell_model.fields import gather_fields
+from shell_model.joint_rows import (
+    ContactLine,
+    Reading,
+    contacts_and_frictions,
+    ties,
+)
 from shell_model.outline import Outline, Row
-from shell_model.reduction import KrylovOptions, ReducedSegment, reduce_segment
+from shell_model.reduction import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
 
 Array = npt.NDArray[np.float64]
-ContactLine = Literal["near webs", "across"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +42,7 @@ class ShellOptions:
         mesh_size: target edge length in m.
         contact_line: ``near webs`` passes the force from the inner segment's webs to the outer
             one's, as pads in the corners do; ``across`` spreads it over the width of the
-            inner segment's flanges, which then bow.
+            inner segment's flanges, which then bow, in a flat boom.
         krylov: the reduction.
         mesh_folder: where gmsh's files ``SEGMENT.msh`` go, if anywhere.
     """
@@ -76,34 +75,26 @@ class ReducedShell:
     meshes: Sequence[SegmentMesh]
 
 
-class _Contact(NamedTuple):
-    """One row of a joint: the segments' flange deflections at one station, and their law."""
-
-    station: int
-    inner: Row
-    outer: Row
-    law: PowerContact
-    joint: Joint
-
-
 def reduce_boom(
     boom: Boom,
     laws: Sequence[PowerContact],
     options: ShellOptions,
     comm: MPI.Comm,
     progress: Callable[[str, float], None] | None = None,
+    lateral_laws: Sequence[PowerContact] = (),
 ) -> ReducedShell:
     """Mesh, assemble and reduce every segment. Collective.
 
     Args:
         boom: all its segments with box sections.
-        laws: one for each joint.
+        laws: one for each joint, along z.
         options: mesh, contact points, reduction.
         comm: the ranks that share the work; the result is the same on each.
         progress: called with the stage and the part of it that is done.
+        lateral_laws: one for each joint, along y; none for a flat boom.
 
     Raises:
-        BoomError: a segment has no box section.
+        BoomError: a segment has no box section, or the contact line does not suit the boom.
     """
     seconds = dict.fromkeys(("mesh", "assembly", "reduction"), 0.0)
     shells: list[SegmentShell] = []
@@ -122,23 +113,43 @@ def reduce_boom(
         tell("assembly", (number + 1) / len(boom.segments))
 
     start = perf_counter()
-    contacts = _contacts(boom, shells, laws, options.contact_line)
+    contacts, frictions = contacts_and_frictions(
+        boom, shells, {"z": laws, "y": lateral_laws}, options.contact_line
+    )
+    tied = ties(boom, shells)
+    own_loads = [_own_load(boom, number, shell) for number, shell in enumerate(shells)]
+    timed_loads = [(load, _timed_load(load, shells[load.segment])) for load in boom.loads]
+    readings = [c.reading for c in contacts] + [f.reading for f in frictions] + tied
     reduced = []
     for number, shell in enumerate(shells):
-        pushes = [
-            shell.row(contact.inner if number == contact.joint.inner else contact.outer)
-            for contact in contacts
-            if number in (contact.joint.inner, contact.joint.outer)
-        ]
+        inputs = [shell.row(reading[number]) for reading in readings if number in reading]
+        inputs += [own_loads[number]]
+        inputs += [push for load, push in timed_loads if load.segment == number]
         report = partial(_report_part, tell, number, len(shells))
-        inputs = np.column_stack([*pushes, shell.load])
-        reduced.append(reduce_segment(shell, inputs, options.krylov, report))
-    system = _gap_system(boom, shells, reduced, contacts)
+        reduced.append(reduce_segment(shell, np.column_stack(inputs), options.krylov, report))
+    coordinates = BoomCoordinates(comm, shells, reduced, tied)
+    fields = gather_fields(comm, shells, reduced, meshes)
     seconds["reduction"] = perf_counter() - start
+    system = GapSystem(
+        omega2=coordinates.omega2,
+        load=np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
+        rows=_stacked(coordinates, [contact.reading for contact in contacts]),
+        laws=[contact.law for contact in contacts],
+        station_of_row=np.array([contact.station for contact in contacts], dtype=np.int64),
+        stations=[x for x, _ in boom.stations],
+        observers=_observers(boom, shells, coordinates),
+        friction_rows=_stacked(coordinates, [friction.reading for friction in frictions]),
+        frictions=[friction.law for friction in frictions],
+        excitations=[
+            Excitation(coordinates.push(load.segment, push), load.history)
+            for load, push in timed_loads
+        ],
+        station_directions=[direction for _, direction in boom.stations],
+    )
     return ReducedShell(
         system=system,
         num_dofs=sum(shell.num_dofs for shell in shells),
-        fields=gather_fields(comm, shells, reduced, meshes),
+        fields=None if fields is None else coordinates.of_fields(fields),
         errors={
             "contact_compliance": max(r.compliance_error for r in reduced),
             "frequency_limit_in_hz": min(r.frequency_limit for r in reduced),
@@ -161,7 +172,8 @@ def _mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
             "section",
         )
     breaks = {"start": segment.start, "end": segment.end}
-    breaks |= {f"support-{k}": x for k, x in enumerate(sorted(segment.supports), start=1)}
+    supports = sorted(support.x for support in segment.supports)
+    breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
     folder = options.mesh_folder
     return mesh_segment(
@@ -172,98 +184,53 @@ def _mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     )
 
 
-class ContactPoint(NamedTuple):
-    """A mirrored pair of points on facing flanges, with the part of the force it carries.
+def _own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
+    """(num_owned,) the uniform loads of a segment that are applied at t = 0 and kept, in N."""
+    segment = boom.segments[number]
+    load = segment.load * shell.unit_loads["z"]
+    if boom.spatial and segment.lateral is not None:
+        load += segment.lateral.load * shell.unit_loads["y"]
+    return load
 
-    ``inner`` and ``outer`` are the distances in m from the middle of each flange.
+
+def _timed_load(load: Load, shell: SegmentShell) -> Array:
+    """(num_owned,) a load at the value 1 of its history, in N.
+
+    At one place it is spread over the walls that carry it in their own plane.
     """
-
-    inner: float
-    outer: float
-    weight: float
-
-
-def contact_points(line: ContactLine, inner: BoxSection, outer: BoxSection) -> list[ContactPoint]:
-    """Where facing flanges touch; the weights sum to one.
-
-    Args:
-        line: see :class:`ShellOptions`. Across the width, Gauss's rule with eight points.
-        inner, outer: the sections of the joint's segments.
-    """
-    if line == "near webs":
-        return [ContactPoint(0.5 * inner.width, 0.5 * outer.width, 1.0)]
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    places = 0.5 * inner.width * nodes[nodes > 0.0]
-    return [
-        ContactPoint(float(y), float(y), float(w))
-        for y, w in zip(places, weights[nodes > 0.0], strict=True)
-    ]
+    if load.x is None:
+        return load.magnitude * shell.unit_loads[load.direction]
+    row = shell.outline(load.x).wall_deflection(load.direction)
+    return load.magnitude * shell.row(row)
 
 
-def _contacts(
-    boom: Boom, shells: Sequence[SegmentShell], laws: Sequence[PowerContact], line: ContactLine
-) -> list[_Contact]:
-    contacts = []
-    station = 0
-    for joint, law in zip(boom.joints, laws, strict=True):
-        inner, outer = shells[joint.inner], shells[joint.outer]
-        points = contact_points(line, inner.section, outer.section)
-        for x in joint.stations:
-            inside, around = inner.outline(x), outer.outline(x)
-            for side, stiffness in ((1.0, law.stiffness), (-1.0, law.below)):
-                if stiffness == 0.0:
-                    continue
-                one_sided = law.upper() if side > 0.0 else law.lower()
-                contacts += [
-                    _Contact(
-                        station,
-                        inside.flange_deflection(side, point.inner),
-                        around.flange_deflection(side, point.outer),
-                        one_sided.shared(point.weight),
-                        joint,
-                    )
-                    for point in points
-                ]
-            station += 1
-    return contacts
+def _stacked(coordinates: BoomCoordinates, readings: Sequence[Reading]) -> Array:
+    """(num_readings, num_modes) a row for each reading."""
+    rows = [coordinates.row(reading) for reading in readings]
+    return np.array(rows).reshape(-1, coordinates.omega2.size)
 
 
-def _gap_system(
-    boom: Boom,
-    shells: Sequence[SegmentShell],
-    reduced: Sequence[ReducedSegment],
-    contacts: Sequence[_Contact],
-) -> GapSystem:
-    def read(number: int, row: Row) -> Array:
-        """A segment's row in all modal coordinates."""
-        shell = shells[number]
-        parts = [np.zeros(r.omega2.size) for r in reduced]
-        parts[number] = shell.comm.allreduce(shell.row(row) @ reduced[number].shapes)
-        return np.concatenate(parts)
-
-    load = [
-        shell.comm.allreduce(shell.load @ r.shapes)
-        for shell, r in zip(shells, reduced, strict=True)
-    ]
-    return GapSystem(
-        omega2=np.concatenate([r.omega2 for r in reduced]),
-        load=np.concatenate(load),
-        rows=np.array(
-            [read(c.joint.inner, c.inner) - read(c.joint.outer, c.outer) for c in contacts]
-        ).reshape(len(contacts), -1 if contacts else sum(r.omega2.size for r in reduced)),
-        laws=[contact.law for contact in contacts],
-        station_of_row=np.array([contact.station for contact in contacts], dtype=np.int64),
-        stations=[x for joint in boom.joints for x in joint.stations],
-        observers={
-            name + suffix: Observer(read(number, row(shells[number].outline(x))), unit)
-            for name, (number, x) in boom.observed().items()
-            for suffix, (row, unit) in _SECTION_READINGS.items()
-        },
-    )
+def _observers(
+    boom: Boom, shells: Sequence[SegmentShell], coordinates: BoomCoordinates
+) -> dict[str, Observer]:
+    readings = _IN_SPACE if boom.spatial else _IN_PLANE
+    observers = {}
+    for name, (number, x) in boom.observed().items():
+        outline = shells[number].outline(x)
+        for suffix, (row, unit) in readings.items():
+            observers[name + suffix] = Observer(coordinates.row({number: row(outline)}), unit)
+    return observers
 
 
-_SECTION_READINGS: Mapping[str, tuple[Callable[[Outline], Row], str]] = {
+_SectionReadings = Mapping[str, tuple[Callable[[Outline], Row], str]]
+
+_IN_PLANE: _SectionReadings = {
     "": (Outline.mean_deflection, "m"),
     "_rotation": (Outline.rotation, "rad"),
     "_distortion": (Outline.distortion, "m"),
+}
+_IN_SPACE: _SectionReadings = {
+    **_IN_PLANE,
+    "_lateral": (partial(Outline.mean_deflection, direction="y"), "m"),
+    "_twist": (Outline.twist, "rad"),
 }

@@ -71,7 +71,7 @@ class MovingShell:
         Args:
             fields: ``points``, ``triangles``, ``segment``, ``modes`` and ``state``.
             motion: dims ``time``, ``station``: ``tip`` and ``gap`` in m, ``contact_force`` and
-                ``contact_force_peak`` in N.
+                ``contact_force_peak`` in N; coordinate ``direction`` of the stations.
         """
         points, triangles = fields["points"].values, fields["triangles"].values
         segment = fields["segment"].values
@@ -149,13 +149,14 @@ class MovingShell:
 
 
 def find_overlaps(boxes: Sequence[Array], motion: xr.Dataset) -> list[Overlap]:
-    """Neighbours, each with the stations that are next to an end of their overlap.
+    """Neighbours, each with the stations along z that are next to an end of their overlap.
 
-    Segments touch at heads and tails, and the outer one of two is the higher one.
+    Segments touch at heads and tails, and the outer one of two is the higher one. What presses
+    to the sides, or on the ground outside an overlap, is no part of it.
 
     Args:
         boxes: (num_points, 3) in m, one of each segment.
-        motion: ``gap``, ``contact_force`` (time, station).
+        motion: ``gap``, ``contact_force`` (time, station); ``direction`` (station).
     """
     stations = motion["station"].values
     if len(boxes) < 2 or stations.size == 0:
@@ -164,10 +165,12 @@ def find_overlaps(boxes: Sequence[Array], motion: xr.Dataset) -> list[Overlap]:
     ends = np.array([box[:, 0].max() for box in boxes])
     limits = [np.maximum(begins[:-1], begins[1:]), np.minimum(ends[:-1], ends[1:])]
     pair = np.min([np.abs(stations[:, None] - limit) for limit in limits], axis=0).argmin(axis=1)
+    between = (stations > limits[0][pair] - SAME_PLACE) & (stations < limits[1][pair] + SAME_PLACE)
+    between &= motion["direction"].values == "z"
     overlaps = []
-    for base in np.unique(pair):
+    for base in np.unique(pair[between]):
         outer, inner = sorted((base, base + 1), key=lambda k: -float(boxes[k][:, 2].max()))
-        mine = np.flatnonzero(pair == base)
+        mine = np.flatnonzero(between & (pair == base))
         # A gap in contact is the clearance but for the penetration. Where nothing ever touches,
         # the distance of the mid-surfaces is the most that the clearance can be.
         clearance = float(boxes[outer][:, 2].max() - boxes[inner][:, 2].max())

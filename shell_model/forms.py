@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
 import ufl
 from dolfinx import fem
 from petsc4py import PETSc
@@ -27,11 +28,12 @@ DRILLING = 1.0e-2
 
 
 class ShellForms(NamedTuple):
-    """Compiled bilinear forms, and the linear form of a unit load along z."""
+    """Compiled bilinear forms, and the linear form of a unit load along ``load_direction``."""
 
     stiffness: Any
     mass: Any
     unit_load: Any
+    load_direction: Any
 
 
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
@@ -101,8 +103,10 @@ def shell_forms(
         + constant["drilling"] * shear_modulus * t * twist * twist_v
     ) * ufl.dx(degree=2, domain=domain)
     mass = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
+    direction = fem.Constant(domain, np.zeros(3, dtype=PETSc.ScalarType))
     return ShellForms(
         fem.form(stiffness),
         fem.form(mass * ufl.dx(degree=4, domain=domain)),
-        fem.form(t * v[2] * ufl.dx(degree=2, domain=domain)),
+        fem.form(t * ufl.dot(direction, v) * ufl.dx(degree=2, domain=domain)),
+        direction,
     )

@@ -2,25 +2,36 @@
 """Rows that read a section of the shell: its mean deflection, rotation, distortion, points.
 
 An outline is a mesh line around the box; displacement is quadratic along each of its edges,
-so Simpson's rule and quadratic interpolation on the edges' nodes are exact.
+so Simpson's rule and quadratic interpolation on the edges' nodes are exact. A row read the other
+way round is a force that is spread over the section.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from geometry.boom import Direction
 from geometry.section import BoxSection
 
 Array = npt.NDArray[np.float64]
 Row = Mapping[int, float]
 
 _ON_WALL = 1.0e-7
-_X, _Z = 0, 2
+_X = 0
+COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
+
+
+def combine(*terms: tuple[float, Row]) -> Row:
+    """The sum of rows, each with its factor."""
+    total: dict[int, float] = {}
+    for factor, row in terms:
+        for dof, weight in row.items():
+            total[dof] = total.get(dof, 0.0) + factor * weight
+    return total
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +50,14 @@ class Outline:
     dofs: npt.NDArray[np.int64]
     section: BoxSection
 
-    def mean_deflection(self) -> Row:
-        """u_z averaged over the section's area: the deflection of its neutral axis, in m."""
+    def mean_deflection(self, direction: Direction = "z") -> Row:
+        """u_z or u_y averaged over the section's area: its neutral axis' deflection, in m."""
+        return self.mean_displacement(COMPONENT[direction])
+
+    def mean_displacement(self, component: int) -> Row:
+        """One displacement component averaged over the section's area, in m."""
         nodes, areas = self._area_weights()
-        return _row(self.dofs[nodes, _Z], areas / areas.sum())
+        return _row(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self) -> Row:
         """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
@@ -52,11 +67,26 @@ class Outline:
 
     def distortion(self) -> Row:
         """How much taller the section has become: mean u_z of the top less the bottom, in m."""
-        row: Counter[int] = Counter()
-        for side in (1.0, -1.0):
-            nodes, lengths = self.simpson("y", 0.5 * self.section.height * side)
-            row.update(_row(self.dofs[nodes, _Z], side * lengths / lengths.sum()))
-        return row
+        top, bottom = (self._wall("y", side, "z") for side in (1.0, -1.0))
+        return combine((1.0, top), (-1.0, bottom))
+
+    def wall_deflection(self, direction: Direction) -> Row:
+        """u_z averaged over the webs, or u_y over the flanges, in m.
+
+        These walls carry the shear force of the direction in their own plane: a force spread so
+        bends no plate.
+        """
+        return combine(*((0.5, self._wall(direction, side, direction)) for side in (1.0, -1.0)))
+
+    def twist(self) -> Row:
+        """Turn about x in rad: the mean of the turns of the pair of webs and that of flanges.
+
+        A distortion into a parallelogram turns the pairs by opposite angles and is not read.
+        """
+        b, h = self.section.width, self.section.height
+        right, left = (self._wall("z", side, "z") for side in (1.0, -1.0))
+        top, bottom = (self._wall("y", side, "y") for side in (1.0, -1.0))
+        return combine((0.5 / b, right), (-0.5 / b, left), (-0.5 / h, top), (0.5 / h, bottom))
 
     def flange_deflection(self, side: float, y: float) -> Row:
         """u_z of a flange, averaged over the two points ±y, in m.
@@ -65,29 +95,56 @@ class Outline:
             side: 1 for the top flange, −1 for the bottom one.
             y: distance from the middle in m.
         """
-        row: Counter[int] = Counter()
-        nodes = self._along("y", 0.5 * self.section.height * side)
+        nodes = self._along("y", side)
+        return combine(*((0.5, self._interpolated(nodes, place, "z")) for place in (y, -y)))
+
+    def point(self, direction: Direction, y: float, z: float) -> Row:
+        """u_z of a flange or u_y of a web in m, on the straight line through its two corners.
+
+        A force there goes to the corners by the law of the lever, as through a flange that its
+        webs carry; no plate bows under it, and a turn of the section is read exactly.
+
+        Args:
+            direction: what is read.
+            y, z: offsets from the axis in m. Along z the sign of ``z`` tells which flange is read,
+                along y the sign of ``y`` tells which web.
+        """
+        b, h = 0.5 * self.section.width, 0.5 * self.section.height
+        if direction == "z":
+            nodes, along = self._along("y", np.sign(z)), y / b
+        else:
+            nodes, along = self._along("z", np.sign(y)), z / h
+        first, last = self.dofs[nodes[[0, -1]], COMPONENT[direction]].tolist()
+        return {first: 0.5 * (1.0 - along), last: 0.5 * (1.0 + along)}
+
+    def _interpolated(self, nodes: npt.NDArray[np.int64], y: float, direction: Direction) -> Row:
+        """A displacement at one point of a flange."""
         along = self.places[nodes, 1]
-        for place in (y, -y):
-            # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
-            edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
-            ends = nodes[2 * edge : 2 * edge + 3]
-            left, _, right = self.places[ends, 1]
-            s = (place - left) / (right - left)
-            shapes = np.array([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)])
-            row.update(_row(self.dofs[ends, _Z], 0.5 * shapes))
-        return row
+        # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
+        edge = int(np.clip(np.searchsorted(along[::2], y) - 1, 0, nodes.size // 2 - 1))
+        ends = nodes[2 * edge : 2 * edge + 3]
+        left, _, right = self.places[ends, 1]
+        s = (y - left) / (right - left)
+        shapes = np.array([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)])
+        return _row(self.dofs[ends, COMPONENT[direction]], shapes)
 
-    def _along(self, axis: str, offset: float) -> npt.NDArray[np.int64]:
+    def _wall(self, axis: Direction, side: float, direction: Direction) -> Row:
+        """Mean displacement over one wall's line, in m."""
+        nodes, lengths = self._simpson(axis, side)
+        return _row(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
+
+    def _along(self, axis: Direction, side: float) -> npt.NDArray[np.int64]:
         """Nodes of one wall's line, rising along the axis, ends and middles in turn."""
-        direction, normal = (1, 2) if axis == "y" else (2, 1)
-        on_wall = np.flatnonzero(np.abs(self.places[:, normal] - offset) < _ON_WALL)
-        return on_wall[np.argsort(self.places[on_wall, direction])]
+        normal: Direction = "z" if axis == "y" else "y"
+        size = self.section.height if axis == "y" else self.section.width
+        distance = self.places[:, COMPONENT[normal]] - 0.5 * size * side
+        on_wall = np.flatnonzero(np.abs(distance) < _ON_WALL)
+        return on_wall[np.argsort(self.places[on_wall, COMPONENT[axis]])]
 
-    def simpson(self, axis: str, offset: float) -> tuple[npt.NDArray[np.int64], Array]:
+    def _simpson(self, axis: Direction, side: float) -> tuple[npt.NDArray[np.int64], Array]:
         """Nodes of one wall's line and their weights in m."""
-        nodes = self._along(axis, offset)
-        along = self.places[nodes, 1 if axis == "y" else 2]
+        nodes = self._along(axis, side)
+        along = self.places[nodes, COMPONENT[axis]]
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
         weights[:-2:2] += lengths / 6.0
@@ -97,23 +154,16 @@ class Outline:
 
     def _area_weights(self) -> tuple[npt.NDArray[np.int64], Array]:
         """Nodes of all four walls (corners twice) and the areas in m² that they stand for."""
-        section = self.section
-        parts = [
-            (*self.simpson(axis, side * half), wall)
-            for axis, half, wall in (
-                ("y", 0.5 * section.height, section.flange),
-                ("z", 0.5 * section.width, section.web),
-            )
-            for side in (1.0, -1.0)
+        walls: list[tuple[Direction, float]] = [
+            ("y", self.section.flange),
+            ("z", self.section.web),
         ]
+        parts = [(*self._simpson(axis, side), t) for axis, t in walls for side in (1.0, -1.0)]
         return (
             np.concatenate([nodes for nodes, _, _ in parts]),
             np.concatenate([wall * weights for _, weights, wall in parts]),
         )
 
 
-def _row(dofs: npt.NDArray[np.int64], weights: Array) -> Counter[int]:
-    row: Counter[int] = Counter()
-    for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
-        row[dof] += weight
-    return row
+def _row(dofs: npt.NDArray[np.int64], weights: Array) -> Row:
+    return combine(*((w, {d: 1.0}) for d, w in zip(dofs.tolist(), weights.tolist(), strict=True)))

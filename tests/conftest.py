@@ -8,14 +8,16 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
 from dynamics.contact import PowerContact
-from geometry.boom import Boom, Joint, Material, Segment
+from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import infer_inner_section, infer_outer_section
+from tests.space import in_space
 
 # The same examples every time, however slow the machine.
 settings.register_profile("protractile", deadline=None, derandomize=True)
@@ -41,7 +43,7 @@ def paper_boom(steel: Material) -> Boom:
         rotary_inertia=3.48,
         section=outer_box,
         load=83.16,
-        supports=(0.0, 2.0),
+        supports=(Support(0.0), Support(2.0)),
     )
     inner = Segment(
         name="inner",
@@ -64,6 +66,17 @@ def paper_boom(steel: Material) -> Boom:
         exponent=2.0,
     )
     return Boom((outer, inner), (joint,))
+
+
+@pytest.fixture(scope="session")
+def spatial_boom(paper_boom: Boom) -> Boom:
+    """The same boom in space, with a play of 10 mm sideways and no load that way."""
+
+    (joint,) = paper_boom.joints
+    return Boom(
+        tuple(in_space(segment) for segment in paper_boom.segments),
+        (replace(joint, lateral_clearance=5.0e-3),),
+    )
 
 
 @pytest.fixture(scope="session")

@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
 
+from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment
 from beam_model.kantorovich import Base, kantorovich_segment
-from beam_model.segment_model import SegmentModel
-from geometry.boom import Boom, Material, Segment
+from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
 
 BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
@@ -19,9 +19,9 @@ BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
 
 @pytest.fixture(scope="session")
 def beam(steel: Material) -> Callable[..., Segment]:
-    """A beam of the box above on [3, 8] m, with what a test adds."""
+    """A beam of the box above on [3, 8] m, with what a test adds; numbers are pinned supports."""
 
-    def make(**changes: Any) -> Segment:
+    def make(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment:
         numbers: dict[str, Any] = {
             "name": "beam",
             "start": 3.0,
@@ -31,6 +31,7 @@ def beam(steel: Material) -> Callable[..., Segment]:
             "second_moment_of_area": BOX.second_moment_of_area,
             "rotary_inertia": steel.density * BOX.second_moment_of_area,
             "section": BOX,
+            "supports": tuple(x if isinstance(x, Support) else Support(x) for x in supports),
         }
         return Segment(**numbers | changes)
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from geometry.boom import Boom, Segment
+from geometry.boom import Boom, Segment, Support
 
 Array = npt.NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class OverhangingBeam:
         load: float,
         shear_stiffness: float = np.inf,
     ) -> None:
-        a, b = segment.supports
+        a, b = (support.x for support in segment.supports)
         total = sum(force for _, force in forces) + load * segment.length
         turning = sum(force * (x - a) for x, force in forces) + load * segment.length * (
             0.5 * (segment.start + segment.end) - a
@@ -84,7 +84,7 @@ def tied_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, 
     )
     # Held at rest at its stations, the inner segment bends; the outer one tilts and lifts it.
     above = OverhangingBeam(
-        replace(inner, supports=(tail, head)), [], inner.load, shear_stiffness[1]
+        replace(inner, supports=(Support(tail), Support(head))), [], inner.load, shear_stiffness[1]
     )
     slope = (below.deflection(head) - below.deflection(tail)) / (head - tail)
 
@@ -119,7 +119,7 @@ def tied_determinant(boom: Boom, omega: float) -> float:
     deflections are tied at the stations, each segment's slope and moment pass through.
     """
     outer, inner = boom.segments
-    x0, x1 = outer.supports
+    x0, x1 = (support.x for support in outer.supports)
     tail, head = boom.joints[0].stations
     spans = [
         Span(outer, x0, x1, omega),

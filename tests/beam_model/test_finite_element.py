@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
+from beam_model.component import Component, natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
-from beam_model.segment_model import SegmentModel, natural_modes
 from geometry.boom import BoomError, Segment
 from tests.beam_model.exact import (
     FREE_FREE,
@@ -29,7 +29,14 @@ pytestmark = pytest.mark.quick
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
 
 
-def frequencies(model: SegmentModel) -> Array:
+def bending(
+    segment: Segment, length: float, breaks: Sequence[float], theory: Theory, rotary_inertia: bool
+) -> Component:
+    """The deflection along z alone."""
+    return finite_element_segment(segment, length, breaks, theory, rotary_inertia).components["z"]
+
+
+def frequencies(model: Component) -> Array:
     """ω of the elastic modes in rad/s."""
     modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
     return np.sqrt(modes.omega2[model.rigid_modes :])
@@ -56,7 +63,7 @@ def test_frequencies_converge_at_order_four(
     expected = angular_frequencies(segment, numbers)
     errors = []
     for count in (8, 16, 32):
-        model = finite_element_segment(segment, 5.0 / count, (), "euler-bernoulli", False)
+        model = bending(segment, 5.0 / count, (), "euler-bernoulli", False)
         assert model.rigid_modes == 2 - len(supports)
         errors.append(frequencies(model)[:3] / expected - 1.0)
     slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
@@ -68,7 +75,7 @@ def test_frequencies_converge_at_order_four(
 def test_rotary_inertia_of_two_pinned_ends(beam: Beam) -> None:
     """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
     segment = beam(supports=(3.0, 8.0))
-    model = finite_element_segment(segment, 0.1, (), "euler-bernoulli", True)
+    model = bending(segment, 0.1, (), "euler-bernoulli", True)
     k = np.array(PINNED_PINNED) / 5.0
     share = segment.rotary_inertia * k**2 / segment.mass_per_length
     assert share[0] > 0.01
@@ -95,7 +102,7 @@ def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inerti
     assert expected[0] < 0.9 * angular_frequencies(segment, PINNED_PINNED)[0]
     errors = []
     for count in (10, 20, 40):
-        model = finite_element_segment(segment, 5.0 / count, (), "timoshenko", rotary_inertia)
+        model = bending(segment, 5.0 / count, (), "timoshenko", rotary_inertia)
         errors.append(np.abs(frequencies(model)[:3] / expected - 1.0).max())
     # Elements short against the depth deflect in straight lines between their nodes: order two.
     assert errors[-1] < 2e-3
@@ -111,13 +118,13 @@ def test_statics_are_exact_at_the_nodes_of_any_mesh(
     segment = beam(supports=(3.0, 4.2), load=-4000.0)
     forces = [(6.1, 3.0e4), (8.0, -1.0e4)]
     exact = OverhangingBeam(segment, forces, segment.load, shear_stiffness(segment, theory))
-    model = finite_element_segment(segment, length, (6.1,), theory, False)
-    load = model.load + sum(force * model.deflection(x) for x, force in forces)
+    model = bending(segment, length, (6.1,), theory, False)
+    load = model.load + sum(force * model.at(x) for x, force in forces)
     rest = np.linalg.solve(model.stiffness, load)
     for x in (6.1, 8.0):
-        assert model.deflection(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
-    for x in segment.supports:
-        assert not model.deflection(x).any()
+        assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
+    for support in segment.supports:
+        assert not model.at(support.x).any()
 
 
 def test_shear_matters_where_statics_are_tested(beam: Beam) -> None:
@@ -139,10 +146,10 @@ def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
     """Reference: analytic. Without a distributed load the shape functions are the solution."""
     segment = beam(supports=(3.0, 4.2))
     exact = OverhangingBeam(segment, [(8.0, 1.0e4)], 0.0, shear_stiffness(segment, theory))
-    model = finite_element_segment(segment, 2.0, (), theory, False)
-    rest = np.linalg.solve(model.stiffness, 1.0e4 * model.deflection(8.0))
+    model = bending(segment, 2.0, (), theory, False)
+    rest = np.linalg.solve(model.stiffness, 1.0e4 * model.at(8.0))
     for x in (3.5, 4.1, 4.3, 5.77, 6.1, 7.999):
-        assert model.deflection(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-9, abs=0.0)
+        assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-9, abs=0.0)
 
 
 @pytest.mark.parametrize("theory", THEORIES)
@@ -150,7 +157,7 @@ def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
 def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None:
     """Reference: analytic. No strain; m̄ L, and m̄ L³/12 + I_p L about the middle."""
     segment = beam(load=7.0, viscous_damping=3.0)
-    model = finite_element_segment(segment, 0.9, (), theory, rotary_inertia)
+    model = bending(segment, 0.9, (), theory, rotary_inertia)
     nodes = np.linspace(3.0, 8.0, len(model.load) // 2)
     lift, turn = np.zeros(len(model.load)), np.zeros(len(model.load))
     lift[::2], turn[::2], turn[1::2] = 1.0, nodes - 5.5, 1.0
@@ -164,12 +171,12 @@ def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None
     assert lift @ model.damping @ lift == pytest.approx(15.0, rel=1e-12)
     assert lift @ model.load == pytest.approx(35.0, rel=1e-12)
     assert abs(turn @ model.load) < 1e-9
-    assert model.deflection(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
+    assert model.at(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
 
 
 def test_mass_of_one_element(beam: Beam) -> None:
     """Reference: analytic, the consistent mass matrix of a Hermite beam (Przemieniecki 1968)."""
-    model = finite_element_segment(beam(), 5.0, (), "euler-bernoulli", False)
+    model = bending(beam(), 5.0, (), "euler-bernoulli", False)
     h = 5.0
     expected = np.array(
         [
@@ -186,7 +193,7 @@ def test_mass_of_one_element(beam: Beam) -> None:
 def test_viscous_damping_is_its_share_of_the_mass(beam: Beam) -> None:
     """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
     segment = beam(viscous_damping=88.0)
-    model = finite_element_segment(segment, 0.5, (), "euler-bernoulli", False)
+    model = bending(segment, 0.5, (), "euler-bernoulli", False)
     expected = 88.0 / segment.mass_per_length * model.mass
     np.testing.assert_allclose(model.damping, expected, rtol=1e-12, atol=1e-12)
 
@@ -205,7 +212,7 @@ def test_viscous_damping_is_its_share_of_the_mass(beam: Beam) -> None:
 def test_elements_are_no_longer_than_asked(
     beam: Beam, length: float, breaks: tuple[float, ...], nodes: int
 ) -> None:
-    model = finite_element_segment(beam(supports=(4.0,)), length, breaks, "euler-bernoulli", True)
+    model = bending(beam(supports=(4.0,)), length, breaks, "euler-bernoulli", True)
     assert len(model.load) == 2 * nodes - 1
 
 
@@ -215,4 +222,4 @@ def test_shear_needs_a_section(beam: Beam) -> None:
         "give height_to_width or section"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
-        finite_element_segment(beam(section=None), 0.5, (), "timoshenko", True)
+        bending(beam(section=None), 0.5, (), "timoshenko", True)

@@ -9,11 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment
-from beam_model.segment_model import SegmentModel, gap_system, tied_system
+from beam_model.kantorovich import kantorovich_segment
+from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
-from geometry.boom import Boom
+from dynamics.splitting import integrate
+from geometry.boom import Boom, Joint, Material, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
 
 Models = Callable[..., list[SegmentModel]]
@@ -151,11 +154,125 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     assert tied.observers["tail-2"].row @ position > tied.observers["head"].row @ position
 
 
+def in_leaves(boom: Boom) -> Boom:
+    """The boom with its inner segment split along its whole length into two equal halves.
+
+    They are tied to each other where the outer segment touches the first of them.
+    """
+    outer, inner = boom.segments
+    (joint,) = boom.joints
+    half = replace(
+        inner,
+        section=None,
+        mass_per_length=0.5 * inner.mass_per_length,
+        second_moment_of_area=0.5 * inner.second_moment_of_area,
+        load=0.5 * inner.load,
+    )
+    return Boom(
+        (outer, half, replace(half, name="leaf")),
+        (joint, replace(joint, outer=1, inner=2, tied=True)),
+    )
+
+
+@pytest.fixture(scope="module")
+def leaves(paper_boom: Boom) -> tuple[Boom, list[SegmentModel]]:
+    boom = in_leaves(paper_boom)
+    models = [
+        finite_element_segment(s, 1.0, boom.stations_of(k), "euler-bernoulli", False)
+        for k, s in enumerate(boom.segments)
+    ]
+    return boom, models
+
+
+def test_tied_halves_have_the_frequencies_of_the_whole(
+    paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
+) -> None:
+    """Reference: analytic. What both do alike is the whole segment; what they do against each
+    other is zero at the ties."""
+    law = PowerContact(1e13, 2.0, 7e-3)
+    whole = gap_system(paper_boom, elements(1.0), [law])
+    halves = gap_system(*leaves, [law, law])
+    assert list(halves.stations) == [9.0, 10.0]
+    assert len(halves.laws) == 2
+    assert halves.num_modes == whole.num_modes + 22 - 2
+    assert (halves.omega2 == 0.0).sum() == 2
+    others = np.sqrt(halves.omega2)
+    for omega in np.sqrt(whole.omega2):
+        assert np.abs(others - omega).min() <= 1e-8 * omega
+    # A tied model of three ties the play away as well.
+    found = tied_system(*leaves).frequencies
+    for frequency in tied_system(paper_boom, elements(1.0)).frequencies:
+        assert np.abs(found - frequency).min() <= 1e-8 * frequency
+
+
+def test_tied_halves_move_as_the_whole(
+    paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
+) -> None:
+    """Reference: analytic, until the rounding of the first presses has grown."""
+    law = PowerContact(1e9, 1.0, 7e-3)
+    step = 2.0e-5
+    whole = integrate(gap_system(paper_boom, elements(1.0), [law]), 0.2, step=step)
+    halves = integrate(gap_system(*leaves, [law, law]), 0.2, step=step)
+    assert 0.1 < whole.first_contact < 0.15
+    assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)
+    assert halves.data.attrs["contact_changes"] == whole.data.attrs["contact_changes"] > 1
+    for name in ("tip", "head", "tail"):
+        expected = whole.data[name].values
+        error = np.abs(halves.data[name].values - expected).max()
+        assert error < 1e-8 * np.abs(expected).max(), name
+    other = halves.data["tail-2"].values
+    assert np.abs(other - halves.data["tail"].values).max() < 1e-12
+
+
+def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
+    """Reference: analytic. Two segments tied at three places still move as one body; the third
+    joint of a chain does not bind what it does not touch."""
+    one = Segment("one", 0.0, 6.0, steel, 50.0, 2.0e-4, 1.0)
+    two = replace(one, name="two", start=4.0, end=10.0)
+    three = replace(one, name="three", start=8.0, end=14.0, supports=(Support(12.0), Support(14.0)))
+    tied = Joint(0, 1, (4.0, 5.0, 6.0), 0.0, 1e9, 1e9, 1.0, tied=True)
+    loose = Joint(1, 2, (8.0, 10.0), 1e-3, 1e9, 1e9, 1.0)
+    boom = Boom((one, two, three), (tied, loose))
+    models = [
+        finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
+        for k, s in enumerate(boom.segments)
+    ]
+    system = gap_system(boom, models, [PowerContact(1e9, 1.0, 1e-3)] * 2)
+    assert (system.omega2 == 0.0).sum() == 2
+    assert np.sort(system.omega2)[2] > 1.0
+    # Raised by 1 m at its tail and not tilted, "two" takes the end of "one" along.
+    rigid = system.omega2 == 0.0
+    ends = np.array([system.observers[name].row[rigid] for name in ("tail", "head-2")])
+    motion = np.zeros(system.num_modes)
+    motion[rigid] = np.linalg.solve(ends, [1.0, 1.0])
+    assert system.observers["head"].row @ motion == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_longer_chain_has_modes_in_proportion(paper_boom: Boom) -> None:
+    """Reference: analytic. As many modes as the segments have unknowns, for any number of them."""
+    outer, inner = (replace(segment, section=None) for segment in paper_boom.segments)
+    (joint,) = paper_boom.joints
+    counts = []
+    for number in (1, 2, 3, 4):
+        chain = [replace(inner, start=9.0 * k, end=9.0 * k + 10.0) for k in range(1, number + 1)]
+        joints = [
+            replace(joint, outer=k, inner=k + 1, stations=(9.0 * (k + 1), 9.0 * (k + 1) + 1.0))
+            for k in range(number)
+        ]
+        boom = Boom((outer, *chain), tuple(joints))
+        models = [
+            finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
+            for k, s in enumerate(boom.segments)
+        ]
+        system = gap_system(boom, models, [PowerContact(1e9, 1.0, 7e-3)] * number)
+        assert len(system.laws) == 2 * number
+        counts.append(system.num_modes)
+    assert np.diff(counts).tolist() == [42, 42, 42]
+
+
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_viscous_damping_is_exact(paper_boom: Boom, kind: str, paper_law: PowerContact) -> None:
     """Reference: analytic. Every mode of a segment decays with c = μ̄/m̄."""
-    from beam_model.kantorovich import kantorovich_segment
-
     segments = [
         replace(segment, viscous_damping=damping)
         for segment, damping in zip(paper_boom.segments, (50.0, 20.0), strict=True)
@@ -167,13 +284,6 @@ def test_viscous_damping_is_exact(paper_boom: Boom, kind: str, paper_law: PowerC
         for segment in segments
     ]
     system = gap_system(paper_boom, models, [paper_law])
-    outer = len(models[0].load)
+    outer = len(models[0].components["z"].load)
     np.testing.assert_allclose(system.damping[:outer], 50.0 / 83.16, rtol=1e-9)
     np.testing.assert_allclose(system.damping[outer:], 20.0 / 55.07, rtol=1e-9)
-    assert not gap_system(
-        paper_boom, [replace_damping(m) for m in models], [paper_law]
-    ).damping.any()
-
-
-def replace_damping(model: SegmentModel) -> SegmentModel:
-    return replace(model, damping=np.zeros_like(model.damping))

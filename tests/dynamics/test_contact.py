@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,12 @@ def test_sides_add_up_to_the_whole() -> None:
     np.testing.assert_array_equal(upper.energy(y) + lower.energy(y), LAW.energy(y))
 
 
+def test_parts_of_a_law_are_damped_as_it_is() -> None:
+    law = replace(LAW, damping=0.3)
+    assert {part.damping for part in (law.upper(), law.lower(), law.shared(0.25))} == {0.3}
+    assert LAW.damping == 0.0
+
+
 @pytest.mark.parametrize("law", [LAW, LAW.upper(), LAW.lower()], ids=["both", "upper", "lower"])
 def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
@@ -88,6 +95,8 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
         ({"exponent": float("nan")}, "exponent must be at least 1, got nan"),
         ({"clearance": -1e-3}, "clearance must be finite and not negative, got -0.001 m"),
         ({"clearance": float("nan")}, "clearance must be finite and not negative, got nan m"),
+        ({"damping": -1.0}, "damping must be finite and not negative, got -1.0 s/m"),
+        ({"damping": float("nan")}, "damping must be finite and not negative, got nan s/m"),
     ],
 )
 def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:

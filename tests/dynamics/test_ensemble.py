@@ -5,14 +5,21 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from dynamics.ensemble import Vary, integrate_ensemble, perturbations
+from dynamics.event_driven import integrate_events
+from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
+from dynamics.integrators import Events, Integrator, Splitting
 from dynamics.splitting import integrate
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
@@ -41,6 +48,75 @@ def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
     assert np.ptp(ensemble["tip"].values, axis=0).max() > 1e-4
 
 
+def test_all_loads_vary_and_nothing_else() -> None:
+    """Reference: other code path, a single run of the system changed by hand; from a place and a
+    speed of its own."""
+    pushed = Excitation(np.array([1.0, -2.0]), Sine(0.7))
+    system = replace(CHAOTIC, excitations=[pushed])
+    start = {"position": np.array([0.01, 0.0]), "velocity": THROWN}
+    ensemble = integrate_ensemble(system, 2, 1e-3, 7, "load", 2.0, 1e-2, step=1e-3, **start)
+    factor = 1.0 + float(ensemble["change"][1])
+    louder = replace(pushed, load=factor * pushed.load)
+    alone = replace(system, load=factor * system.load, excitations=[louder])
+    run = integrate(alone, 2.0, 1e-2, step=1e-3, **start)
+    np.testing.assert_array_equal(ensemble["tip"][1], run.data["tip"])
+    unloaded = replace(system, load=0.0 * system.load)
+    spread = integrate_ensemble(unloaded, 2, 1e-3, 7, "load", 2.0, 1e-2)["tip"]
+    assert np.ptp(spread.values, axis=0).max() > 1e-6
+
+
+def test_members_move_from_contact_to_contact() -> None:
+    """Reference: other code path, a single run of the changed system."""
+    ensemble = integrate_ensemble(CHAOTIC, 2, 1e-3, 7, "load", 5.0, 1e-2, integrator=Events())
+    factor = 1.0 + float(ensemble["change"][1])
+    run = integrate_events(replace(CHAOTIC, load=factor * CHAOTIC.load), 5.0, 1e-2)
+    np.testing.assert_array_equal(ensemble["tip"][1], run.data["tip"])
+    assert ensemble.attrs["integrator"] == "Events(tolerance=1e-10)"
+
+
+@pytest.mark.parametrize("integrator", [Splitting(1e-3), Events()])
+def test_other_processes_give_the_same(integrator: Integrator) -> None:
+    """Chaotic: a last digit that differed would show."""
+    found = []
+    with ProcessPoolExecutor(1, get_context("spawn")) as processes:
+        assert processes.submit(os.getpid).result() != os.getpid()
+        for executor in (None, processes):
+            found.append(
+                integrate_ensemble(
+                    CHAOTIC, 5, 1e-6, 3, "load", 20.0, 1e-2,
+                    velocity=THROWN, integrator=integrator, executor=executor,
+                )
+            )  # fmt: skip
+    xr.testing.assert_identical(*found)
+
+
+OTHER_RANK = """
+import os
+from mpi4py import MPI
+from mpi4py.futures import MPICommExecutor
+from dynamics.ensemble import integrate_ensemble
+from tests.dynamics.two_stops import CHAOTIC
+
+with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
+    if ranks is not None:
+        assert ranks.submit(os.getpid).result() != os.getpid()
+        one, two = (
+            integrate_ensemble(CHAOTIC, 5, 1e-6, 3, "load", 20.0, 1e-2, executor=executor)
+            for executor in (None, ranks)
+        )
+        print("identical" if one.identical(two) else "different")
+"""
+
+
+def test_another_rank_gives_the_same(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    """Chaotic: a last digit that differed would show."""
+    pytest.importorskip("mpi4py", reason="ranks need mpi4py")
+    answer = two_ranks(OTHER_RANK)
+    assert (answer.returncode, answer.stdout.split()) == (0, ["identical"]), answer.stderr
+
+
 def test_keeps_labels_and_nothing_more() -> None:
     ensemble = integrate_ensemble(CHAOTIC, 4, 1e-6, 1, "load", 1.0, 1e-2)
     assert dict(ensemble.sizes) == {"member": 4, "time": 101, "station": 1}
@@ -48,7 +124,8 @@ def test_keeps_labels_and_nothing_more() -> None:
     assert ensemble["contact_force"].dims == ("member", "time", "station")
     units = [ensemble[name].attrs["units"] for name in ("tip", "contact_force", "time")]
     assert units == ["m", "N", "s"]
-    assert set(ensemble.attrs) == {"vary", "relative", "seed", "step"}
+    assert set(ensemble.attrs) == {"vary", "relative", "seed", "integrator", "step"}
+    assert ensemble.attrs["integrator"] == f"Splitting(step={ensemble.attrs['step']})"
 
 
 def test_changes_are_uniform_and_spare_member_0() -> None:

@@ -1,19 +1,24 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""From contact to contact: exact for linear stops, of order four for others, missing none."""
+"""From contact to contact: as exact as its tolerance, missing none."""
 
 from __future__ import annotations
 
 import re
 import signal
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import gamma
 
 from dynamics.contact import PowerContact
-from dynamics.event_driven import integrate_events
+from dynamics.event_driven import integrate_events, what_hinders
+from dynamics.excitation import Excitation, Step
+from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
@@ -26,13 +31,14 @@ pytestmark = pytest.mark.quick
 
 @pytest.fixture(autouse=True)
 def _deadline() -> Iterator[None]:
-    """Motion from event to event may fail by never ending; these tests take a second."""
+    """Motion from event to event may fail by never ending; these tests take a second, and some more
+    where the loops must be compiled first."""
 
     def late(*_: object) -> None:
         raise TimeoutError("the motion does not end")
 
     before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(15)
+    signal.alarm(90)
     yield
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
@@ -121,8 +127,13 @@ def test_peak_force_is_that_of_the_interval(
     )
 
 
-@pytest.mark.parametrize("integrator", [integrate, integrate_events])
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize(
+    ("integrator", "exponent"),
+    [
+        *((integrate, exponent) for exponent in (1.0, 1.5, 2.0, 3.0)),
+        *((integrate_events, exponent) for exponent in (1.0, 2.0, 3.0)),
+    ],
+)
 def test_a_blow_from_velocity_alone_is_resolved(
     one_mass: OneMass, integrator: Callable[..., Trajectory], exponent: float
 ) -> None:
@@ -134,14 +145,15 @@ def test_a_blow_from_velocity_alone_is_resolved(
 
 
 def test_a_thousand_hard_blows_between_two_stops(one_mass: OneMass) -> None:
-    """Reference: analytic. Contacts of some microseconds, none missed, no energy lost."""
+    """Reference: analytic. Contacts of some microseconds, none missed, no energy lost; a missed
+    one would leave the mass 0.2 m off."""
     law = PowerContact(4.0e12, exponent=1.0, clearance=0.1, stiffness_below=9.0e12)
     period = 2.0 * 0.2 / 20.0 + np.pi / 2.0e6 + np.pi / 3.0e6
     run = integrate_events(
         one_mass(1.0, law), 500.0 * period, output_step=period, velocity=np.array([20.0])
     )
     assert run.data.attrs["contact_changes"] == 2000
-    np.testing.assert_allclose(run.data["tip"], 0.0, atol=1e-8)
+    np.testing.assert_allclose(run.data["tip"], 0.0, atol=1e-7)
     assert run.energy_residual < 1e-9
 
 
@@ -155,21 +167,38 @@ def test_linear_stops_are_exact() -> None:
     assert run.energy_residual < 1e-11
 
 
-def test_smooth_stops_are_of_order_four() -> None:
+def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
+    """Reference: analytic. A mass m at v sinks in by p = (3 m v² / 2 k)^⅓ under F = k p², after
+    Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, from energy and a Beta integral."""
+    stop = PowerContact(stiffness=1.0e6, exponent=2.0, clearance=0.0).upper()
+    depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
+    half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
+    run = integrate_events(
+        one_mass(100.0, stop), 2.0 * half, output_step=half, velocity=np.array([20.0])
+    )
+    assert float(run.data["tip"][1]) == pytest.approx(depth, rel=1e-9)
+    assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 * depth**2, rel=1e-8)
+    assert float(run.data["tip"][2]) == pytest.approx(0.0, abs=1e-9 * depth)
+    impulses = half * run.data["contact_force"].values[1:, 0]
+    np.testing.assert_allclose(impulses, 100.0 * 2.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("exponent", [2.0, 3.0])
+def test_errors_follow_the_tolerance(exponent: float) -> None:
     """Reference: other code, scipy's DOP853, through one contact; slope and error."""
-    system = two_modes(3.0)
+    system = two_modes(exponent)
     errors = []
-    phases = (0.8, 0.4, 0.2)
-    for phase in phases:
-        run = integrate_events(system, 0.6, output_step=0.02, phase=phase)
+    tolerances = (1e-2, 1e-5, 1e-8)
+    for tolerance in tolerances:
+        run = integrate_events(system, 0.6, output_step=0.02, tolerance=tolerance)
         expected = reference_states(system, run.time)
         errors.append(np.abs(run.states - expected).max() / np.abs(expected).max())
     assert run.data.attrs["contact_changes"] == 2
-    assert errors[-1] < 1e-7
-    assert np.log2(errors[0] / errors[-1]) / 2.0 > 3.0
+    assert errors[-1] < 1e-8
+    assert np.log10(errors[0] / errors[-1]) > 0.7 * np.log10(tolerances[0] / tolerances[-1])
 
 
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize("exponent", [1.0, 2.0, 3.0])
 def test_agrees_with_the_splitting(exponent: float) -> None:
     """Reference: other code, the step-by-step integrator at a fine step."""
     system = two_modes(exponent)
@@ -183,6 +212,30 @@ def test_agrees_with_the_splitting(exponent: float) -> None:
         np.testing.assert_allclose(events.data[name], steps.data[name], atol=1e-4 * size)
 
 
+def test_outputs_change_nothing() -> None:
+    """Reference: the run with outputs a hundred times as far apart; its series are as long, and
+    what they leave out is the same."""
+    fine, coarse = (integrate_events(two_modes(2.0), 1.5, output_step=s) for s in (0.005, 0.5))
+    np.testing.assert_allclose(fine.states[::100], coarse.states, atol=1e-11)
+    sums = [float(run.data["contact_force"].sum()) * s for run, s in ((fine, 0.005), (coarse, 0.5))]
+    assert sums[0] == pytest.approx(sums[1], rel=1e-10)
+    peaks = [float(run.data["contact_force_peak"].max()) for run in (fine, coarse)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
+
+
+def test_starts_pressed(one_mass: OneMass) -> None:
+    """Reference: analytic. Let go 5 mm deep in a linear stop, a mass leaves it after a quarter of
+    its period, at the speed that it has then."""
+    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
+    quarter = 0.5 * np.pi / 10.0
+    run = integrate_events(
+        one_mass(1.0, stop), 2.0 * quarter, output_step=2.0 * quarter, position=np.array([-0.105])
+    )
+    assert run.first_contact == 0.0
+    assert run.data.attrs["contact_changes"] == 1
+    assert float(run.data["tip"][-1]) == pytest.approx(-0.1 + 0.05 * quarter, rel=1e-12)
+
+
 def test_without_contact_it_is_the_flow(one_mass: OneMass) -> None:
     """Reference: analytic."""
     run = integrate_events(one_mass(4.0, spring=100.0, force=30.0), 2.0, output_step=0.1)
@@ -190,14 +243,37 @@ def test_without_contact_it_is_the_flow(one_mass: OneMass) -> None:
     assert np.isnan(run.first_contact)
 
 
-def test_refuses_damping(one_mass: OneMass) -> None:
-    message = "a damped system has no closed form from contact to contact"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        integrate_events(one_mass(1.0, spring=1.0, dashpot=0.1), 1.0)
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (
+            {"damping": np.array([0.1, 0.0])},
+            "a damped system has no closed form from contact to contact",
+        ),
+        (
+            {"excitations": [Excitation(np.ones(2), Step())]},
+            "loads that change with time leave no closed form from contact to contact",
+        ),
+        (
+            {"frictions": [DryFriction(0.2, 0)], "friction_rows": np.ones((1, 2))},
+            "dry friction leaves no closed form from contact to contact",
+        ),
+        (
+            {"laws": [PowerContact(1e3, 2.0, 0.05, damping=0.1)]},
+            "contact damping is not analytic where a press ends",
+        ),
+        (
+            {"laws": [PowerContact(1e3, 1.5, 0.05)]},
+            "a force of the exponent 1.5 is not analytic where a press begins",
+        ),
+    ],
+)
+def test_refuses_what_has_no_closed_form(change: dict[str, Any], what: str) -> None:
+    system = replace(two_modes(2.0), **change)
+    assert what_hinders(system) == what
+    with pytest.raises(ValueError, match=f"^{re.escape(what)}; integrate by splitting$"):
+        integrate_events(system, 1.0)
 
 
-def test_refuses_to_start_pressed(one_mass: OneMass) -> None:
-    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
-    message = "the initial position presses a contact; start with every gap open"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        integrate_events(one_mass(1.0, stop), 1.0, position=np.array([-0.11]))
+def test_nothing_hinders_the_rest() -> None:
+    assert what_hinders(two_modes(3.0)) is None

@@ -4,17 +4,21 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, Step, Table
+from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
 pytestmark = pytest.mark.quick
 
 LAW = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=1.0e-3)
+RUB = DryFriction(0.2, station=1, normal_force=10.0, pressed_by=(0, 1))
 
 
 def parts() -> dict[str, Any]:
@@ -38,6 +42,19 @@ def test_numbers_of_a_system() -> None:
     assert system.row_masses == pytest.approx([1.0 / 25.0, 4.0], rel=1e-14)
     assert not system.damping.any()
     assert system.damping.shape == (3,)
+
+
+def test_friction_excitations_and_directions_are_optional() -> None:
+    system = GapSystem(**parts())
+    assert system.friction_rows.shape == (0, 3)
+    assert not system.frictions
+    assert not system.excitations
+    assert tuple(system.station_directions) == ("z", "z")
+    assert system.largest_load.tolist() == [1.0, 2.0, 3.0]
+    excited = GapSystem(
+        **parts() | {"excitations": [Excitation(np.array([0.0, -1.0, 2.0]), Table([0.0], [-3.0]))]}
+    )
+    assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
 
 
 def test_rest_under_a_force() -> None:
@@ -70,8 +87,35 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ("observers", {"tip": Observer(np.full(3, np.nan))}, "observer 'tip' must be finite"),
         ("omega2", np.array([1.0, -1e-9, 1.0]), "omega2 and damping must not be negative"),
         ("damping", np.array([0.0, -1.0, 0.0]), "omega2 and damping must not be negative"),
+        ("station_of_row", np.array([0, 2]), "station_of_row must hold positions in stations"),
+        ("friction_rows", np.ones((1, 3)), "friction_rows must have the shape (0, 3), got (1, 3)"),
+        ("frictions", [RUB], "friction_rows must have the shape (1, 3), got (0, 3)"),
+        (
+            "excitations",
+            [Excitation(np.ones(2), Step())],
+            "excitation 0 must have the shape (3,), got (2,)",
+        ),
+        (
+            "station_directions",
+            ("z",),
+            "station_directions must be one for each of 2 stations, got 1",
+        ),
     ],
 )
 def test_refuses_what_does_not_agree(name: str, value: object, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         GapSystem(**parts() | {name: value})
+
+
+@pytest.mark.parametrize(
+    ("friction", "message"),
+    [
+        (replace(RUB, station=2), "the station of a friction must be a position in stations"),
+        (replace(RUB, station=-1), "the station of a friction must be a position in stations"),
+        (replace(RUB, pressed_by=(0, 2)), "pressed_by must hold positions in rows"),
+        (replace(RUB, pressed_by=(-1,)), "pressed_by must hold positions in rows"),
+    ],
+)
+def test_refuses_friction_in_no_place(friction: DryFriction, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        GapSystem(**parts() | {"friction_rows": np.ones((1, 3)), "frictions": [friction]})

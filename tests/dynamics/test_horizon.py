@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from dynamics.ensemble import integrate_ensemble
 from dynamics.horizon import Growth, horizon, horizons_of, measure_horizons, spread
+from dynamics.integrators import Events, Integrator, Splitting
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 pytestmark = pytest.mark.quick
@@ -26,9 +29,9 @@ def test_spread_of_a_linear_system_is_in_proportion_to_the_change() -> None:
 
 
 def test_a_linear_system_has_no_horizon() -> None:
-    found = measure_horizons(LINEAR, [1e-12, 1e-6], 4, 1, "load", 30.0, 1e-2)
+    found = measure_horizons(LINEAR, [1e-12, 1e-6], "load", 30.0, 1e-2)
     assert np.isnan(found.times).all()
-    assert np.isnan([growth.rate for growth in found.growth]).all()
+    assert np.isnan([found.growth[0].rate, found.step_change]).all()
     assert found.limits == ["nothing", "nothing"]
 
 
@@ -48,30 +51,73 @@ def test_growth_of_known_horizons() -> None:
     relatives = np.array([1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
     times = (np.log(0.02) - np.log(relatives * 0.7)) / 3.0
     times[0] = np.nan
-    growth = Growth.fit(relatives, times, 0.02)
+    growth = Growth.fit(relatives, times)
     assert growth.rate == pytest.approx(3.0, rel=1e-9)
-    assert growth.response == pytest.approx(0.7, rel=1e-9)
+    assert growth.start == pytest.approx(np.log(0.02 / 0.7) / 3.0, rel=1e-9)
     assert growth.scatter < 1e-12
+    assert growth.change(times[2]) == pytest.approx(1e-8, rel=1e-9)
     # A horizon that a smaller change does not put off is no growth; one alone is no line.
-    assert np.isnan(Growth.fit(relatives, np.arange(5.0), 0.02).rate)
-    assert np.isnan(Growth.fit(relatives[:2], times[:2], 0.02).rate)
+    assert np.isnan(Growth.fit(relatives, np.arange(5.0)).rate)
+    assert np.isnan(Growth.fit(relatives[:2], times[:2]).rate)
+
+
+def test_chance_is_no_growth() -> None:
+    """Reference: analytic. A slope of −0.01 s per size under a scatter of ±0.1 s is within twice
+    its error, 0.1/√(5·2); one of −0.1 s is not."""
+    relatives = np.array([1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
+    noise = 0.1 * np.array([1.0, -1.0, 0.0, -1.0, 1.0])
+    flat, steep = (-slope * np.arange(5.0) + noise for slope in (0.01, 0.1))
+    assert np.isnan(Growth.fit(relatives, flat).rate)
+    assert Growth.fit(relatives, steep).rate == pytest.approx(np.log(100.0) / 0.1)
 
 
 def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
-    """Reference: analytic in kind. T falls with ln ε, and λ is what the line says."""
-    found = measure_horizons(CHAOTIC, [1e-6, 1e-12, 1e-8, 1e-10], 8, 1, "load", 40.0, 1e-2)
-    assert found.relatives.tolist() == [1e-12, 1e-10, 1e-8, 1e-6]
-    times = found.times[:, 0]
-    assert (np.diff(times) < -1.0).all()
-    growth = found.growth[0]
-    assert growth.rate > 0.0
-    assert times[0] - times[-1] == pytest.approx(np.log(1e6) / growth.rate, rel=0.15)
-    assert growth.scatter < 0.1 * (times[0] - times[-1])
+    """Reference: analytic in kind. T falls with ln ε, and λ is what the line says, from one
+    partner a size as from seven."""
+    rates = []
+    for partners in (1, 7):
+        found = measure_horizons(
+            CHAOTIC, [1e-6, 1e-12, 1e-8, 1e-10], "load", 40.0, 1e-2, partners=partners
+        )
+        assert found.relatives.tolist() == [1e-12, 1e-10, 1e-8, 1e-6]
+        times = found.times[:, 0]
+        assert (np.diff(times) < -1.0).all()
+        growth = found.growth[0]
+        assert times[0] - times[-1] == pytest.approx(np.log(1e6) / growth.rate, rel=0.15)
+        assert growth.scatter < 0.1 * (times[0] - times[-1])
+        rates.append(growth.rate)
+    assert rates[0] == pytest.approx(rates[1], rel=0.2)
+
+
+@pytest.mark.parametrize("integrator", [Splitting(1e-4), Events(1e-7)])
+def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
+    """Reference: other code path. Data changed by as much part from the run at the time at which
+    the finer one does, within a tenth of it."""
+    found = measure_horizons(
+        CHAOTIC, [1e-10, 1e-8, 1e-6], "load", 40.0, 1e-2, integrator=integrator
+    )
+    assert 1e-10 < found.step_change < 1e-2
+    alike = measure_horizons(
+        CHAOTIC, [found.step_change], "load", 40.0, 1e-2, integrator=integrator
+    )
+    assert alike.times[0, 0] == pytest.approx(found.of_step[0], rel=0.1)
 
 
 def test_says_whether_step_or_physics_limits() -> None:
     """The step's error changes a run more than 1e-12 of the load does, and less than 1e-2."""
     for relative, expected in ((1e-12, "step"), (1e-2, "physics")):
-        found = measure_horizons(CHAOTIC, [relative], 8, 1, "load", 20.0, 1e-2)
+        found = measure_horizons(CHAOTIC, [relative], "load", 20.0, 1e-2)
         assert found.limits[0] == expected
         assert (found.of_step[0] < found.times[0, 0]) == (expected == "step")
+
+
+def test_tells_its_progress() -> None:
+    parts: list[float] = []
+    measure_horizons(LINEAR, [1e-9, 1e-6], "load", 1.0, 1e-2, progress=parts.append)
+    assert parts == [0.25, 0.5, 0.75, 1.0]
+
+
+def test_refuses_what_no_change_moves() -> None:
+    message = "the velocity is zero, so that no relative change moves it"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        measure_horizons(LINEAR, [1e-9], "velocity", 1.0)

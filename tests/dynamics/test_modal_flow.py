@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.splitting import ModalFlow, integrate
+from dynamics.modal_flow import ModalFlow, tabulate
+from dynamics.splitting import integrate
 
 pytestmark = pytest.mark.quick
 
@@ -44,40 +43,61 @@ def modes() -> GapSystem:
     )
 
 
-def exact(omega2: float, damping: float, load: float, time: float) -> npt.NDArray[np.float64]:
-    """The map (a, v, 1) → (a, v, 1) of one mode, from scipy's matrix exponential."""
-    generator = np.array([[0.0, 1.0, 0.0], [-omega2, -damping, load], [0.0, 0.0, 0.0]])
-    return np.asarray(expm(generator * time))
+def exact(omega2: float, damping: float, load: float, step: float) -> dict[str, float]:
+    """The entries of a flow of one mode, from scipy's matrix exponential.
+
+    Over (a, v, load, ramp / step), the last two the load and one that grows from 0 to 1.
+    """
+    generator = np.zeros((4, 4))
+    generator[0, 1] = generator[2, 3] = 1.0
+    generator[1] = [-omega2, -damping, 1.0, 0.0]
+    (aa, av, rise, ramp), (va, vv, _, _), _, _ = expm(generator * step)
+    return {
+        "aa": aa, "av": av, "ap": rise * load, "va": va, "vv": vv, "vp": av * load,
+        "rise": rise, "ramp": ramp / step,
+    }  # fmt: skip
 
 
+def tabulated(system: GapSystem, step: float) -> ModalFlow:
+    flow = np.zeros((8, system.num_modes))
+    tabulate(flow, system.omega2, system.load, system.damping, step)
+    return ModalFlow(*flow)
+
+
+@pytest.mark.parametrize("flow_over", [ModalFlow.over, tabulated])
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])
-def test_flow_is_the_matrix_exponential(step: float) -> None:
+def test_flow_is_the_matrix_exponential(
+    flow_over: Callable[[GapSystem, float], ModalFlow], step: float
+) -> None:
     """Reference: other code, scipy.linalg.expm.
 
     Each entry is held against the size that it has without decay, so that those that are
     small because the step is small are not passed by.
     """
-    flow = ModalFlow.over(modes(), step)
+    flow = flow_over(modes(), step)
     for k, (name, numbers) in enumerate(MODES.items()):
-        (aa, av, ap), (va, vv, vp), _ = exact(*numbers, step)
         omega = np.sqrt(numbers[0])
         reach = min(step, 1.0 / omega) if omega > 0.0 else step
-        expected = ModalFlow(*map(np.array, (aa, av, ap, va, vv, vp)))
-        size = ModalFlow(
-            *map(np.array, (1.0, reach, 3.0 * reach**2, omega**2 * reach, 1.0, 3.0 * reach))
-        )
-        for entry in fields(ModalFlow):
-            got = getattr(flow, entry.name)[k]
-            error = abs(got - getattr(expected, entry.name))
-            assert error <= 2e-12 * getattr(size, entry.name), (name, entry.name)
+        size = {
+            "aa": 1.0, "av": reach, "ap": 3.0 * reach**2, "va": omega**2 * reach, "vv": 1.0,
+            "vp": 3.0 * reach, "rise": reach**2, "ramp": reach**2,
+        }  # fmt: skip
+        for entry, expected in exact(*numbers, step).items():
+            error = abs(getattr(flow, entry)[k] - expected)
+            assert error <= 1e-11 * size[entry], (name, entry)
 
 
+@pytest.mark.parametrize("flow_over", [ModalFlow.over, tabulated])
 @pytest.mark.parametrize("omega2", [0.0, 40.0])
 @pytest.mark.parametrize("damping", [0.0, 1.0e-9, 0.7, 9.0])
 def test_load_response_of_the_shortest_steps(
-    one_mass: Callable[..., GapSystem], omega2: float, damping: float
+    one_mass: Callable[..., GapSystem],
+    omega2: float,
+    damping: float,
+    flow_over: Callable[[GapSystem, float], ModalFlow],
 ) -> None:
-    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load.
+    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load, and
+    h²/6 − c h³/24 + (c² − ω²) h⁴/120 under one that grows.
 
     At the steps that contacts need, a difference of two numbers near one leaves few digits of
     it, and a relative error of it acts as one of the load.
@@ -85,7 +105,10 @@ def test_load_response_of_the_shortest_steps(
     mode = one_mass(1.0, spring=omega2, dashpot=damping, force=1.0)
     for h in (1.0e-4, 1.0e-5, 1.0e-6):
         series = h**2 / 2.0 - damping * h**3 / 6.0 + (damping**2 - omega2) * h**4 / 24.0
-        assert ModalFlow.over(mode, h).ap == pytest.approx(series, rel=1e-9, abs=0.0)
+        growing = h**2 / 6.0 - damping * h**3 / 24.0 + (damping**2 - omega2) * h**4 / 120.0
+        flow = flow_over(mode, h)
+        assert flow.ap == pytest.approx(series, rel=1e-9, abs=0.0)
+        assert flow.ramp == pytest.approx(growing, rel=1e-9, abs=0.0)
 
 
 def test_steps_add_up() -> None:

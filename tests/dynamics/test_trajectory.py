@@ -13,6 +13,7 @@ import xarray as xr
 
 from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
+from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
@@ -34,7 +35,7 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
         system, observers={**system.observers, "stress": Observer(np.array([5.0]), "Pa")}
     )
     run = integrate(system, 0.2, output_step=1.0e-2)
-    units = {name: variable.attrs["units"] for name, variable in run.data.variables.items()}
+    units = {name: variable.attrs.get("units") for name, variable in run.data.variables.items()}
     assert units == {
         "time": "s",
         "station": "m",
@@ -42,10 +43,12 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
         "stress": "Pa",
         "contact_force": "N",
         "contact_force_peak": "N",
+        "friction_force": "N",
+        "direction": None,
         "gap": "m",
         **dict.fromkeys(ENERGIES, "J"),
     }
-    for name in ("contact_force", "contact_force_peak", "gap"):
+    for name in ("contact_force", "contact_force_peak", "friction_force", "gap"):
         assert run.data[name].dims == ("time", "station")
     for name in ("tip", "stress", *ENERGIES):
         assert run.data[name].dims == ("time",)
@@ -88,6 +91,29 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
     np.testing.assert_array_equal(two.data["station"], [9.0, 10.0])
 
 
+def test_stations_have_directions_and_friction_forces() -> None:
+    """Reference: other code path. Two friction rows of one station are one of both limits."""
+    system = GapSystem(
+        omega2=np.array([10.0]),
+        load=np.array([2.0]),
+        rows=np.array([[0.8]]),
+        laws=[replace(STOP, clearance=1.0)],
+        station_of_row=np.array([0]),
+        stations=[9.0, 9.0],
+        station_directions=["z", "y"],
+        observers={},
+        friction_rows=np.array([[0.8], [0.8]]),
+        frictions=[DryFriction(0.1, 1, 4.0), DryFriction(0.1, 1, 6.0)],
+    )
+    whole = replace(system, friction_rows=system.rows, frictions=[DryFriction(0.1, 1, 10.0)])
+    one, two = (integrate(s, 1.0, output_step=0.01) for s in (whole, system))
+    assert two.data["direction"].values.tolist() == ["z", "y"]
+    assert not two.data["friction_force"].values[:, 0].any()
+    force = one.data["friction_force"].values[:, 1]
+    assert np.abs(force).max() == pytest.approx(1.0, rel=1e-12)
+    np.testing.assert_allclose(two.data["friction_force"].values[:, 1], force, atol=1e-9)
+
+
 def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
     system = GapSystem(
         omega2=np.array([4.0, 9.0]),
@@ -104,14 +130,17 @@ def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
 
 
 def test_energy_residual_by_hand() -> None:
-    """Reference: analytic. 1 J at first, 4 J of work, 0.5 J lost to damping, 0.2 J too much."""
-    energies = np.array([[0.5, 0.3, 0.2, 0.0, 0.0], [2.0, 2.0, 0.7, 4.0, 0.5]])
+    """Reference: analytic. 1 J at first, 4 J of work, 0.5 J lost to damping, friction and contact,
+    0.2 J too much."""
+    energies = np.array([[0.5, 0.3, 0.2] + 4 * [0.0], [2.0, 2.0, 0.7, 4.0, 0.2, 0.1, 0.2]])
     assert energy_residual(energies) == pytest.approx([0.0, 0.2 / 4.0], rel=1e-12)
     # Without work what there was at first is the measure, and at rest there is none.
     energies[:, 3] = 0.0
-    energies[1] = [0.6, 0.4, 0.1, 0.0, 0.0]
+    energies[1] = [0.6, 0.4, 0.1, 0.0, 0.0, 0.0, 0.0]
     assert energy_residual(energies) == pytest.approx([0.0, 0.1], rel=1e-12)
-    assert not energy_residual(np.zeros((3, 5))).any()
+    assert not energy_residual(np.zeros((3, 7))).any()
+    # What is put in counts from a least energy on.
+    assert energy_residual(energies, 5.0) == pytest.approx([0.0, 0.1 / 5.0], rel=1e-12)
 
 
 def test_first_peak_of_a_slow_motion_with_ripple() -> None:

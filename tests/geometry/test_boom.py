@@ -6,9 +6,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from geometry.boom import Boom, BoomError, Joint, Material, Segment
+from geometry.boom import (
+    Boom,
+    BoomError,
+    Joint,
+    Load,
+    Material,
+    PointMass,
+    Segment,
+    Stop,
+    Support,
+)
 
 Fault = Callable[[Segment, Segment, Joint], tuple[tuple[Segment, ...], tuple[Joint, ...]]]
 
@@ -22,8 +33,11 @@ def test_numbers_of_a_segment(paper_boom: Boom) -> None:
     assert outer.bending_stiffness == pytest.approx(7.97706e7, rel=1e-14)
     assert (outer.length, inner.length) == (10.0, 10.0)
     assert (outer.rigid_modes, inner.rigid_modes) == (0, 2)
-    assert replace(outer, supports=(2.0,)).rigid_modes == 1
-    assert replace(outer, supports=(0.0, 2.0, 10.0)).rigid_modes == 0
+    assert replace(outer, supports=(Support(2.0),)).rigid_modes == 1
+    assert replace(outer, supports=tuple(map(Support, (0.0, 2.0, 10.0)))).rigid_modes == 0
+    assert replace(outer, supports=(Support(0.0, "clamped"),)).rigid_modes == 0
+    assert replace(outer, supports=(Support(0.0, stiffness=1.0e6),)).rigid_modes == 1
+    assert (outer.rigid_twists, inner.rigid_twists) == (0, 1)
 
 
 def test_ends_belong_to_a_segment(paper_boom: Boom) -> None:
@@ -35,8 +49,24 @@ def test_ends_belong_to_a_segment(paper_boom: Boom) -> None:
     assert not inner.holds(19.0 + 1e-8)
 
 
+def test_a_segment_turned_has_its_planes_exchanged(spatial_boom: Boom) -> None:
+    inner = spatial_boom.segments[1]
+    assert inner.section is not None
+    assert inner.lateral is not None
+    turned = replace(inner, lateral=replace(inner.lateral, load=7.0)).turned()
+    assert turned.second_moment_of_area == inner.section.lateral_second_moment_of_area
+    assert turned.rotary_inertia == 7850.0 * inner.section.lateral_second_moment_of_area
+    assert turned.section == inner.section.turned()
+    assert turned.load == 7.0
+    assert turned.turned() == replace(inner, lateral=replace(inner.lateral, load=7.0))
+    with pytest.raises(ValueError, match=r"^'inner' has no lateral numbers to exchange$"):
+        replace(inner, lateral=None).turned()
+
+
 def test_places_of_the_paper(paper_boom: Boom) -> None:
     assert paper_boom.tip == 19.0
+    assert paper_boom.stations == [(9.0, "z"), (10.0, "z")]
+    assert not paper_boom.spatial
     assert paper_boom.stations_of(0) == paper_boom.stations_of(1) == (9.0, 10.0)
     assert paper_boom.observed() == {"tip": (1, 19.0), "head": (0, 10.0), "tail": (1, 9.0)}
 
@@ -59,6 +89,24 @@ def test_places_of_three_segments(paper_boom: Boom) -> None:
     }
 
 
+def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> None:
+    """Stations of the joints along z and along y, then stops; nodes wherever a force may be."""
+    loads = (Load(0, "z", 5.0, 4.0, np.ones_like), Load(0, "z", 5.0, None, np.ones_like))
+    stop = Stop(1, 14.0, 1.0e-3, 1.0e9, 0.0, 1.0)
+    outer, inner = paper_boom.segments
+    heavy = replace(inner, masses=(PointMass(19.0, 80.0),))
+    boom = Boom((outer, heavy), paper_boom.joints, loads, (stop,))
+    assert boom.stations == [(9.0, "z"), (10.0, "z"), (14.0, "z")]
+    assert boom.stations_of(0) == (4.0, 9.0, 10.0)
+    assert boom.stations_of(1) == (9.0, 10.0, 14.0, 19.0)
+    assert spatial_boom.spatial
+    both = replace(spatial_boom, stops=(stop,))
+    assert both.stations == [(9.0, "z"), (10.0, "z"), (9.0, "y"), (10.0, "y"), (14.0, "z")]
+    tied = Boom(paper_boom.segments, (replace(paper_boom.joints[0], tied=True),), stops=(stop,))
+    assert tied.stations == [(14.0, "z")]
+    assert tied.stations_of(0) == (9.0, 10.0)
+
+
 FAULTS: dict[str, tuple[str, str, Fault]] = {
     "no segment": (
         "segment",
@@ -78,18 +126,57 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
     "support outside": (
         "segment[1].supports",
         "10.5 m lies outside the segment; it must be between 0 and 10 m",
-        lambda outer, inner, joint: ((replace(outer, supports=(0.0, 10.5)), inner), (joint,)),
+        lambda outer, inner, joint: (
+            (replace(outer, supports=(Support(0.0), Support(10.5))), inner),
+            (joint,),
+        ),
     ),
     "support twice": (
         "segment[1].supports",
         "a place is given twice; give each once",
-        lambda outer, inner, joint: ((replace(outer, supports=(2.0, 2.0)), inner), (joint,)),
+        lambda outer, inner, joint: (
+            (replace(outer, supports=(Support(2.0), Support(2.0))), inner),
+            (joint,),
+        ),
     ),
     "support twice but for round-off": (
         "segment[1].supports",
         "a place is given twice; give each once",
         lambda outer, inner, joint: (
-            (replace(outer, supports=(0.3, 0.1 + 0.2)), inner),
+            (replace(outer, supports=(Support(0.3), Support(0.1 + 0.2))), inner),
+            (joint,),
+        ),
+    ),
+    "a clamped support that gives way": (
+        "segment[1].supports",
+        "a clamped support is rigid, and the one at 2 m has a stiffness; leave it out, or make "
+        "the support pinned",
+        lambda outer, inner, joint: (
+            (replace(outer, supports=(Support(0.0), Support(2.0, "clamped", 1e6))), inner),
+            (joint,),
+        ),
+    ),
+    "a support that pulls": (
+        "segment[1].supports",
+        "the stiffness at 2 m must be a positive number of N/m, got -5",
+        lambda outer, inner, joint: (
+            (replace(outer, supports=(Support(0.0), Support(2.0, stiffness=-5.0))), inner),
+            (joint,),
+        ),
+    ),
+    "mass outside": (
+        "segment[2].masses",
+        "20 m lies outside the segment; it must be between 9 and 19 m",
+        lambda outer, inner, joint: (
+            (outer, replace(inner, masses=(PointMass(20.0, 5.0),))),
+            (joint,),
+        ),
+    ),
+    "mass of nothing": (
+        "segment[2].masses",
+        "must be positive numbers of kg, got 0",
+        lambda outer, inner, joint: (
+            (outer, replace(inner, masses=(PointMass(19.0, 0.0),))),
             (joint,),
         ),
     ),
@@ -140,11 +227,30 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         "and a play of 0.028 m is asked for; make the inner section or the play smaller",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, clearance=14.0e-3),)),
     ),
+    "friction without what presses": (
+        "joint[1].normal_forces",
+        "missing, and the joint has friction; give normal_forces, one in N for each station, "
+        "since in a flat boom no other plane presses",
+        lambda outer, inner, joint: ((outer, inner), (replace(joint, friction=0.2),)),
+    ),
+    "normal forces and stations": (
+        "joint[1].normal_forces",
+        "must have one number for each of the 2 stations, got 3",
+        lambda outer, inner, joint: (
+            (outer, inner),
+            (replace(joint, friction=0.2, normal_forces=(1.0, 2.0, 3.0)),),
+        ),
+    ),
+    "in space without lateral numbers": (
+        "segment[1].lateral",
+        "missing; with lateral play the segments bend along y and twist",
+        lambda outer, inner, joint: ((outer, inner), (replace(joint, lateral_clearance=1e-3),)),
+    ),
     "outer not held": (
         "segment[1]",
         "nothing holds 'outer': give it two supports, or a joint with two stations to a segment "
         "that is held",
-        lambda outer, inner, joint: ((replace(outer, supports=(0.0,)), inner), (joint,)),
+        lambda outer, inner, joint: ((replace(outer, supports=(Support(0.0),)), inner), (joint,)),
     ),
     "inner not held": (
         "segment[2]",
@@ -163,11 +269,96 @@ def test_refuses_what_is_no_boom(paper_boom: Boom, where: str, what: str, fault:
     assert str(caught.value) == f"{where}: {what}"
 
 
+Change = Callable[[Boom], Boom]
+STOP = Stop(1, 14.0, 1.0e-3, 1.0e9, 0.0, 1.0)
+
+
+def _another_joint(boom: Boom) -> Boom:
+    (joint,) = boom.joints
+    last = replace(boom.segments[1], name="last", start=18.0, end=27.0, section=None)
+    flat = replace(joint, outer=1, inner=2, stations=(18.0, 19.0), lateral_clearance=None)
+    return replace(boom, segments=(*boom.segments, last), joints=(joint, flat))
+
+
+FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
+    "in space without plates": (
+        "segment[2].section",
+        "missing; with lateral play the segments touch in corners",
+        lambda boom: replace(
+            boom, segments=(boom.segments[0], replace(boom.segments[1], section=None))
+        ),
+    ),
+    "in space and flat": (
+        "joint[2].lateral_play",
+        "missing, and another joint has it; a boom is flat or in space as a whole",
+        _another_joint,
+    ),
+    "inner box too wide": (
+        "joint[1].lateral_play",
+        "'inner' does not fit in 'outer': 0.0399939 m of width are free, and a lateral play of "
+        "0.042 m is asked for; make the inner section or the lateral play smaller",
+        lambda boom: replace(boom, joints=(replace(boom.joints[0], lateral_clearance=21.0e-3),)),
+    ),
+    "load outside": (
+        "load[2].x",
+        "12 m lies outside 'outer'; it must be between 0 and 10 m",
+        lambda boom: replace(
+            boom,
+            loads=(
+                Load(0, "z", 5.0, None, np.ones_like),
+                Load(0, "z", 5.0, 12.0, np.ones_like),
+            ),
+        ),
+    ),
+    "load out of the plane": (
+        "load[1].direction",
+        "the boom is flat, and nothing moves along 'y'; give 'z', or the joints lateral_play",
+        lambda boom: replace(
+            boom,
+            joints=(replace(boom.joints[0], lateral_clearance=None),),
+            loads=(Load(1, "y", 5.0, None, np.ones_like),),
+        ),
+    ),
+    "stop outside": (
+        "stop[1].x",
+        "20 m lies outside 'inner'; it must be between 9 and 19 m",
+        lambda boom: replace(boom, stops=(replace(STOP, x=20.0),)),
+    ),
+    "stop where nothing moves": (
+        "stop[1].x",
+        "a support holds 'outer' at 2 m already; move one of them",
+        lambda boom: replace(boom, stops=(replace(STOP, segment=0, x=2.0),)),
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("where", "what", "change"), FAULTS_OF_A_BOOM.values(), ids=FAULTS_OF_A_BOOM.keys()
+)
+def test_refuses_what_cannot_be_in_space_or_act(
+    spatial_boom: Boom, where: str, what: str, change: Change
+) -> None:
+    with pytest.raises(BoomError) as caught:
+        change(spatial_boom)
+    assert (caught.value.where, caught.value.what) == (where, what)
+
+
+def test_a_clamped_segment_is_held_by_itself(paper_boom: Boom) -> None:
+    outer, inner = paper_boom.segments
+    clamped = replace(outer, supports=(Support(0.0, "clamped"),))
+    Boom((clamped, inner), paper_boom.joints)
+    # A stop may be where a support gives way.
+    soft = replace(outer, supports=(Support(0.0), Support(2.0, stiffness=1.0e6)))
+    Boom((soft, inner), paper_boom.joints, stops=(replace(STOP, segment=0, x=2.0),))
+
+
 def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> None:
     """Supports on the last segment hold the first one as well as the other way round."""
     outer, inner = (replace(s, section=None, supports=()) for s in paper_boom.segments)
     (joint,) = paper_boom.joints
-    last = replace(inner, name="last", start=18.0, end=27.0, supports=(26.0, 27.0))
+    last = replace(
+        inner, name="last", start=18.0, end=27.0, supports=(Support(26.0), Support(27.0))
+    )
     second = replace(joint, outer=1, inner=2, stations=(18.0, 19.0))
     Boom((outer, inner, last), (joint, second))
 

@@ -97,6 +97,17 @@ def test_mesh_mirrors_itself(mesh: SegmentMesh, axis: int) -> None:
 
 
 @pytest.mark.quick
+def test_mesh_of_a_box_on_its_side_lies_on_its_side(mesh: SegmentMesh) -> None:
+    """With y and z exchanged the points are the same, and so are the triangles."""
+    lying = mesh_segment(BOX.turned(), BREAKS, 0.2)
+    places = {tuple(p): i for i, p in enumerate(np.round(mesh.points, 9) + 0.0)}
+    turned = np.round(lying.points[:, [0, 2, 1]], 9) + 0.0
+    image = np.array([places[tuple(p)] for p in turned])
+    triangles = {tuple(t) for t in np.sort(mesh.triangles, axis=1).tolist()}
+    assert {tuple(t) for t in np.sort(image[lying.triangles], axis=1).tolist()} == triangles
+
+
+@pytest.mark.quick
 def test_named_lines_go_once_around_the_section(mesh: SegmentMesh) -> None:
     assert set(mesh.lines) == {f"{name}:{wall}" for name in BREAKS for wall in WALLS}
     edges = edge_counts(mesh.triangles)

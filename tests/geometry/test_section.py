@@ -40,6 +40,18 @@ def test_a_box_worked_by_hand() -> None:
 
 
 @pytest.mark.quick
+def test_a_box_on_its_side() -> None:
+    """Reference: analytic, y and z exchanged; what does not know of the two stays."""
+    side = BOX.turned()
+    assert side == BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
+    assert side.second_moment_of_area == BOX.lateral_second_moment_of_area
+    assert side.shear_area == BOX.lateral_shear_area
+    assert side.torsion_constant == pytest.approx(BOX.torsion_constant, rel=1e-14, abs=0.0)
+    assert side.polar_second_moment_of_area == BOX.polar_second_moment_of_area
+    assert side.turned() == BOX
+
+
+@pytest.mark.quick
 def test_area_and_second_moments_against_integration_over_the_plane() -> None:
     """Reference: other code, scipy's adaptive quadrature over the rectangle less its hole."""
 
@@ -57,6 +69,8 @@ def test_area_and_second_moments_against_integration_over_the_plane() -> None:
     assert BOX.area == pytest.approx(moment(0, 0), rel=1e-11, abs=0.0)
     assert BOX.second_moment_of_area == pytest.approx(moment(0, 2), rel=1e-11, abs=0.0)
     assert BOX.lateral_second_moment_of_area == pytest.approx(moment(2, 0), rel=1e-11, abs=0.0)
+    polar = moment(0, 2) + moment(2, 0)
+    assert BOX.polar_second_moment_of_area == pytest.approx(polar, rel=1e-11, abs=0.0)
 
 
 def torsion_by_stress_function(height: float, width: float, wall: float, cells: int) -> float:

@@ -35,6 +35,66 @@ BAD_EDITS = {
         "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065, wall = 2 }",
         "segment[1].section.wall: unknown key; known ones are height, width, flange, web",
     ),
+    "friction without what presses": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = 0.2\n",
+        "joint[1].normal_forces: missing, and the joint has friction; give normal_forces, one in N "
+        "for each station, since in a flat boom no other plane presses",
+    ),
+    "a normal force too few": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0]\n",
+        "joint[1].normal_forces: must have one number for each of the 2 stations, got 1",
+    ),
+    "negative friction": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = -0.2\n",
+        "joint[1].friction: must be a number not less than 0, got -0.2",
+    ),
+    "support that is a text": (
+        "supports = [0.0, 2.0]",
+        'supports = [0.0, "2 m"]',
+        "segment[1].supports[2]: must be a table, got '2 m'",
+    ),
+    "support of an unknown kind": (
+        "supports = [0.0, 2.0]",
+        'supports = [0.0, { x = 2.0, kind = "welded" }]',
+        "segment[1].supports[2].kind: must be 'pinned' or 'clamped', got 'welded'",
+    ),
+    "soft clamp": (
+        "supports = [0.0, 2.0]",
+        'supports = [0.0, { x = 2.0, kind = "clamped", stiffness = 1e6 }]',
+        "segment[1].supports: a clamped support is rigid, and the one at 2 m has a stiffness; "
+        "leave it out, or make the support pinned",
+    ),
+    "restitution above one": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nrestitution = { coefficient = 1.2, speed = 0.1 }\n",
+        "joint[1].restitution.coefficient: must be a number not greater than 1, got 1.2",
+    ),
+    "width that the play does not leave": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nlateral_play = 0.1\n",
+        "joint[1].lateral_play: 'inner' does not fit in 'outer': 0.044042 m of width are free, and "
+        "a lateral play of 0.1 m is asked for; make the inner section or the lateral play smaller",
+    ),
+    "load of no segment": (
+        "load = 55.07\n\n[[joint]]",
+        'load = 55.07\n\n[[load]]\nsegment = "jib"\nmagnitude = 1.0\n\n[[joint]]',
+        "load[1].segment: 'jib' is no segment; give 'outer' or 'inner'",
+    ),
+    "stop beside its segment": (
+        "load = 55.07\n\n[[joint]]",
+        'load = 55.07\n\n[[stop]]\nsegment = "inner"\nx = 3.0\nplay = 0.1\nstiffness = 1e7\n\n'
+        "[[joint]]",
+        "stop[1].x: 3 m lies outside 'inner'; it must be between 9 and 19 m",
+    ),
+    "series on a clamp": (
+        "supports = [0.0, 2.0]",
+        'supports = [0.0, { x = 2.0, kind = "clamped" }]',
+        "model[1].base: 'outer' has clamped or elastic supports, for which the functions 'as "
+        "printed' have no form; use base = 'complete'",
+    ),
     "missing key": (
         "density = 7850.0\n",
         "",

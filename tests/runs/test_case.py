@@ -55,7 +55,7 @@ def test_the_paper_case_is_the_paper(folder: Path) -> None:
     """Reference: external, the data of the paper."""
     boom = build_boom(load(str(CASES / "paper.toml")))
     outer, inner = boom.segments
-    assert (outer.start, outer.supports[1], inner.start, outer.end, inner.end) == (
+    assert (outer.start, outer.supports[1].x, inner.start, outer.end, inner.end) == (
         0.0, 2.0, 9.0, 10.0, 19.0
     )  # fmt: skip
     assert (outer.second_moment_of_area, inner.second_moment_of_area) == (3.7986e-4, 2.1829e-4)
@@ -135,8 +135,7 @@ stiffness = 1e13
 
 def test_a_model_s_own_contact_law_keeps_the_joint_s_clearance() -> None:
     case = load(str(CASES / "coarse.toml"))
-    boom = build_boom(case)
-    laws = {model.name: contact_laws(boom, model)[0] for model in case.models}
+    laws = {model.name: contact_laws(case, model)[0] for model in case.models}
     assert (laws["kantorovich-4"].stiffness, laws["kantorovich-4"].exponent) == (1e13, 2.0)
     assert (laws["beam-fe"].stiffness, laws["beam-fe"].exponent) == (1e9, 1.0)
     assert {law.clearance for law in laws.values()} == {7.0e-3}
@@ -153,6 +152,29 @@ def test_selection_keeps_the_order_and_meshes_the_shells_anew() -> None:
     case = select(load(str(CASES / "coarse.toml")), "coarse.toml", ["shell", "beam-fe"], 0.5)
     assert [model.name for model in case.models] == ["beam-fe", "shell"]
     assert case.models[1].model_dump()["mesh_size"] == 0.5
+
+
+def test_selection_changes_the_members_of_ensembles() -> None:
+    coarse = load(str(CASES / "coarse.toml"))
+    assert coarse.ensemble is None
+    some = select(coarse, "coarse.toml", members=7).ensemble
+    assert some is not None
+    assert (some.members, some.relative, some.seed, some.vary) == (7, 1e-9, 1, "load")
+    paper = load(str(CASES / "paper.toml"))
+    changed = select(paper, "paper.toml", members=3).ensemble
+    assert changed is not None
+    assert paper.ensemble is not None
+    assert changed.model_dump() == {**paper.ensemble.model_dump(), "members": 3}
+    assert select(paper, "paper.toml", members=0).ensemble is None
+
+
+@pytest.mark.parametrize("members", [-1, 1, 10_001])
+def test_refuses_ensembles_of_other_sizes(members: int) -> None:
+    with pytest.raises(BadInput) as refused:
+        select(load(str(CASES / "paper.toml")), "paper.toml", members=members)
+    assert str(refused.value) == (
+        f"paper.toml: --members: must be from 2 to 10000, or 0 for no ensembles, got {members}"
+    )
 
 
 def test_every_key_is_described_and_no_other_is_allowed() -> None:

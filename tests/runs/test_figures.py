@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Every figure is drawn from what a run has, shows all its models, and says its units."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib import image
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure as Sheet
 
 from runs import case as case_file
 from runs import theme
+from runs.contact_figures import contact_peaks, first_contacts, friction
+from runs.deflection_figures import close_up, heads, lateral_tip, tip
+from runs.energy_figures import energies, residuals
 from runs.figures import draw
+from runs.horizon_figures import horizons
+from runs.pen import Figure, Pen
 from runs.pipeline import run_case
 from runs.results import Results
 
@@ -34,8 +41,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return run(tmp_path_factory.mktemp("mesh"), [*WITH_PLAY, "beam-fe-tied"])
 
 
-@pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
+@contextmanager
+def kept_sheets() -> Iterator[dict[str, Sheet]]:
     """The matplotlib figure behind each file that is saved, by its stem."""
     saved: dict[str, Sheet] = {}
     save = Sheet.savefig
@@ -44,22 +51,55 @@ def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
         saved[path.stem] = sheet
         save(sheet, path, **options)
 
-    monkeypatch.setattr(Sheet, "savefig", keep)
-    return saved
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Sheet, "savefig", keep)
+        yield saved
+
+
+@pytest.fixture
+def sheets() -> Iterator[dict[str, Sheet]]:
+    with kept_sheets() as saved:
+        yield saved
+
+
+@pytest.fixture(scope="module")
+def everything(
+    results: Results, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[list[Figure], dict[str, Sheet]]:
+    """All figures of the run."""
+    with kept_sheets() as saved:
+        return draw(results, tmp_path_factory.mktemp("figures")), saved
 
 
 def labels(axes: Axes) -> list[str]:
     return list(dict.fromkeys(axes.get_legend_handles_labels()[1]))
 
 
-def test_draws_each_figure_as_png(results: Results, tmp_path: Path) -> None:
-    figures = draw(results, tmp_path)
+def draw_some(of: Callable[[Pen], list[Figure]], results: Results, folder: Path) -> list[Figure]:
+    """Some of the figures alone."""
+    with matplotlib.rc_context(theme.RC):
+        return of(Pen(results, folder))
+
+
+def with_friction(results: Results) -> Results:
+    """The same run, as if its segments had rubbed: 1 kN up at 9 m, nothing at 10 m."""
+    joints = tuple(j.model_copy(update={"friction": 0.2}) for j in results.case.joints)
+    data = results.trajectories.copy(deep=True)
+    data["friction_force"] = 0.0 * data["contact_force"].fillna(0.0)
+    data["friction_force"][dict(station=0)] = 1000.0
+    data["friction_loss"] = 0.1 * data["work"]
+    case = results.case.model_copy(update={"joints": joints})
+    return replace(results, case=case, trajectories=data)
+
+
+def test_draws_each_figure_as_png(everything: tuple[list[Figure], dict[str, Sheet]]) -> None:
+    figures, _ = everything
     stems = [figure.path.stem for figure in figures]
     assert stems == [
         "tip", "tip-close-up", "head", "contact-first", "contact-peaks", "energies",
         "energy-residual",
     ]  # fmt: skip
-    assert sorted(tmp_path.iterdir()) == sorted(figure.path for figure in figures)
+    assert sorted(figures[0].path.parent.iterdir()) == sorted(f.path for f in figures)
     for figure in figures:
         pixels = image.imread(figure.path)
         assert pixels.shape[1] == round(theme.WIDTH * theme.DPI)
@@ -69,10 +109,8 @@ def test_draws_each_figure_as_png(results: Results, tmp_path: Path) -> None:
         assert figure.caption.endswith(".")
 
 
-def test_every_axis_says_its_unit(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
-    draw(results, tmp_path)
+def test_every_axis_says_its_unit(everything: tuple[list[Figure], dict[str, Sheet]]) -> None:
+    _, sheets = everything
     for stem, sheet in sheets.items():
         assert sheet.axes[-1].get_xlabel() == "time (s)"
         unit = {"tip": "mm", "tip-close-up": "mm", "head": "mm", "energies": "J"}.get(stem, "kN")
@@ -85,19 +123,19 @@ def test_deflections_are_in_millimetres(
     results: Results, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
     """Reference: the trajectories themselves, in m."""
-    draw(results, tmp_path)
+    draw_some(tip, results, tmp_path)
     (axes,) = sheets["tip"].axes
-    drawn = {line.get_label(): np.asarray(line.get_ydata()) for line in axes.get_lines()}
+    curves = {line.get_label(): np.asarray(line.get_ydata()) for line in axes.get_lines()}
     for name in results.trajectories["model"].values:
-        tip = results.trajectories["tip"].sel(model=name).values
-        np.testing.assert_allclose(drawn[name], 1000.0 * tip, rtol=1e-12)
+        deflection = results.trajectories["tip"].sel(model=name).values
+        np.testing.assert_allclose(curves[name], 1000.0 * deflection, rtol=1e-12)
 
 
 def test_contact_forces_keep_their_impulse(
     results: Results, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
     """Reference: analytic. A running mean has the sum of what it averages, but for its ends."""
-    draw(results, tmp_path)
+    draw_some(first_contacts, results, tmp_path)
     for i, axes in enumerate(sheets["contact-first"].axes):
         for line in axes.get_lines():
             force = results.trajectories["contact_force"].sel(model=line.get_label())
@@ -109,9 +147,9 @@ def test_contact_forces_keep_their_impulse(
 
 
 def test_one_colour_per_model_in_all_figures(
-    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+    results: Results, everything: tuple[list[Figure], dict[str, Sheet]]
 ) -> None:
-    draw(results, tmp_path)
+    _, sheets = everything
     colours: dict[str, set[str]] = {}
     for stem in ("tip", "tip-close-up", "head", "contact-first", "contact-peaks"):
         for axes in sheets[stem].axes:
@@ -126,7 +164,7 @@ def test_one_colour_per_model_in_all_figures(
 def test_close_up_marks_first_contacts_and_peaks(
     results: Results, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
-    draw(results, tmp_path)
+    (figure,) = draw_some(close_up, results, tmp_path)
     marks = {"o": set(), "v": set()}
     for line in sheets["tip-close-up"].axes[0].get_lines():
         if line.get_marker() in marks and np.size(line.get_xdata()):
@@ -136,6 +174,9 @@ def test_close_up_marks_first_contacts_and_peaks(
     peaks = {model["first_peak"]["tip"][0] for model in models.values()} - {None}
     assert peaks
     assert marks["v"] == peaks
+    peakless = [name for name, model in models.items() if model["first_peak"]["tip"][0] is None]
+    assert peakless
+    assert figure.caption.endswith(f" No peak within 0.6 s: {', '.join(peakless)}.")
 
 
 def test_draws_a_play_free_boom_alone(tmp_path: Path) -> None:
@@ -154,36 +195,134 @@ def test_draws_around_what_is_not_finite(results: Results, tmp_path: Path) -> No
     assert len(draw(replace(results, trajectories=broken), tmp_path)) == 7
 
 
-def test_colours_can_be_told_apart() -> None:
-    """Reference: external, WCAG 2.1. A graphical object needs a contrast of 3 to the paper."""
-    for colour in (*theme.PALETTE, theme.PLAY_FREE):
-        linear = [
-            c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)
-        ]
-        luminance = float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
-        assert 1.05 / (luminance + 0.05) > 3.0, colour
-
-
-def test_more_models_than_colours_still_differ() -> None:
-    names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
-    drawn = theme.strokes([*names, "tied"], ["tied"])
-    assert len(set(drawn.values())) == len(names) + 1
-
-
-@pytest.mark.parametrize(
-    ("number", "digits", "expected"),
-    [(8.3e-5, 1, "8 × 10⁻⁵"), (2.41e6, 3, "2.41 × 10⁶"), (1e-6, 3, "1 × 10⁻⁶")],
-)
-def test_powers_of_ten_are_set_as_such(number: float, digits: int, expected: str) -> None:
-    assert theme.scientific(number, digits) == expected
-
-
 def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path) -> None:
     """A boom under its weight deflects downwards: the title tells how far, with the sign."""
     down = results.trajectories.copy(deep=True)
     down["tip"] *= -1.0
     upwards, downwards = (
-        next(figure.title for figure in draw(run, tmp_path) if figure.path.stem == "tip")
-        for run in (results, replace(results, trajectories=down))
+        draw_some(tip, run_of, tmp_path)[0].title
+        for run_of in (results, replace(results, trajectories=down))
     )
     assert downwards == upwards.replace("up to ", "up to -").replace("play, ", "play, -")
+
+
+def test_each_figure_bears_on_statements(
+    results: Results, everything: tuple[list[Figure], dict[str, Sheet]], tmp_path: Path
+) -> None:
+    """Reference: the statements themselves; with friction others are meant."""
+    found = {figure.anchor: tuple(figure.statements) for figure in everything[0]}
+    assert found == {
+        "figure-tip": ("S2", "S3"),
+        "figure-tip-close-up": ("S1", "S4", "S5", "S6"),
+        "figure-head": ("S6",),
+        "figure-contact-first": (),
+        "figure-contact-peaks": (),
+        "figure-energies": (),
+        "figure-energy-residual": (),
+    }
+    rubbing = [
+        tuple(figure.statements)
+        for of in (tip, heads, friction, residuals)
+        for figure in draw_some(of, with_friction(results), tmp_path)
+    ]
+    assert rubbing == [("S7",), ("S6", "S7"), ("S7", "S8"), ("S8",)]
+
+
+def test_friction_is_drawn_where_there_is_any(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: the forces themselves, 1 kN at one of two stations."""
+    assert draw_some(friction, results, tmp_path) == []
+    draw_some(friction, with_friction(results), tmp_path)
+    (axes,) = sheets["friction"].axes
+    assert axes.get_title(loc="left") == "x = 9 m"
+    assert labels(axes) == WITH_PLAY[-1:]
+    (line,) = axes.get_lines()
+    np.testing.assert_allclose(np.asarray(line.get_ydata())[5:-5], 1.0)
+    draw_some(energies, with_friction(results), tmp_path)
+    assert "friction loss" in labels(sheets["energies"].axes[0])
+
+
+def test_captions_of_a_case_with_friction(results: Results, tmp_path: Path) -> None:
+    """Reference: the paper's Figs. 6 and 7 are without, 8 and 9 with friction."""
+    for run_of, numbers, chaotic in ((results, (6, 7), 2), (with_friction(results), (8, 9), 0)):
+        found = draw_some(tip, run_of, tmp_path) + draw_some(heads, run_of, tmp_path)
+        captions = {figure.path.stem: figure.caption for figure in found}
+        for stem, number in zip(("tip", "head"), numbers, strict=True):
+            assert f"counterpart of Fig. {number} of the paper" in captions[stem]
+        assert sum("chaotic" in caption for caption in captions.values()) == chaotic
+    beams = tuple(model for model in results.case.models if model.kind != "kantorovich")
+    other = replace(results, case=results.case.model_copy(update={"models": beams}))
+    (figure,) = draw_some(tip, other, tmp_path)
+    assert "paper" not in figure.caption
+
+
+@pytest.mark.parametrize("spread", [1.0, 1.5, 30.0, 1.0e4])
+def test_peak_forces_have_labels_on_one_scale(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet], spread: float
+) -> None:
+    """Reference: the forces, from 20 kN to so many times that."""
+    data = results.trajectories.copy(deep=True)
+    rising = 2.0e4 * np.geomspace(1.0, spread, data.sizes["time"])
+    peaks = data["contact_force_peak"]
+    peaks.values[...] = np.broadcast_to(rising[:, None], peaks.shape)
+    draw_some(contact_peaks, replace(results, trajectories=data), tmp_path)
+    panels = sheets["contact-peaks"].axes
+    assert len({axes.get_ylim() for axes in panels}) == 1
+    for axes in panels:
+        low, high = axes.get_ylim()
+        assert (low < 20.0, 20.0 * spread < high) == (True, True)
+        shown = [tick for tick in axes.get_yticks() if low <= tick <= high]
+        assert (2 if spread > 1.0 else 1) <= len(shown) <= 7
+        assert all(axes.yaxis.get_major_formatter()(tick) for tick in shown)
+
+
+def test_every_head_has_a_figure(results: Results, tmp_path: Path) -> None:
+    data = results.trajectories.assign({"head-2": results.trajectories["head"]})
+    joints = results.case.joints * 2
+    case = results.case.model_copy(update={"joints": joints})
+    found = draw_some(heads, replace(results, trajectories=data, case=case), tmp_path)
+    assert [figure.path.stem for figure in found] == ["head", "head-2"]
+
+
+def test_a_boom_in_space_moves_to_the_sides(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: the trajectories, half the tip's deflection to the sides."""
+    data = results.trajectories.assign(tip_lateral=0.5 * results.trajectories["tip"])
+    data = data.assign_coords(direction=("station", ["z", "y"]))
+    in_space = replace(results, trajectories=data)
+    draw_some(lateral_tip, in_space, tmp_path)
+    draw_some(first_contacts, in_space, tmp_path)
+    (axes,) = sheets["tip-lateral"].axes
+    for line in axes.get_lines():
+        tip = data["tip"].sel(model=line.get_label()).values
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), 500.0 * tip, rtol=1e-12)
+    titles = [panel.get_title(loc="left") for panel in sheets["contact-first"].axes]
+    assert titles == ["x = 9 m", "x = 10 m, to the sides"]
+
+
+def test_horizons_are_drawn_where_they_are_measured(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: the numbers of the summary."""
+    assert draw_some(horizons, results, tmp_path) == []
+    measured = {
+        "relatives": [1e-12, 1e-6],
+        "shares": [0.01, 0.2],
+        "times": [[1.5, 6.0], [1.0, None]],
+        "of_step": [1.2, None],
+        "rate": [27.6, None],
+        "limits": ["step", "physics"],
+    }
+    models = results.summary["models"]
+    summary = results.summary | {
+        "models": models | {"beam-fe": models["beam-fe"] | {"horizons": measured}}
+    }
+    draw_some(horizons, replace(results, summary=summary), tmp_path)
+    (axes,) = sheets["horizons"].axes
+    points = [np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_xydata().size]
+    first, of_step, last = points
+    np.testing.assert_allclose(first, [[-12.0, 1.5], [-6.0, 1.0]])
+    np.testing.assert_allclose(of_step, [[-12.0, 1.2]])
+    np.testing.assert_allclose(last, [[-12.0, 6.0], [-6.0, np.nan]])

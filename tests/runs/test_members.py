@@ -159,6 +159,42 @@ def test_figures_have_bands_and_horizons(
         assert marks
 
 
+def test_slow_peaks_are_drawn_with_their_spreads(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the numbers of the summary, in mm."""
+    sheets: dict[str, Sheet] = {}
+    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: sheets.update({path.stem: sheet}))
+    known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "knowledge"}
+    assert list(known) == ["slow-peaks", "horizons"]
+    assert tuple(known["slow-peaks"].statements) == ("S2", "S3")
+    (axes,) = sheets["slow-peaks"].axes
+    for name, container in zip(SERIES, axes.containers, strict=True):
+        peaks = run.results.summary["models"][name]["ensemble"]["slow_peaks"]
+        points, _, (across, along) = container.lines
+        drawn = np.asarray(points.get_xydata(), dtype=float)
+        np.testing.assert_allclose(drawn[:, 0], peaks["time"])
+        np.testing.assert_allclose(drawn[:, 1], 1000.0 * np.array(peaks["height"]))
+        widths = [np.ptp(segment[:, 0]) for segment in across.get_segments()]
+        heights = [np.ptp(segment[:, 1]) for segment in along.get_segments()]
+        np.testing.assert_allclose(widths, 2.0 * np.array(peaks["time_spread"]), atol=1e-9)
+        np.testing.assert_allclose(heights, 2000.0 * np.array(peaks["height_spread"]), atol=1e-9)
+
+
+def test_models_are_compared_in_the_summary(run: Run) -> None:
+    """Reference: the series' slow peaks in the same summary."""
+    found = run.results.summary["comparisons"]
+    assert found["reference"] == "kantorovich-5"
+    assert list(found["ensembles"]) == ["kantorovich-4"]
+    level = found["ensembles"]["kantorovich-4"]
+    four, five = (run.results.summary["models"][name]["ensemble"] for name in SERIES)
+    until = min(ensemble["horizons"]["0.01"] for ensemble in (four, five))
+    assert level["pointwise"]["until"] == pytest.approx(until, abs=2e-3)
+    count = len(level["peaks"]["time"])
+    apart = np.subtract(four["slow_peaks"]["time"][:count], five["slow_peaks"]["time"][:count])
+    np.testing.assert_allclose(level["peaks"]["time"], apart, atol=1e-3)
+
+
 @pytest.mark.parametrize(
     ("table", "line"),
     [

@@ -1,96 +1,95 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A file of a run is whole or not there, whatever interrupts the writing."""
+"""A run's folder: what lies in it is in the report, and columns say whose they are."""
 
 from __future__ import annotations
 
-import os
-import signal
-import subprocess
-import sys
+import csv
+import json
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
 
-from runs.output import whole, whole_folder
+from runs import case as case_file
+from runs import toml
+from runs.bad_input import BadInput
+from runs.output import prepare, write, write_report
+from runs.pipeline import Run, run_case
+from runs.reading import JUDGED, MODELS, Finding, Judged, Reading
+from runs.results import Results
 
 pytestmark = pytest.mark.quick
 
-ROOT = Path(__file__).parents[2]
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
 
 
-def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    with whole(path) as part:
-        part.write_text("{}", encoding="utf-8")
-        assert part.suffix == path.suffix
-        assert not path.exists()
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A twentieth of a second of a series."""
+    case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"], None)
+    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
+    finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
+    assert finished is not None
+    return finished
 
 
-def test_a_failing_write_leaves_the_file_that_was_there(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    path.write_text("earlier", encoding="utf-8")
-
-    def fill_the_disk() -> None:
-        with whole(path) as part:
-            part.write_text("half", encoding="utf-8")
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(OSError, match="No space left on device") as failed:
-        fill_the_disk()
-    assert failed.value.filename == str(path)
-    assert path.read_text(encoding="utf-8") == "earlier"
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
+@pytest.fixture
+def folder(run: Run, tmp_path: Path) -> Path:
+    out = prepare(str(tmp_path / "out"), "")
+    write(run, out, out)
+    return out
 
 
-def test_a_killed_write_leaves_the_file_that_was_there(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    path.write_text("earlier", encoding="utf-8")
-    program = f"""
-import os, signal
-from pathlib import Path
-from runs.output import whole
-with whole(Path({str(path)!r})) as part:
-    part.write_text("half")
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    killed = subprocess.run([sys.executable, "-c", program], env=environment, check=False)
-    assert killed.returncode == -signal.SIGKILL
-    assert path.read_text(encoding="utf-8") == "earlier"
+def leave_survey(folder: Path, case_hash: str) -> None:
+    """Readings as ``python -m runs.readings`` leaves them: one of 7 mm, reproduced."""
+    findings = {key: Finding("reproduced", (0.1,)) for key in JUDGED}
+    peaks = dict.fromkeys(MODELS, 0.17)
+    judged = Judged(Reading(0.007, "restored", "as printed", 2.0), findings, peaks, 1e-5)
+    data = {"case_hash": case_hash, "readings": [asdict(judged)]}
+    (folder / "readings.json").write_text(json.dumps(data), encoding="utf-8")
 
 
-def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
-    folder = tmp_path / "figures"
-    for names in (("a.png", "b.png"), ("b.png", "c.png")):
-        with whole_folder(folder) as part:
-            for name in names:
-                (part / name).write_text(" ".join(names), encoding="utf-8")
-        assert sorted(p.name for p in folder.iterdir()) == list(names)
-    assert (folder / "b.png").read_text(encoding="utf-8") == "b.png c.png"
-    assert [p.name for p in tmp_path.iterdir()] == ["figures"]
+def test_a_survey_in_the_folder_is_in_the_report(run: Run, folder: Path) -> None:
+    assert "7, restored, as printed, 2" not in (folder / "report.html").read_text(encoding="utf-8")
+    leave_survey(folder, toml.digest(run.results.case))
+    write_report(Results.load(folder), folder)
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert page.count("7, restored, as printed, 2") == 2
+    assert "0 of 1 readings are excluded." in page
 
 
-def test_a_failing_folder_leaves_the_one_that_was_there(tmp_path: Path) -> None:
-    folder = tmp_path / "figures"
-    with whole_folder(folder) as part:
-        (part / "a.png").write_text("earlier", encoding="utf-8")
-
-    def fail() -> None:
-        with whole_folder(folder) as part:
-            (part / "a.png").write_text("half", encoding="utf-8")
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        fail()
-    assert (folder / "a.png").read_text(encoding="utf-8") == "earlier"
-    assert [p.name for p in tmp_path.iterdir()] == ["figures"]
+def test_a_survey_of_another_case_is_refused(run: Run, folder: Path) -> None:
+    before = (folder / "report.html").read_bytes()
+    leave_survey(folder, "of another")
+    with pytest.raises(BadInput, match=r"readings\.json: is not of the case in case\.toml"):
+        write_report(Results.load(folder), folder)
+    assert (folder / "report.html").read_bytes() == before
 
 
-def test_a_folder_without_files_is_none(tmp_path: Path) -> None:
-    folder = tmp_path / "mesh"
-    with whole_folder(folder) as part:
-        (part / "outer.msh").write_text("mesh", encoding="utf-8")
-    with whole_folder(folder):
-        pass
-    assert not folder.exists()
+def test_a_survey_goes_with_the_run_that_it_was_of(run: Run, folder: Path) -> None:
+    leave_survey(folder, "of an earlier case")
+    write(run, folder, folder)
+    assert not (folder / "readings.json").exists()
+
+
+def header(folder: Path) -> list[str]:
+    with (folder / "trajectories.csv").open(newline="", encoding="utf-8") as file:
+        return next(csv.reader(file))
+
+
+def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
+    """Two stations in each of two directions, and a rest at the place of one of them."""
+    plain = run.results.trajectories
+    places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
+    data = plain.isel(station=[0, 1, 0, 1, 0]).assign_coords(
+        direction=("station", [direction for _, direction in places])
+    )
+    in_space = replace(run, results=replace(run.results, trajectories=data))
+    out = prepare(str(tmp_path / "out"), "")
+    write(in_space, out, out)
+    gaps = [name for name in header(out) if name.startswith("gap@")]
+    assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
+
+
+def test_columns_of_a_flat_boom_have_their_x(folder: Path) -> None:
+    assert [name for name in header(folder) if name.startswith("gap@")] == ["gap@9", "gap@10"]

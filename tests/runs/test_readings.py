@@ -13,22 +13,12 @@ from rich.console import Console
 
 from dynamics.contact import PowerContact
 from runs import case as case_file
+from runs.bad_input import BadInput
 from runs.build import build_boom, contact_laws
-from runs.readings import (
-    COMMON,
-    JUDGED,
-    MODELS,
-    PAPER,
-    Finding,
-    Judged,
-    Reading,
-    all_readings,
-    conclude,
-    judge_exponents,
-    survey,
-)
+from runs.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
+from runs.readings import PAPER, all_readings, conclude, load, shown, survey
 from runs.schema import Case, KantorovichTable
-from runs.verdicts import Judgement
+from runs.statements import Judgement
 
 LITERAL = Reading(0.007, "literal", "as printed", 2.0)
 RESTORED = Reading(0.007, "restored", "as printed", 2.0)
@@ -80,7 +70,7 @@ def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
     boom = build_boom(case)
     assert [model.name for model in case.models] == list(MODELS)
     for model in case.models:
-        (law,) = contact_laws(boom, model)
+        (law,) = contact_laws(case, model)
         assert (law.clearance, law.stiffness, law.exponent) == (0.014, 1.01e6, 1.5)
         assert not isinstance(model, KantorovichTable) or model.base == "pinned"
     assert [segment.load for segment in boom.segments] == [1.5 * 83.16, 1.5 * 55.07]
@@ -144,4 +134,34 @@ def test_a_survey_of_two_readings(tmp_path: Path) -> None:
     text = (tmp_path / "out" / "readings.md").read_text(encoding="utf-8")
     assert text.count("| 7, literal, as printed, ") == 4
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert names == ["readings.json", "readings.md"]
+    assert names == ["readings.html", "readings.json", "readings.md"]
+    paper = case_file.load(str(PAPER))
+    assert load(tmp_path / "out", paper) == shown(found)
+    page = (tmp_path / "out" / "readings.html").read_text(encoding="utf-8")
+    assert page.count("7, literal, as printed, ") == 4
+    check_refusals(tmp_path / "out", paper)
+
+
+def check_refusals(folder: Path, paper: Case) -> None:
+    """A survey that is of another case, or damaged, is one line."""
+    other = paper.model_copy(update={"title": "another"})
+    remedy = "remove it, or survey the readings again"
+    with pytest.raises(BadInput) as refused:
+        load(folder, other)
+    assert str(refused.value) == (
+        f"{folder}: readings.json: is not of the case in case.toml; {remedy}"
+    )
+    path = folder / "readings.json"
+    whole = path.read_text(encoding="utf-8")
+    for text in (whole[:-20], "[]", '{"readings": []}', whole.replace('"exponent"', '"power"')):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(BadInput) as refused:
+            load(folder, paper)
+        message = str(refused.value)
+        assert message.startswith(f"{folder}: readings.json: cannot be understood (")
+        assert message.endswith(f"); {remedy}")
+
+
+@pytest.mark.quick
+def test_a_folder_without_a_survey_has_none(paper: Case, tmp_path: Path) -> None:
+    assert load(tmp_path, paper) == []

@@ -2,7 +2,6 @@
 """The report is one file that needs nothing else, shows what the run says, and escapes it."""
 
 import base64
-import math
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -17,11 +16,13 @@ from rich.console import Console
 
 from runs import case as case_file
 from runs import toml
-from runs.figures import Figure
+from runs.pen import Figure
 from runs.pipeline import run_case
-from runs.report import number, print_table, render
+from runs.printed import print_models, print_verdicts
+from runs.report import render
 from runs.results import Results
-from runs.verdicts import STATEMENTS
+from runs.statements import STATEMENTS
+from runs.tables import TextTable
 
 pytestmark = pytest.mark.quick
 
@@ -41,7 +42,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
 @pytest.fixture
 def figures(tmp_path: Path) -> list[Figure]:
     image.imsave(tmp_path / "tip.png", np.zeros((2, 2)))
-    return [Figure(tmp_path / "tip.png", "Tip <of> the boom", "A caption & more.")]
+    path = tmp_path / "tip.png"
+    return [Figure(path, "Tip <of> the boom", "A caption & more.", ("S1", "S2"))]
 
 
 class Page(HTMLParser):
@@ -68,7 +70,8 @@ class Page(HTMLParser):
 
 def printed(results: Results, width: int = 100) -> str:
     console = Console(file=StringIO(), width=width)
-    print_table(results, console)
+    print_models(results, console)
+    print_verdicts({"coarse": results}, console)
     assert isinstance(console.file, StringIO)
     return console.file.getvalue()
 
@@ -99,8 +102,9 @@ def test_shows_every_model_and_where_it_comes_from(results: Results, figures: li
 def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: Path) -> None:
     motion = tmp_path / "motion.gif"
     motion.write_bytes(GIF)
-    page = Page(render(results, figures, [motion]))
-    assert not page.all("script") + page.all("link") + page.all("iframe") + page.all("a")
+    page = Page(render(results, figures, [Figure(motion, "Motion", "It moves.")]))
+    assert not page.all("script") + page.all("link") + page.all("iframe")
+    assert all(str(link["href"]).startswith("#") for link in page.all("a"))
     assert "url(" not in page.style
     assert "@import" not in page.style
     sources = [str(picture["src"]) for picture in page.all("img")]
@@ -115,7 +119,69 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
     closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
     root = ElementTree.fromstring(closed.strip())
     assert root.tag == "html"
-    assert [row.tag for row in root.iter("tr")].count("tr") == 2 + len(STATEMENTS) + len(MODELS)
+    verdicts, models, steps, laws = (
+        len(list(table.iter("tr"))) - 1 for table in root.iter("table")
+    )
+    assert (verdicts, models, steps, laws) == (len(STATEMENTS), len(MODELS), len(MODELS), 2)
+
+
+def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) -> None:
+    """Reference: the ids of the page itself; no id twice, no link into nothing."""
+    page = Page(render(results, figures, []))
+    ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
+    assert len(set(ids)) == len(ids)
+    links = [str(link["href"]).removeprefix("#") for link in page.all("a")]
+    assert set(links) <= set(ids)
+    assert set(STATEMENTS) < set(ids)
+
+
+def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]) -> None:
+    """Reference: what the figure says of itself; S10 is about steps, S9 about contact laws."""
+    text = render(results, figures, [])
+    rows = {key: text[text.index(f'<tr id="{key}">') :].split("</tr>")[0] for key in STATEMENTS}
+    found = {key: re.findall(r'href="#([^"]+)">([^<]+)<', row) for key, row in rows.items()}
+    figure = ("figure-tip", "Figure\N{NO-BREAK SPACE}1")
+    assert found["S1"] == found["S2"] == [figure]
+    assert found["S10"] == [("table-steps", "Table\N{NO-BREAK SPACE}2")]
+    assert found["S9"] == [("table-laws", "Table\N{NO-BREAK SPACE}3")]
+    assert found["S7"] == found["S8"] == []
+    assert all(link in text for key in ("S1", "S9") for link, _ in found[key])
+
+
+def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
+    """Reference: the summary; the run ends before the first peak of the series."""
+    peaks = {
+        name: model["first_peak"]["tip"][1] for name, model in results.summary["models"].items()
+    }
+    assert (peaks["kantorovich-4"], peaks["beam-fe-tied"]) == (
+        None,
+        pytest.approx(0.0193, rel=0.01),
+    )
+    text = render(results, figures, [])
+    (row,) = re.findall(r"<tr>\s*<td>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL)[
+        :1
+    ]
+    assert "<td>no peak</td>\n<td>within 0.6 s</td>" in row
+    lines = {line.split()[0]: line for line in printed(results).splitlines() if line.split()}
+    assert re.search("no peak +within 0.6 s", lines["kantorovich-4"])
+    assert "no peak" not in lines["beam-fe-tied"]
+
+
+def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
+    table = TextTable("A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",), "readings")
+    page = Page(render(results, figures, [], [table]))
+    assert "A <survey>" in page.text
+    assert {"class": "contradicted"} in page.all("td")
+    assert {"href": "#readings"} in page.all("a")
+    assert {"href": "#readings"} not in Page(render(results, figures, [])).all("a")
+
+
+def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
+    wild = results.trajectories.copy(deep=True)
+    wild["tip"][0, -1] = 2.0
+    far = replace(results, trajectories=wild)
+    text = Page(render(far, figures, [])).text
+    assert text.index(far.cautions()[0]) < text.index("Verdicts")
 
 
 def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
@@ -176,25 +242,6 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
     assert "[red]play[/nothing]" in printed(replace(results, case=case))
 
 
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [
-        (None, "–"),
-        (math.nan, "–"),
-        (0.0, "0"),
-        (0.498484, "0.498"),
-        (8.7669, "8.77"),
-        (2000, "2000"),
-        (45485.3, "45500"),
-        (2.41e6, "2.41 × 10⁶"),
-        (6.4836e-15, "6.48 × 10⁻¹⁵"),
-        (-0.00042, "-4.2 × 10⁻⁴"),
-    ],
-)
-def test_numbers_are_written_for_people(value: float | None, expected: str) -> None:
-    assert number(value) == expected
-
-
 def test_cautions_against_what_is_no_small_displacement(results: Results) -> None:
     """A tenth of the boom's 19 m: 1.9 m."""
     assert results.cautions() == []
@@ -209,8 +256,12 @@ def test_cautions_against_what_is_no_small_displacement(results: Results) -> Non
     assert line in printed(replace(results, trajectories=wild), width=200)
 
 
-def test_prints_no_statements_of_the_paper_without_its_series(results: Results) -> None:
+def test_judges_no_statements_of_the_paper_without_its_series(
+    results: Results, figures: list[Figure]
+) -> None:
     beams = tuple(model for model in results.case.models if model.kind != "kantorovich")
     other = replace(results, case=results.case.model_copy(update={"models": beams}))
     assert "Statements of the paper" in printed(results)
     assert "Statements of the paper" not in printed(other)
+    assert "Verdicts" in Page(render(results, figures, [])).text
+    assert "Verdicts" not in Page(render(other, figures, [])).text

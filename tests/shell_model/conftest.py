@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -12,37 +13,46 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from geometry.boom import Material, Segment
+from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
+from shell_model.outline import Row
+from shell_model.reduction import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
+from tests.shell_model.booms import box_segment
 
-STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)
 
 
 @cache
 def box_shell(
-    size: float, length: float = 10.0, supports: tuple[float, ...] = (), load: float = 0.0
+    size: float,
+    length: float = 10.0,
+    supports: tuple[Support, ...] = (),
+    masses: tuple[PointMass, ...] = (),
+    section: BoxSection = BOX,
 ) -> SegmentShell:
-    """A box of the outer segment's plates on [0, length]."""
-    segment = Segment(
-        name="box",
-        start=0.0,
-        end=length,
-        material=STEEL,
-        mass_per_length=BOX.mass_per_length(STEEL.density),
-        second_moment_of_area=BOX.second_moment_of_area,
-        rotary_inertia=STEEL.density * BOX.second_moment_of_area,
-        section=BOX,
-        load=load,
-        supports=supports,
-    )
-    breaks = {"start": 0.0, "end": length} | {f"support-{x:g}": x for x in supports}
-    mesh = mesh_segment(BOX, breaks, size)
+    """A box on [0, length], of the outer segment's plates unless others are given."""
+    segment = replace(box_segment("box", 0.0, length, section, supports=supports), masses=masses)
+    breaks = {"start": 0.0, "end": length}
+    breaks |= {f"place-{one.x:g}": one.x for one in (*supports, *masses)}
+    mesh = mesh_segment(section, breaks, size)
     return assemble_segment(MPI.COMM_WORLD, segment, mesh if MPI.COMM_WORLD.rank == 0 else None)
 
 
 @pytest.fixture(name="box_shell")
 def _box_shell() -> Callable[..., SegmentShell]:
     return box_shell
+
+
+def compliance(shell: SegmentShell, row: Row) -> float:
+    """What a unit force moves its own reading by, in m/N.
+
+    At 0.01 Hz in place of zero, since nothing holds a segment along x: 2e-6 of the compliance
+    of a boom whose lowest frequency is 7 Hz.
+    """
+    force = shell.row(row)
+    solve = ShiftedSolver(shell, 0.01)
+    moved = float(force @ solve(force[:, None])[:, 0])
+    solve.destroy()
+    return moved

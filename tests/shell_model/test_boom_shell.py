@@ -10,39 +10,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
 from dynamics.splitting import integrate
-from geometry.boom import Boom, BoomError, Joint, Material, Segment
-from geometry.section import infer_inner_section, infer_outer_section
-from shell_model.boom_shell import (
-    ContactLine,
-    ReducedShell,
-    ShellOptions,
-    contact_points,
-    reduce_boom,
-)
+from geometry.boom import BoomError
+from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
+from shell_model.joint_rows import ContactLine, contact_points
 from shell_model.reduction import KrylovOptions
-
-LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
-
-
-def _boom() -> Boom:
-    steel = Material(2.1e11, 0.3, 7850.0)
-    outer = infer_outer_section(83.16 / 7850.0, 3.7986e-4, 1.5)
-    inner = infer_inner_section(55.07 / 7850.0, 2.1829e-4, outer, 7.0e-3)
-    return Boom(
-        (
-            Segment("outer", 0.0, 10.0, steel, 83.16, 3.7986e-4, 3.48, outer, 83.16, (0.0, 2.0)),
-            Segment("inner", 9.0, 19.0, steel, 55.07, 2.1829e-4, 1.68, inner, 55.07),
-        ),
-        (Joint(0, 1, (9.0, 10.0), 7.0e-3, 1.0e13, 1.0e13, 2.0),),
-    )
+from tests.shell_model.booms import LAW, flat_boom
 
 
 @cache
 def _shell(line: ContactLine) -> ReducedShell:
     options = ShellOptions(0.25, contact_line=line, krylov=KrylovOptions(moments=2))
-    return reduce_boom(_boom(), [LAW], options, MPI.COMM_WORLD)
+    return reduce_boom(flat_boom(), [LAW], options, MPI.COMM_WORLD)
 
 
 @pytest.mark.parametrize("line", ["near webs", "across"])
@@ -67,7 +46,7 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
 @pytest.mark.quick
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_weights_of_a_flange_sum_to_one(line: ContactLine) -> None:
-    outer, inner = (segment.section for segment in _boom().segments)
+    outer, inner = (segment.section for segment in flat_boom().segments)
     assert outer is not None
     assert inner is not None
     points = contact_points(line, inner, outer)
@@ -109,7 +88,7 @@ def test_fields_add_up_to_what_the_observers_read() -> None:
 
 @pytest.mark.quick
 def test_a_shell_needs_a_section() -> None:
-    boom = _boom()
+    boom = flat_boom()
     bare = replace(boom, segments=(replace(boom.segments[0], section=None), boom.segments[1]))
     message = (
         r"segment\[1\]: 'outer' has no box section, which a shell needs; give height_to_width or "
@@ -124,7 +103,7 @@ def test_a_side_without_stiffness_never_touches() -> None:
     """One station, pressing up alone: one row, one-sided, above."""
     law = replace(LAW, stiffness_below=0.0)
     options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
-    system = reduce_boom(_boom(), [law], options, MPI.COMM_WORLD).system
+    system = reduce_boom(flat_boom(), [law], options, MPI.COMM_WORLD).system
     assert system.station_of_row.tolist() == [0, 1]
     assert all(row.below == 0.0 for row in system.laws)
 
@@ -132,7 +111,7 @@ def test_a_side_without_stiffness_never_touches() -> None:
 @pytest.mark.quick
 def test_a_segment_without_load_is_reduced_like_any_other() -> None:
     """Its empty input must not hide the error of its contact points, nor spoil it."""
-    boom = _boom()
+    boom = flat_boom()
     bare = replace(boom, segments=(boom.segments[0], replace(boom.segments[1], load=0.0)))
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     error, expected = (

@@ -77,7 +77,12 @@ def trajectories() -> xr.Dataset:
             "contact_force": (per_station, force[None]),
             "contact_force_peak": (per_station, peak[None]),
         },
-        coords={"model": ["shell"], "time": TIME, "station": [9.0, 10.0]},
+        coords={
+            "model": ["shell"],
+            "time": TIME,
+            "station": [9.0, 10.0],
+            "direction": ("station", ["z", "z"]),
+        },
     )
 
 
@@ -133,9 +138,13 @@ def test_what_touches_in_the_run_touches_in_the_picture(
 
 @pytest.mark.quick
 def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
-    """A third segment from 17.5 m on touches the second at 17.5 and 19 m."""
-    motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1])
-    motion = motion.assign_coords(station=[9.0, 10.0, 17.5, 19.0])
+    """A third segment from 17.5 m on touches the second at 17.5 and 19 m, at 10 m the first two
+    touch to the sides as well, and at 5 m there is a rest on the ground."""
+    motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1, 0, 1])
+    motion = motion.assign_coords(
+        station=[9.0, 10.0, 17.5, 19.0, 10.0, 5.0],
+        direction=("station", ["z", "z", "z", "z", "y", "z"]),
+    )
     third = mesh_segment(
         BoxSection(height=0.44, width=0.22, flange=0.004, web=0.004),
         {"start": 17.5, "end": 25.0},

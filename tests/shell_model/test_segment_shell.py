@@ -8,14 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
-from beam_model.segment_model import natural_modes
-from geometry.boom import Segment
 from shell_model.eigenmodes import natural_frequencies
-from shell_model.outline import Outline
-from shell_model.reduction import ShiftedSolver
 from shell_model.segment_shell import SegmentShell
-from tests.shell_model.conftest import BOX, STEEL
+from tests.shell_model.booms import HELD, STEEL, box_segment
+from tests.shell_model.conftest import BOX, compliance
 
 Shells = Callable[..., SegmentShell]
 
@@ -74,38 +72,16 @@ def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength(box_shell: Sh
 
 
 def _free_beam_frequency(length: float, theory: Theory) -> float:
-    beam = Segment(
-        name="beam",
-        start=0.0,
-        end=length,
-        material=STEEL,
-        mass_per_length=BOX.mass_per_length(STEEL.density),
-        second_moment_of_area=BOX.second_moment_of_area,
-        rotary_inertia=STEEL.density * BOX.second_moment_of_area,
-        section=BOX,
-    )
-    model = finite_element_segment(beam, 0.05 * length, (), theory, theory == "timoshenko")
+    beam = box_segment("beam", 0.0, length, BOX)
+    segment = finite_element_segment(beam, 0.05 * length, (), theory, theory == "timoshenko")
+    model = segment.components["z"]
     omega2 = natural_modes(model.stiffness, model.mass, model.rigid_modes).omega2
     return float(np.sqrt(omega2[2]) / (2.0 * np.pi))
 
 
-def _web_row(outline: Outline) -> dict[int, float]:
-    """Deflection of the webs alone, where the shear force of a beam goes."""
-    row: dict[int, float] = {}
-    for side in (1.0, -1.0):
-        nodes, lengths = outline.simpson("z", 0.5 * side * BOX.width)
-        for dof, weight in zip(outline.dofs[nodes, 2], lengths / (2.0 * BOX.height), strict=True):
-            row[int(dof)] = row.get(int(dof), 0.0) + float(weight)
-    return row
-
-
 def _overhang_compliance(box_shell: Shells, size: float) -> float:
-    shell = box_shell(size, supports=(0.0, 2.0))
-    force = shell.row(_web_row(shell.outline(10.0)))
-    solve = ShiftedSolver(shell, 0.0)
-    compliance = float(force @ solve(force[:, None])[:, 0])
-    solve.destroy()
-    return compliance
+    shell = box_shell(size, supports=HELD)
+    return compliance(shell, shell.outline(10.0).wall_deflection("z"))
 
 
 def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
@@ -125,19 +101,37 @@ def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
 
 @pytest.mark.quick
 def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
-    """Reference: analytic. Mean deflection, slope and distortion of a lifted, pitched box."""
+    """Reference: analytic. A lifted, pitched box in the plane of bending; a shifted, yawed and
+    rolled one out of it, where a point (y, z) moves by φ (−z, y).
+    """
     shell = box_shell(0.25)
     outline = shell.outline(10.0)
-    motion = shell.rigid_motions() @ np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
-    readings = [
-        shell.row(row) @ motion
-        for row in (
-            outline.mean_deflection(),
-            outline.rotation(),
-            outline.distortion(),
-            outline.flange_deflection(1.0, 0.1),
-            outline.flange_deflection(-1.0, 0.5 * BOX.width),
-        )
-    ]
+    in_plane = np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
     lifted = 0.03 + 0.002 * 5.0
-    assert readings == pytest.approx([lifted, 0.002, 0.0, lifted, lifted], abs=1.0e-12)
+    rows = (
+        outline.mean_deflection(),
+        outline.wall_deflection("z"),
+        outline.rotation(),
+        outline.distortion(),
+        outline.flange_deflection(1.0, 0.1),
+        outline.flange_deflection(-1.0, 0.5 * BOX.width),
+        outline.twist(),
+    )
+    readings = [shell.row(row) @ shell.rigid_motions() @ in_plane for row in rows]
+    expected = [lifted, lifted, 0.002, 0.0, lifted, lifted, 0.0]
+    assert readings == pytest.approx(expected, abs=1.0e-12)
+
+    sideways = np.array([0.0, 0.01, 0.0, 0.004, 0.0, 0.003])
+    shifted = 0.01 + 0.003 * 5.0
+    rows = (
+        outline.mean_deflection("y"),
+        outline.wall_deflection("y"),
+        outline.twist(),
+        outline.mean_deflection(),
+        outline.point("z", 0.1, -0.3),
+        outline.point("y", -0.1, 0.3),
+        outline.point("y", 0.1, 0.1),
+    )
+    readings = [shell.row(row) @ shell.rigid_motions() @ sideways for row in rows]
+    expected = [shifted, shifted, 0.004, 0.0, 4.0e-4, shifted - 1.2e-3, shifted - 4.0e-4]
+    assert readings == pytest.approx(expected, abs=1.0e-12)

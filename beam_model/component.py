@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""One component of a segment's motion in finitely many coordinates, and its natural modes.
+
+A segment deflects along z, and in space deflects along y and twists as well. Within a straight
+segment of a symmetric section the three do not know of each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eigh
+
+Array = npt.NDArray[np.float64]
+
+# Deflection along z or along y in m, rotation about x in rad.
+Motion = Literal["z", "y", "twist"]
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """M q̈ + C q̇ + K q = f, with a rule that reads the component anywhere.
+
+    Args:
+        stiffness, mass, damping: (num_dofs, num_dofs).
+        load: (num_dofs,) the segment's own uniform load.
+        unit_load: (num_dofs,) a uniform load of one N/m (of one N for the twist).
+        at: x in m → (num_dofs,) row that reads the deflection or twist there.
+        rigid_modes: how many motions the supports leave free of strain.
+    """
+
+    stiffness: Array
+    mass: Array
+    damping: Array
+    load: Array
+    unit_load: Array
+    at: Callable[[float], Array]
+    rigid_modes: int
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentModel:
+    """A segment by its components: ``z`` alone, or in space ``z``, ``y`` and ``twist``."""
+
+    components: Mapping[Motion, Component]
+
+
+class Modes(NamedTuple):
+    """Mass-normalised modes: ω² in rad²/s², rising, and the shapes (num_dofs, num_modes)."""
+
+    omega2: Array
+    shapes: Array
+
+
+def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
+    """All natural modes of (K, M), rigid ones with ω² exactly 0."""
+    # A common scale per coordinate: rotations and deflections differ by orders of magnitude.
+    scale = 1.0 / np.sqrt(np.diag(mass))
+    scales = np.outer(scale, scale)
+    # The upper triangle: where degrees rise from term to term, the reduction begins with the
+    # largest entries and leaves the lowest modes their digits.
+    omega2, shapes = eigh(stiffness * scales, mass * scales, lower=False)
+    omega2[:rigid_modes] = 0.0
+    return Modes(omega2, shapes * scale[:, None])
+
+
+def products(values: Array, weights: Array) -> Array:
+    """∫ f_i f_j dx, (num_functions, num_functions), from values at quadrature points.
+
+    Args:
+        values: (num_functions, num_points).
+        weights: (num_points,) of the rule in m.
+    """
+    return np.asarray((values * weights) @ values.T)

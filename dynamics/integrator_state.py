@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the compiled loops of the splitting read and change, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from dynamics.contact_kicks import contact_forces, first_closing, law_columns
+from dynamics.gap_system import GapSystem
+
+Array = npt.NDArray[np.float64]
+
+# omega2, load, damping (num_modes,), contact rows (num_rows, num_modes), laws (5, num_rows),
+# whether any mode is damped.
+System = tuple[Array, Array, Array, Array, Array, bool]
+
+# Friction rows (num_frictions, num_modes), their μ and prescribed N (2, num_frictions), 1 where a
+# contact row presses (num_frictions, num_rows), D Dᵀ.
+Dry = tuple[Array, Array, Array, Array]
+
+# Loads of the excitations (num_excitations, num_modes); their factors at all steps
+# (num_excitations, num_steps + 1), and in one step at the start, the middle and the end.
+Excitations = tuple[Array, Array, Array]
+
+# Positions in the tally; from the work on as in ``ENERGIES``.
+TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT = range(8)
+_TALLY = 8
+
+# What is known of each friction row, the rows of ``grip`` (7, num_frictions): where it is, or was
+# when it came to rest, in m; its speed in m/s; 1 or -1 while it slides, 0 at rest; the impulse in
+# the middle of the last step in N·s, its bound, and the impulse at its end; 1 if it was held.
+PLACE, SPEED, SLIDING, IMPULSE, BOUND, REST, HELD = range(7)
+_GRIP = 7
+
+# All that a step changes, in one array; its parts a, v (num_modes,), y and elastic contact forces
+# (num_rows,), grip, tally, mean and peak contact forces (num_rows,) and mean friction forces
+# (num_frictions,) of the output interval; another such array for what was before the step, and
+# its y.
+State = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+
+
+def system_arrays(system: GapSystem) -> System:
+    """A system without friction and excitations in the layout of the compiled loops."""
+    omega2, load, damping, rows = (
+        np.ascontiguousarray(array)
+        for array in (system.omega2, system.load, system.damping, system.rows)
+    )
+    return omega2, load, damping, rows, law_columns(system.laws), bool(damping.any())
+
+
+def friction_arrays(system: GapSystem) -> Dry:
+    """Its frictions."""
+    frictions = system.frictions
+    pressing = np.zeros((len(frictions), len(system.laws)))
+    for j, friction in enumerate(frictions):
+        pressing[j, list(friction.pressed_by)] = 1.0
+    given = np.array([[f.coefficient, f.normal_force] for f in frictions]).reshape(-1, 2)
+    rows = np.ascontiguousarray(system.friction_rows)
+    return rows, given.T.copy(), pressing, rows @ rows.T
+
+
+def excitation_arrays(system: GapSystem, times: Array) -> Excitations:
+    """Its excitations at the times of all steps and of the end, (num_steps + 1,) in s."""
+    count = len(system.excitations)
+    loads = np.array([x.load for x in system.excitations]).reshape(count, system.num_modes)
+    samples = np.array([x.history(times) for x in system.excitations], dtype=np.float64)
+    return loads, samples.reshape(count, times.size), np.zeros((3, count))
+
+
+def initial_state(system: GapSystem, position: Array, velocity: Array) -> State:
+    """A state, with the forces that act in it."""
+    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
+    sizes = np.cumsum([0, n, n, m, m, _GRIP * f, _TALLY, m, m, f])
+    whole, kept = np.zeros((2, sizes[-1]))
+    a, v, y, force, grip, tally, mean, peak, friction = np.split(whole, sizes[1:-1])
+    before = np.split(kept, sizes[1:-1])[2]
+    a[:], v[:] = position, velocity
+    touching = contact_forces(
+        a, np.ascontiguousarray(system.rows), law_columns(system.laws), y, force
+    )
+    tally[FIRST_CONTACT] = 0.0 if touching else np.nan
+    grip = grip.reshape(_GRIP, f)
+    look(a, v, np.ascontiguousarray(system.friction_rows), grip)
+    return whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+def read(rows: Array, a: Array, values: Array) -> None:
+    """values = rows a."""
+    for j in range(rows.shape[0]):
+        total = 0.0
+        for i in range(a.size):
+            total += rows[j, i] * a[i]
+        values[j] = total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def look(a: Array, v: Array, rows: Array, grip: Array) -> None:
+    """Take place and speed of every friction row from a state that friction has not made."""
+    read(rows, a, grip[PLACE])
+    read(rows, v, grip[SPEED])
+    grip[SLIDING] = np.sign(grip[SPEED])
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def enter(y: Array, before: Array, law: Array, time: float, tally: Array) -> None:
+    """Enter a step of ``time`` that has been made: contact changes, the first contact."""
+    tally[TIME] += time
+    tally[STEPS] += 1.0
+    changes, closing = first_closing(y, before, law, tally[TIME], time)
+    tally[CHANGES] += changes
+    if np.isnan(tally[FIRST_CONTACT]) and closing < np.inf:
+        tally[FIRST_CONTACT] = closing
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def excite(samples: Array, k: int, begin: float, end: float, factors: Array) -> None:
+    """Set the factors (3, num_excitations) of a part of step k."""
+    for e in range(samples.shape[0]):
+        now, more = samples[e, k], samples[e, k + 1] - samples[e, k]
+        factors[0, e] = now + begin * more
+        factors[1, e] = now + 0.5 * (begin + end) * more
+        factors[2, e] = now + end * more

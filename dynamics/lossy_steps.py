@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Steps of the splitting with friction and contact damping."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from dynamics.bounded_impulses import scratch
+from dynamics.contact_kicks import contact_forces, damped_kick
+from dynamics.friction_step import (
+    filter_rows,
+    find_turns,
+    look_ahead,
+    note_directions,
+    round_off,
+    rub,
+    settle,
+    sliding_bounds,
+)
+from dynamics.gap_system import GapSystem
+from dynamics.integrator_state import (
+    BOUND,
+    CONTACT,
+    DAMPING,
+    FRICTION,
+    IMPULSE,
+    PLACE,
+    REST,
+    SLIDING,
+    WORK,
+    Dry,
+    Excitations,
+    State,
+    System,
+    enter,
+    excite,
+    read,
+)
+from dynamics.modal_flow import drive, tabulate, travel
+
+Array = npt.NDArray[np.float64]
+
+# Rows that turn within this part of a step of one another turn together.
+_TOGETHER = 1.0e-9
+
+# A length of step in s (1,), and of this the flow over its half (8, num_modes), the filtered
+# friction rows and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows),
+# friction rows (5, num_frictions), and that of bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, npt.NDArray[np.int64]]
+
+
+def space_for(system: GapSystem) -> Space:
+    """What the steps of a system need beside its state."""
+    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
+    shapes = ((1,), (8, n), (f, n), (f, f), (n,), (3, m), (5, f))
+    length, half, filtered, matrix, ahead, middle, lines = (np.zeros(shape) for shape in shapes)
+    return length, half, filtered, matrix, ahead, middle, lines, *scratch(f)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def lossy_steps(
+    state: State,
+    system: System,
+    dry: Dry,
+    excitations: Excitations,
+    space: Space,
+    step: float,
+    first: int,
+    last: int,
+    substeps: int,
+    always: bool,
+) -> int:
+    """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
+
+    A step in which a sliding row turns is made in parts, the first of which ends where the first
+    row turns; so the direction of friction changes when it should and not at the next step.
+
+    Gives the number of the next step: ``last``, or an earlier one when nothing touches any more
+    unless ``always``.
+    """
+    # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
+    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
+    omega2, load, damping, rows, law, damped = system
+    friction_rows, given, pressing, masses = dry
+    loads, samples, factors = excitations
+    start, centre, end = factors
+    length, half, filtered, matrix, ahead, middle, lines, factor, change, inner = space
+    push, y_ahead, force_ahead = middle
+    slips, low, high, noise, turns = lines
+    bound, impulse, rest = grip[BOUND], grip[IMPULSE], grip[REST]
+    for k in range(first, last):
+        left = step
+        parts = 0
+        while left > 0.0:
+            for i in range(whole.size):
+                kept[i] = whole[i]
+            time = left
+            cut = False
+            while True:
+                if time != length[0]:
+                    length[0] = time
+                    tabulate(half, omega2, load, damping, 0.5 * time)
+                    filter_rows(friction_rows, half, time, filtered, matrix)
+                excite(samples, k, 1.0 - left / step, 1.0 - (left - time) / step, factors)
+                share = 0.5 * time / (substeps * step)
+
+                loss = damped_kick(v, rows, force, law, 0.5 * time, False, push)
+                for j in range(y.size):
+                    mean[j] += share * push[j]
+                work, lost = travel(
+                    a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre
+                )
+
+                look_ahead(a, v, half, ahead)
+                drive(ahead, half, loads, centre, end)
+                sliding_bounds(
+                    ahead, v, rows, law, push, pressing, given, time, y_ahead, force_ahead, bound
+                )
+                read(friction_rows, ahead, slips)
+                round_off(masses, ahead, noise)
+                for j in range(friction.size):
+                    slips[j] -= grip[PLACE, j]
+                tally[FRICTION] += rub(
+                    v, filtered, matrix, slips, noise, grip, impulse, low, bound,
+                    factor, change, inner, time,
+                )  # fmt: skip
+
+                more = travel(a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end)
+                tally[WORK] += work + more[0]
+                tally[DAMPING] += lost + more[1]
+                contact_forces(a, rows, law, y, force)
+                loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
+                tally[CONTACT] += loss
+                for j in range(y.size):
+                    mean[j] += share * push[j]
+                    if abs(push[j]) > abs(peak[j]):
+                        peak[j] = push[j]
+
+                read(friction_rows, v, slips)
+                round_off(masses, v, noise)
+                tally[FRICTION] += settle(
+                    v, friction_rows, masses, slips, noise, grip, rest, low, high,
+                    factor, change, inner,
+                )  # fmt: skip
+                for j in range(friction.size):
+                    friction[j] += (impulse[j] + rest[j]) / (substeps * step)
+                changed = note_directions(masses, slips, noise, grip, rest, low, high)
+                enter(y, before, law, time, tally)
+
+                if cut or not changed or parts > 2 * friction.size:
+                    break
+                first_turn = find_turns(masses, slips, grip, low, high, time, turns)
+                if not 0.0 < first_turn < left:
+                    break
+                for i in range(whole.size):
+                    whole[i] = kept[i]
+                time, cut = first_turn, True
+            if cut:
+                for j in range(friction.size):
+                    if turns[j] <= time * (1.0 + _TOGETHER):
+                        grip[SLIDING, j] = 0.0
+            left -= time
+            parts += 1
+        if not (always or force.any()):
+            return k + 1
+    return last

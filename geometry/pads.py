@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where the segments of a joint touch, and where they rub.
+
+In a flat boom a joint touches on the axis of its segments, above and below in one place. In
+space it touches in the corners of its boxes, where slide pads sit because a box is stiff there:
+on each flange above the two webs, on each web beside the two flanges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from geometry.boom import Boom, Direction, Joint
+
+Side = Literal[-1, 0, 1]
+Offset = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Pad:
+    """A pair of points, one of each segment of a joint, that touch across its clearance.
+
+    Args:
+        station: position in ``Boom.stations``.
+        joint: the joint.
+        number: position of the joint in ``Boom.joints``.
+        x: m.
+        direction: of its normal.
+        side: 1 touches where the inner segment presses up (along y: towards larger y), −1 where
+            it presses down, 0 both ways.
+        inner, outer: (y, z) in m of the points from the axes of their segments.
+        weight: the part of the joint's law on this side that the pad carries.
+        rubs: the direction in which it slides.
+        prescribed: the normal force of its friction in N; 0 where its own contact presses.
+    """
+
+    station: int
+    joint: Joint
+    number: int
+    x: float
+    direction: Direction
+    side: Side
+    inner: Offset
+    outer: Offset
+    weight: float
+    rubs: Direction
+    prescribed: float
+
+
+def pads(boom: Boom) -> list[Pad]:
+    """Every pad of every joint that is not tied, by rising station.
+
+    The weights of one side of a station sum to one: when the segments approach each other
+    without roll, the pads together press as one contact on the axis would.
+    """
+    directions: tuple[Direction, ...] = ("z", "y") if boom.spatial else ("z",)
+    found: list[Pad] = []
+    station = 0
+    for direction in directions:
+        for number, joint in enumerate(boom.joints):
+            if joint.tied:
+                continue
+            for k, x in enumerate(joint.stations):
+                normal_force = joint.normal_forces[k] if joint.normal_forces else 0.0
+                for side, inner, outer, weight in _points(boom, joint, direction):
+                    found.append(
+                        Pad(
+                            station=station,
+                            joint=joint,
+                            number=number,
+                            x=x,
+                            direction=direction,
+                            side=side,
+                            inner=inner,
+                            outer=outer,
+                            weight=weight,
+                            rubs="y" if boom.spatial and direction == "z" else "z",
+                            # Both sides together rub as the one on the axis does.
+                            prescribed=normal_force * weight * (0.5 if side else 1.0),
+                        )
+                    )
+                station += 1
+    return found
+
+
+def _points(
+    boom: Boom, joint: Joint, direction: Direction
+) -> Iterator[tuple[Side, Offset, Offset, float]]:
+    """Side, inner and outer point, and weight of the pads at one station along one direction."""
+    if joint.lateral_clearance is None:
+        yield 0, (0.0, 0.0), (0.0, 0.0), 1.0
+        return
+    inner, outer = boom.segments[joint.inner].section, boom.segments[joint.outer].section
+    assert inner is not None
+    assert outer is not None
+    if direction == "y":
+        inner, outer = inner.turned(), outer.turned()
+    clearance = joint.clearance if direction == "z" else joint.lateral_clearance
+    face = 0.5 * (outer.height - outer.flange)
+    sides: tuple[Side, Side] = (1, -1)
+    for side in sides:
+        for corner in (-0.5 * inner.width, 0.5 * inner.width):
+            within, around = (corner, side * (face - clearance)), (corner, side * face)
+            if direction == "y":
+                within, around = within[::-1], around[::-1]
+            yield side, within, around, 0.5

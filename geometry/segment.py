@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""One segment of the boom: its numbers as a beam, its supports, and what sits on it.
+
+x runs along the boom, z is the plane of bending, y is lateral. Everything is in SI units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal
+
+from geometry.section import BoxSection
+
+# Two lengths closer than this (m) are the same place: far below any plate, far above round-off.
+SAME_PLACE = 1.0e-9
+
+
+class BoomError(ValueError):
+    """A boom that cannot be. ``where`` is the key of the fault, ``segment[2].span`` say."""
+
+    def __init__(self, where: str, what: str) -> None:
+        super().__init__(f"{where}: {what}")
+        self.where = where
+        self.what = what
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³."""
+
+    youngs_modulus: float
+    poissons_ratio: float
+    density: float
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / 2(1 + ν) in Pa."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """What holds a segment at x: its deflection, along y as along z, and its twist.
+
+    Args:
+        x: m.
+        kind: ``pinned`` leaves the slopes free, ``clamped`` holds them too.
+        stiffness: of a pinned support whose deflections give way, in N/m, the same along y and
+            along z; rigid unless given. The twist is held rigidly all the same.
+    """
+
+    x: float
+    kind: Literal["pinned", "clamped"] = "pinned"
+    stiffness: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PointMass:
+    """A mass in kg on the axis at x in m, without inertia against turning."""
+
+    x: float
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class Lateral:
+    """What a beam in space has beyond one in the plane x-z.
+
+    Args:
+        second_moment_of_area: for bending in the plane x-y in m⁴.
+        rotary_inertia: for bending in the plane x-y in kg·m.
+        torsion_constant: J_t of the twisting stiffness G J_t in m⁴.
+        polar_inertia: mass moment of a unit of length about x in kg·m.
+        load: uniform load along y in N/m, applied at t = 0 and kept.
+    """
+
+    second_moment_of_area: float
+    rotary_inertia: float
+    torsion_constant: float
+    polar_inertia: float
+    load: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """One box of the boom, with the numbers of its beam and, where known, its plates.
+
+    Args:
+        name: how messages and results call it.
+        start, end: x of its ends in m.
+        material: elastic constants and density.
+        mass_per_length: m̄ in kg/m.
+        second_moment_of_area: J in m⁴.
+        rotary_inertia: I_p in kg·m.
+        section: the box; only shear-flexible beams, shells and booms in space need it.
+        load: uniform load along z in N/m, applied at t = 0 and kept.
+        supports: what holds it.
+        viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
+        masses: what it carries.
+        lateral: what a boom in space needs.
+    """
+
+    name: str
+    start: float
+    end: float
+    material: Material
+    mass_per_length: float
+    second_moment_of_area: float
+    rotary_inertia: float
+    section: BoxSection | None = None
+    load: float = 0.0
+    supports: tuple[Support, ...] = ()
+    viscous_damping: float = 0.0
+    masses: tuple[PointMass, ...] = ()
+    lateral: Lateral | None = None
+
+    @property
+    def length(self) -> float:
+        """Length in m."""
+        return self.end - self.start
+
+    @property
+    def bending_stiffness(self) -> float:
+        """E J in N·m²."""
+        return self.material.youngs_modulus * self.second_moment_of_area
+
+    @property
+    def rigid_modes(self) -> int:
+        """How many motions in one plane of bending the supports leave free of strain."""
+        held = sum(2 if support.kind == "clamped" else 1 for support in self.supports)
+        return max(0, 2 - held)
+
+    @property
+    def rigid_twists(self) -> int:
+        """How many turns about the axis the supports leave free of strain."""
+        return 0 if self.supports else 1
+
+    def holds(self, x: float) -> bool:
+        """Whether x lies on the segment, its ends included."""
+        return self.start - SAME_PLACE <= x <= self.end + SAME_PLACE
+
+    def turned(self) -> Segment:
+        """The segment with its two planes exchanged: what it does along y, this one does along z.
+
+        Raises:
+            ValueError: the segment has no lateral numbers.
+        """
+        if self.lateral is None:
+            raise ValueError(f"{self.name!r} has no lateral numbers to exchange")
+        return replace(
+            self,
+            second_moment_of_area=self.lateral.second_moment_of_area,
+            rotary_inertia=self.lateral.rotary_inertia,
+            load=self.lateral.load,
+            section=None if self.section is None else self.section.turned(),
+            lateral=replace(
+                self.lateral,
+                second_moment_of_area=self.second_moment_of_area,
+                rotary_inertia=self.rotary_inertia,
+                load=self.load,
+            ),
+        )
+
+    def check(self, where: str) -> None:
+        """Whether there can be such a segment.
+
+        Args:
+            where: its key, ``segment[2]`` say.
+
+        Raises:
+            BoomError: an empty span, a support or a mass off the segment or impossible.
+        """
+        if not self.start < self.end:
+            raise BoomError(
+                f"{where}.span",
+                f"must run from a smaller to a larger x, got [{self.start:g}, {self.end:g}] m",
+            )
+        for support in self.supports:
+            self._check_place(f"{where}.supports", support.x)
+            _check_stiffness(f"{where}.supports", support)
+        places = sorted(support.x for support in self.supports)
+        if any(right - left <= SAME_PLACE for left, right in pairwise(places)):
+            raise BoomError(f"{where}.supports", "a place is given twice; give each once")
+        for mass in self.masses:
+            self._check_place(f"{where}.masses", mass.x)
+            if not 0.0 < mass.mass < float("inf"):
+                raise BoomError(
+                    f"{where}.masses", f"must be positive numbers of kg, got {mass.mass:g}"
+                )
+
+    def _check_place(self, where: str, x: float) -> None:
+        if not self.holds(x):
+            raise BoomError(
+                where,
+                f"{x:g} m lies outside the segment; it must be between {self.start:g} and "
+                f"{self.end:g} m",
+            )
+
+
+def _check_stiffness(where: str, support: Support) -> None:
+    if support.stiffness is None:
+        return
+    if support.kind == "clamped":
+        raise BoomError(
+            where,
+            f"a clamped support is rigid, and the one at {support.x:g} m has a stiffness; leave it "
+            "out, or make the support pinned",
+        )
+    if not 0.0 < support.stiffness < float("inf"):
+        raise BoomError(
+            where,
+            f"the stiffness at {support.x:g} m must be a positive number of N/m, got "
+            f"{support.stiffness:g}",
+        )

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The statements of the paper, and what a judgement on one of them is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Judgement = Literal["reproduced", "contradicted", "undecided"]
+
+STATEMENTS = {
+    "S1": "Four and five terms of the series coincide until the first collision.",
+    "S2": "At the end of the interval they are more than 20 % apart.",
+    "S3": "At the tip all models with play conform for six seconds, then stratify.",
+    "S4": "The deflection grows with the complication of the model: four terms, five terms, "
+    "beam elements, shell.",
+    "S5": "Play changes the motion fundamentally.",
+    "S6": "At the head relative differences are greater than at the tip, absolute ones of the "
+    "same level.",
+    "S7": "With friction the models conform for six seconds, then stratify somewhat; the "
+    "play-free one deviates considerably.",
+    "S8": "With friction the finite element solution is stable for 7 s only, at 4375 steps.",
+    "S9": "The collision model has no clear influence on the deflection.",
+    "S10": "The series needs at most 2000 integration steps, beam elements more than 4000.",
+    "S11": "The description extends to more than two segments, with two more equations per segment "
+    "and plane.",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """One statement, judged.
+
+    Args:
+        id: S1 … S11.
+        statement: what the paper says.
+        measured: the number that the rule looks at, None where there is none.
+        threshold: what it is held against.
+        unit: of both; empty where there is none.
+        verdict: what the rule says.
+        why: what was compared, and what the number can and cannot decide.
+    """
+
+    id: str
+    statement: str
+    measured: float | None
+    threshold: float | None
+    unit: str
+    verdict: Judgement
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a rule leaves; the fields are those of :class:`Verdict`."""
+
+    verdict: Judgement
+    why: str
+    measured: float | None = None
+    threshold: float | None = None
+    unit: str = ""

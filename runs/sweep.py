@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Runs the points of a sweep on all cores or ranks, and keeps each one that is done.
+
+A point's file, ``points/HASH.json``, is there whole or not at all. Its name is the hash of the
+point's effective case and of the program's version, so what is done is not done again, whatever
+sweep of the folder asks for it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
+from multiprocessing import active_children, get_context, parent_process
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Thread
+from typing import TYPE_CHECKING
+
+from dynamics.failure import NumericsError
+from runs import members, toml
+from runs.bad_input import BadInput
+from runs.files import whole
+from runs.pipeline import Progress, run_case
+from runs.quantities import QUANTITIES, Measured, measure
+from runs.schema import Case, ShellTable
+from runs.sweep_points import Point
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+POINTS = "points"
+
+# Libraries that would take all cores in each process.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+# What a launcher tells each process, and all that could make a rank of it: Open MPI, PMIx, MPICH
+# and its kin.
+_LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE")
+_OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a point leaves, by the model's name.
+
+    Args:
+        models: the quantities of those that ran.
+        failures: why the others could not be computed, a sentence each.
+    """
+
+    models: dict[str, Measured]
+    failures: dict[str, str]
+
+
+def prepare(folder: Path, file: str) -> None:
+    """Make the folder of a sweep, or take an earlier sweep's.
+
+    Args:
+        folder: as the user gave it.
+        file: the case file, for messages.
+
+    Raises:
+        BadInput: it holds something else.
+        OSError: it cannot be made.
+    """
+    if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
+        raise BadInput(
+            file,
+            f"--out {folder}",
+            "holds files that are not a sweep's; give a new folder or an earlier sweep's",
+        )
+    (folder / POINTS).mkdir(parents=True, exist_ok=True)
+
+
+def launched_world(file: str) -> MPI.Intracomm | None:
+    """All ranks if a launcher such as ``mpirun`` started several, else None.
+
+    Raises:
+        BadInput: it did, and mpi4py is not installed.
+    """
+    if not any(name in os.environ for name in _LAUNCHED):
+        return None
+    try:
+        from mpi4py import MPI
+    except ImportError as error:
+        raise BadInput(
+            file, "mpirun", f"mpi4py cannot be imported ({error}); run without mpirun"
+        ) from None
+    return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
+
+
+@contextmanager
+def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
+    """What runs points at a time: the cores of this machine, or all ranks but the first.
+
+    Args:
+        comm: of several ranks, or None. On other ranks than the first this yields None, once they
+            have nothing to do any more.
+    """
+    if comm is not None and comm.size > 1:
+        with members.workers(comm) as ranks:
+            yield ranks
+        return
+    # A process takes the number of its threads from here when it starts.
+    outside = {name: os.environ.get(name) for name in _THREADS}
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    pool = ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), _start_worker)
+    try:
+        yield pool
+    except BaseException:
+        for process in active_children():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+        for name, threads in outside.items():
+            if threads is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = threads
+
+
+def run_points(
+    points: Sequence[Point], folder: Path, pool: Executor, progress: Progress
+) -> list[Outcome]:
+    """Run the points that are not done yet, write each when it is, and give those of all.
+
+    Args:
+        points: of a sweep.
+        folder: made by :func:`prepare`.
+        pool: of :func:`workers`.
+        progress: told about every finished point.
+
+    Raises:
+        MemoryError: the system has killed a process.
+    """
+    files = [folder / POINTS / f"{_key(point.case)}.json" for point in points]
+    outcomes = [_load(path) for path in files]
+    stage = f"{len(points)} points"
+    futures = {
+        pool.submit(run_point, point.case): i
+        for i, point in enumerate(points)
+        if outcomes[i] is None
+    }
+    done = len(points) - len(futures)
+    progress("sweep", stage, done / len(points))
+    try:
+        for future in as_completed(futures):
+            i = futures[future]
+            outcomes[i] = outcome = future.result()
+            _write(outcome, points[i], files[i])
+            done += 1
+            progress("sweep", stage, done / len(points))
+    except BrokenProcessPool:
+        raise MemoryError("the system has killed a process of the sweep") from None
+    finally:
+        for future in futures:
+            future.cancel()
+    return [outcome for outcome in outcomes if outcome is not None]
+
+
+def run_point(case: Case) -> Outcome:
+    """Run the models of a case one by one, since one may fail alone; shells on this process."""
+    outcome = Outcome({}, {})
+    for model in case.models:
+        comm = None
+        if isinstance(model, ShellTable):
+            from mpi4py import MPI
+
+            comm = MPI.COMM_SELF
+        alone = case.model_copy(update={"models": (model,)})
+        with TemporaryDirectory(prefix="protractile-") as scratch:
+            try:
+                finished = run_case(alone, "", comm, Path(scratch), _silence)
+            except NumericsError as error:
+                # The file, the point and the model's name stand before it where it is shown.
+                outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
+                continue
+        assert finished is not None
+        outcome.models[model.name] = measure(finished.results, model.name)
+    return outcome
+
+
+def _start_worker() -> None:
+    """A worker is no rank, ends without a word at Ctrl-C, and does not outlive its parent."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
+        del os.environ[name]
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
+
+
+def _key(case: Case) -> str:
+    try:
+        own = version("protractile")
+    except PackageNotFoundError:
+        own = ""
+    return hashlib.sha256(f"{toml.digest(case)} {own}".encode()).hexdigest()
+
+
+def _load(path: Path) -> Outcome | None:
+    """None where a point is not done, or its file is damaged."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        outcome = Outcome(data["models"], data["failures"])
+        complete = all(
+            quantity.name in model for model in outcome.models.values() for quantity in QUANTITIES
+        )
+    except (FileNotFoundError, ValueError, TypeError, KeyError, AttributeError):
+        return None
+    return outcome if complete else None
+
+
+def _write(outcome: Outcome, point: Point, path: Path) -> None:
+    data = {"point": point.label, "case_hash": toml.digest(point.case), **asdict(outcome)}
+    with whole(path) as part:
+        part.write_text(
+            json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+            encoding="utf-8",
+        )
+
+
+def _silence(model: str, stage: str, part: float) -> None:
+    """Several points run at a time."""

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The gap system of each model of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beam_model.finite_element import finite_element_segment
+from beam_model.kantorovich import kantorovich_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+from runs.build import contact_laws, lateral_laws
+from runs.schema import Case, DampingTable, FiniteElementTable, KantorovichTable, ShellTable
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from shell_model.boom_shell import ReducedShell
+
+
+def beam_system(case: Case, boom: Boom, model: KantorovichTable | FiniteElementTable) -> GapSystem:
+    """A series or beam elements.
+
+    Args:
+        case: its joints have the contact laws.
+        boom: of the case.
+        model: one of the case's.
+
+    Raises:
+        BoomError: the boom lacks what the model needs.
+    """
+    laws, lateral = contact_laws(case, model), lateral_laws(case, model)
+    if isinstance(model, KantorovichTable):
+        segments = [
+            kantorovich_segment(segment, terms, model.base, model.rotary_inertia)
+            for segment, terms in zip(boom.segments, model.terms, strict=True)
+        ]
+        return gap_system(boom, segments, laws, lateral)
+    segments = [
+        finite_element_segment(
+            segment,
+            model.element_length,
+            boom.stations_of(number),
+            model.theory,
+            model.rotary_inertia,
+        )
+        for number, segment in enumerate(boom.segments)
+    ]
+    if model.tied:
+        return tied_system(boom, segments)
+    return gap_system(boom, segments, laws, lateral)
+
+
+def reduce_shell(
+    case: Case,
+    boom: Boom,
+    model: ShellTable,
+    comm: MPI.Comm,
+    mesh_folder: Path,
+    tell: Callable[[str, float], None],
+) -> ReducedShell:
+    """The shell, reduced. Collective.
+
+    Args:
+        case, boom, model: as in :func:`beam_system`.
+        comm: the ranks that share the work.
+        mesh_folder: where gmsh's files go, ``SEGMENT.msh``.
+        tell: told the stage and the part of it that is done.
+    """
+    from shell_model.boom_shell import ShellOptions, reduce_boom
+
+    if comm.rank == 0:
+        mesh_folder.mkdir(parents=True)
+    options = ShellOptions(
+        mesh_size=model.mesh_size, contact_line=model.contact_line, mesh_folder=mesh_folder
+    )
+    laws, lateral = contact_laws(case, model), lateral_laws(case, model)
+    return reduce_boom(boom, laws, options, comm, tell, lateral)
+
+
+def damped(system: GapSystem, table: DampingTable) -> GapSystem:
+    """The system with damping in every mode besides its own.
+
+    Rayleigh's is α + β ω², a damping ratio ζ is 2 ζ ω; rigid modes have no part of the latter.
+    """
+    added = (
+        2.0 * table.modal * np.sqrt(system.omega2) + table.mass + table.stiffness * system.omega2
+    )
+    return replace(system, damping=system.damping + added)

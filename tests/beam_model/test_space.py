@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms in space: two planes and a twist, pads in the corners, friction of one plane by the
+other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from beam_model.component import Component, SegmentModel, natural_modes
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.kantorovich import kantorovich_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom, Joint, Segment, Stop, Support
+from geometry.section import BoxSection
+from tests.space import in_space
+
+Array = npt.NDArray[np.float64]
+Beam = Callable[..., Segment]
+
+pytestmark = pytest.mark.quick
+
+LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0, clearance=5.0e-3)
+
+
+def beams(
+    boom: Boom, length: float = 1.0, theory: Theory = "euler-bernoulli"
+) -> list[SegmentModel]:
+    return [
+        finite_element_segment(segment, length, boom.stations_of(k), theory, True)
+        for k, segment in enumerate(boom.segments)
+    ]
+
+
+def pushed(boom: Boom, *loads: float) -> Boom:
+    """The boom with uniform loads along y in N/m."""
+    segments = []
+    for segment, load in zip(boom.segments, loads, strict=True):
+        assert segment.lateral is not None
+        segments.append(replace(segment, lateral=replace(segment.lateral, load=load)))
+    return replace(boom, segments=tuple(segments))
+
+
+def rolled(boom: Boom) -> Boom:
+    """What the boom has along y it has along z, and the other way round."""
+    joints = []
+    for joint in boom.joints:
+        assert joint.lateral_clearance is not None
+        joints.append(
+            replace(joint, clearance=joint.lateral_clearance, lateral_clearance=joint.clearance)
+        )
+    return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=tuple(joints))
+
+
+def frequencies(component: Component) -> Array:
+    """ω of the elastic modes in rad/s."""
+    modes = natural_modes(component.stiffness, component.mass, component.rigid_modes)
+    return np.sqrt(modes.omega2[component.rigid_modes :])
+
+
+@pytest.mark.parametrize(
+    ("supports", "numbers", "rigid"),
+    [
+        ((Support(3.0),), (0.5, 1.5, 2.5), 0),
+        ((), (1.0, 2.0, 3.0), 1),
+        ((Support(3.0, stiffness=1e6), Support(8.0, "clamped")), (1.0, 2.0, 3.0), 0),
+    ],
+    ids=["held and free", "free", "held at both ends"],
+)
+def test_twisting_frequencies(
+    beam: Beam, supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
+) -> None:
+    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, … of a bar held at one end.
+
+    Linear elements are of order two, from above: (κπh/L)²/24.
+    """
+    segment = in_space(beam(supports=supports))
+    lateral = segment.lateral
+    assert lateral is not None
+    speed = np.sqrt(
+        segment.material.shear_modulus * lateral.torsion_constant / lateral.polar_inertia
+    )
+    expected = np.array(numbers) * np.pi / 5.0 * speed
+    series = kantorovich_segment(segment, 14, "complete", False).components["twist"]
+    assert series.rigid_modes == rigid
+    np.testing.assert_allclose(frequencies(series)[:3], expected, rtol=1e-9)
+    errors = []
+    for count in (20, 40):
+        model = finite_element_segment(segment, 5.0 / count, (), "euler-bernoulli", False)
+        twist = model.components["twist"]
+        assert twist.rigid_modes == rigid
+        errors.append(frequencies(twist)[:3] / expected - 1.0)
+    np.testing.assert_allclose(errors[1], (np.array(numbers) * np.pi / 40.0) ** 2 / 24.0, rtol=0.02)
+    np.testing.assert_allclose(np.log2(errors[0] / errors[1]), 2.0, atol=0.03)
+
+
+def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
+    """Reference: analytic, T x/(G J_t) up to the torque and constant beyond; exact at nodes."""
+    segment = in_space(beam(supports=(Support(3.0),)))
+    assert segment.lateral is not None
+    stiffness = segment.material.shear_modulus * segment.lateral.torsion_constant
+    model = finite_element_segment(segment, 1.7, (5.5,), "timoshenko", False).components["twist"]
+    rest = np.linalg.solve(model.stiffness, 900.0 * model.at(5.5))
+    for x, arm in ((4.0, 1.0), (5.5, 2.5), (7.1, 2.5), (8.0, 2.5)):
+        assert model.at(x) @ rest == pytest.approx(900.0 * arm / stiffness, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["series", "euler-bernoulli", "timoshenko"])
+def test_lateral_bending_is_that_of_the_box_on_its_side(beam: Beam, kind: str) -> None:
+    """Reference: the flat model of a segment whose box is turned by hand."""
+    box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
+    side = BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
+    held = (Support(3.0, "clamped"), Support(6.0))
+    upright = in_space(beam(supports=held, viscous_damping=5.0))
+    lying = replace(
+        beam(supports=held, viscous_damping=5.0),
+        section=side,
+        second_moment_of_area=side.second_moment_of_area,
+        rotary_inertia=7850.0 * side.second_moment_of_area,
+    )
+    assert upright.section == box
+
+    def model(segment: Segment) -> SegmentModel:
+        if kind == "series":
+            return kantorovich_segment(segment, 8, "complete", True)
+        theory: Theory = "timoshenko" if kind == "timoshenko" else "euler-bernoulli"
+        return finite_element_segment(segment, 0.5, (), theory, True)
+
+    lateral, flat = model(upright).components["y"], model(lying).components["z"]
+    for name in ("stiffness", "mass", "damping"):
+        expected = getattr(flat, name)
+        scale = np.abs(expected).max()
+        np.testing.assert_allclose(getattr(lateral, name), expected, atol=1e-12 * scale)
+    np.testing.assert_allclose(lateral.at(7.3), flat.at(7.3))
+    # The box is not square, or this would say nothing.
+    assert frequencies(model(upright).components["z"])[0] > 1.2 * frequencies(lateral)[0]
+
+
+def test_places_and_names(spatial_boom: Boom) -> None:
+    stop = Stop(1, 19.0, 1.0e-3, 1.0e8, 1.0e8, 1.0)
+    system = gap_system(
+        replace(spatial_boom, stops=(stop,)), beams(spatial_boom), [LAW], [LATERAL_LAW]
+    )
+    assert list(zip(system.stations, system.station_directions, strict=True)) == [
+        (9.0, "z"), (10.0, "z"), (9.0, "y"), (10.0, "y"), (19.0, "z")
+    ]  # fmt: skip
+    assert np.bincount(system.station_of_row).tolist() == [4, 4, 4, 4, 1]
+    assert set(system.observers) == {
+        "tip", "head", "tail", "tip_lateral", "head_lateral", "tail_lateral"
+    }  # fmt: skip
+    # Two planes of 2 w and θ a node, and the twist; supports hold one each.
+    nodes = 11 + 11
+    assert system.num_modes == 5 * nodes - 2 * 3
+    assert (system.omega2 == 0.0).sum() == 2 + 2 + 1
+
+
+def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
+    """Reference: analytic. Raised as a body, and pushed aside as one, the inner segment feels
+    the laws themselves at each station."""
+    system = gap_system(spatial_boom, beams(spatial_boom), [LAW], [LATERAL_LAW])
+    up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
+    for height, shift in ((8.0e-3, 0.0), (-9.0e-3, 5.5e-3), (7.5e-3, -6.0e-3)):
+        gaps = system.rows @ (height * up + shift * aside)
+        forces = np.array([law.force(y) for law, y in zip(system.laws, gaps, strict=True)])
+        summed = np.bincount(system.station_of_row, forces)
+        expected = [LAW.force(np.array(height))] * 2 + [LATERAL_LAW.force(np.array(shift))] * 2
+        assert summed == pytest.approx(np.array(expected, dtype=float), rel=1e-9, abs=1e-3)
+
+
+def rigid_motion(system: GapSystem, suffix: str) -> Array:
+    """(num_modes,) the inner segment moved by 1 m without tilting."""
+    rigid = system.omega2 == 0.0
+    rows = np.array(
+        [
+            system.observers[name + s].row[rigid]
+            for name in ("tip", "tail")
+            for s in ("", "_lateral")
+        ]
+    )
+    motion = np.zeros(system.num_modes)
+    wanted = [1.0, 0.0] if suffix == "" else [0.0, 1.0]
+    # The smallest such motion does not roll.
+    motion[rigid] = np.linalg.pinv(rows) @ np.array(2 * wanted)
+    return motion
+
+
+def test_pads_resist_roll(spatial_boom: Boom) -> None:
+    """Reference: analytic. Pressed up all over, a segment that rolls by θ stores k b² θ²/8 at each
+    station: half the law at each of ± b/2. Beside it, pressed in y, k h² θ²/8."""
+    system = gap_system(spatial_boom, beams(spatial_boom), [LAW], [LATERAL_LAW])
+    inner = spatial_boom.segments[1]
+    assert inner.section is not None
+    assert inner.lateral is not None
+    roll = np.zeros(system.num_modes)
+    up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
+    # The one rigid motion that neither tip nor tail show: 1/√(I L) of twist in its mode.
+    shown = np.abs(up) + np.abs(aside) > 1e-9
+    hidden = (system.omega2 == 0.0) & ~shown
+    assert hidden.sum() >= 1
+    twist = np.flatnonzero(hidden)[-1]
+    roll[twist] = np.sqrt(inner.lateral.polar_inertia * inner.length)
+
+    def stored(motion: Array) -> float:
+        gaps = system.rows @ motion
+        return float(sum(law.energy(y) for law, y in zip(system.laws, gaps, strict=True)))
+
+    theta = 2.0e-3
+    for pressed, law, arm in (
+        (8.0e-3 * up, LAW, inner.section.width),
+        (-6.0e-3 * aside, LATERAL_LAW, inner.section.height),
+    ):
+        more = stored(pressed + theta * roll) - stored(pressed)
+        assert more == pytest.approx(2.0 * law.stiffness * arm**2 * theta**2 / 8.0, rel=1e-6)
+        # As much to the other side.
+        assert stored(pressed - theta * roll) - stored(pressed) == pytest.approx(more, rel=1e-6)
+
+
+def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: float) -> None:
+    """Observers of two runs agree within a part of their range."""
+    for name, alike in names.items():
+        expected = one.data[name].values
+        error = np.abs(other.data[alike].values - expected).max()
+        assert error < tolerance * np.ptp(expected), name
+
+
+@pytest.mark.parametrize(("kind", "duration"), [("series", 0.18), ("elements", 0.4)])
+def test_the_vertical_plane_is_the_flat_boom(
+    spatial_boom: Boom, kind: str, duration: float
+) -> None:
+    """Reference: the flat model. Without load sideways and without friction nothing leaves the
+    plane. Every press amplifies round-off, the series' more so: the tips differ by 1e-14 of their
+    range after 0.15 s, the series' by 3e-8 after 0.25 s, the elements' by 5e-9 after 0.5 s.
+    """
+    (joint,) = spatial_boom.joints
+    flat = replace(spatial_boom, joints=(replace(joint, lateral_clearance=None),))
+    runs = []
+    for boom, lateral in ((flat, ()), (spatial_boom, (LATERAL_LAW,))):
+        models = (
+            beams(boom)
+            if kind == "elements"
+            else [kantorovich_segment(s, 6, "complete", True) for s in boom.segments]
+        )
+        system = gap_system(boom, models, [LAW], lateral)
+        runs.append(integrate(system, duration, step=2.0e-5))
+    plane, space = runs
+    assert plane.data.attrs["contact_changes"] > 10
+    same(plane, space, {name: name for name in ("tip", "head", "tail")}, 1e-9)
+    for name in ("tip", "head", "tail"):
+        assert np.abs(space.data[f"{name}_lateral"].values).max() < 1e-15
+
+
+def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
+    """Reference: analytic, the exchange of y and z. Loads, sections, plays and laws with it;
+    friction too, which couples the planes. The presses amplify round-off to 4e-9."""
+    (joint,) = spatial_boom.joints
+    boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
+    upright = gap_system(boom, beams(boom), [LAW], [LATERAL_LAW])
+    side = rolled(boom)
+    lying = gap_system(side, beams(side), [LATERAL_LAW], [LAW])
+    assert len(upright.frictions) == 16
+    one, other = (integrate(system, 0.25, step=2.0e-5) for system in (upright, lying))
+    assert one.data["friction_loss"].values[-1] > 0.3
+    names = ("tip", "head", "tail")
+    same(one, other, {name: f"{name}_lateral" for name in names}, 1e-7)
+    same(one, other, {f"{name}_lateral": name for name in names}, 1e-7)
+
+
+def test_friction_rows_rub_across_what_presses(spatial_boom: Boom) -> None:
+    """Reference: analytic, (10) and (11): pressed along z a pad rubs along y, and back."""
+    (joint,) = spatial_boom.joints
+    boom = replace(spatial_boom, joints=(replace(joint, friction=0.3),))
+    system = gap_system(boom, beams(boom), [LAW], [LATERAL_LAW])
+    up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
+    for row, friction in zip(system.friction_rows, system.frictions, strict=True):
+        (contact,) = friction.pressed_by
+        assert (friction.coefficient, friction.normal_force) == (0.3, 0.0)
+        assert friction.station == system.station_of_row[contact]
+        presses_up = system.rows[contact] @ up
+        assert [presses_up, system.rows[contact] @ aside] == pytest.approx(
+            [1.0, 0.0] if friction.station < 2 else [0.0, 1.0], abs=1e-9
+        )
+        assert [row @ aside, row @ up] == pytest.approx(
+            [1.0, 0.0] if friction.station < 2 else [0.0, 1.0], abs=1e-9
+        )
+
+
+def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
+    """Reference: external source, (28): N at each station, sliding with u − w."""
+    (joint,) = paper_boom.joints
+    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
+    boom = replace(paper_boom, joints=(joint,))
+    system = gap_system(boom, beams(boom), [LAW])
+    np.testing.assert_array_equal(system.friction_rows, system.rows)
+    assert [(f.coefficient, f.station, f.normal_force, f.pressed_by) for f in system.frictions] == [
+        (0.2, 0, 4500.0, ()),
+        (0.2, 1, 5000.0, ()),
+    ]
+    # In space the same forces are shared out to the pads.
+    space = replace(
+        boom,
+        segments=tuple(in_space(segment) for segment in boom.segments),
+        joints=(replace(joint, lateral_clearance=5.0e-3),),
+    )
+    forces = [
+        (friction.station, friction.normal_force)
+        for friction in gap_system(space, beams(space), [LAW], [LATERAL_LAW]).frictions
+    ]
+    assert forces == [
+        (station, n) for station, n in enumerate((1125.0, 1250.0) * 2) for _ in "1234"
+    ]
+
+
+def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
+    """Reference: analytic. What friction takes never falls; sideways motion that nothing but
+    friction couples to the plane stays within what its load puts in."""
+    (joint,) = spatial_boom.joints
+    boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.3),)), 60.0, 40.0)
+    run = integrate(gap_system(boom, beams(boom), [LAW], [LATERAL_LAW]), 1.0)
+    loss = run.data["friction_loss"].values
+    assert loss[-1] > 0.05
+    assert np.diff(loss).min() >= -1e-9 * loss[-1]
+    assert run.energy_residual < 1e-3
+    assert np.abs(run.data["friction_force"].values).max() > 100.0
+
+
+def test_tied_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
+    """Reference: analytic. The flat tied boom's frequencies, those of the boom on its side, and
+    twisting ones beside them; no more rigid motions."""
+    boom = pushed(spatial_boom, 5.0, 6.0)
+    system = tied_system(boom, beams(boom))
+    assert (system.omega2 > 1.0).all()
+    assert not system.laws
+    joint = Joint(0, 1, (9.0, 10.0), 0.0, 1.0, 1.0, 1.0)
+    flat = Boom(boom.segments, (joint,))
+    side = Boom(tuple(s.turned() for s in boom.segments), (joint,))
+    bending = [tied_system(b, beams(b)).omega2 for b in (flat, side)]
+    for omega2 in np.concatenate(bending):
+        assert np.abs(system.omega2 / omega2 - 1.0).min() < 1e-9
+    assert system.num_modes == sum(b.size for b in bending) + 11 - 2 + 11 - 2

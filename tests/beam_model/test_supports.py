@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What holds a beam and what it carries: supports of every kind, masses, loads and stops."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.optimize import brentq
+
+from beam_model.component import Component, SegmentModel, natural_modes
+from beam_model.finite_element import finite_element_segment
+from beam_model.kantorovich import Base, kantorovich_bending
+from beam_model.segment_model import gap_system
+from dynamics.contact import PowerContact
+from dynamics.excitation import Step
+from dynamics.splitting import integrate
+from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
+from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies
+
+Array = npt.NDArray[np.float64]
+Beam = Callable[..., Segment]
+Models = Callable[..., list[SegmentModel]]
+
+pytestmark = pytest.mark.quick
+
+# βL (Blevins 1979).
+CLAMPED_PINNED = (3.926602312047919, 7.068582745628732, 10.210176122813031)
+CLAMPED_CLAMPED = (4.730040744862704, 7.853204624095838, 10.995607838001671)
+
+
+def elements(segment: Segment) -> Component:
+    return finite_element_segment(segment, 0.1, (), "euler-bernoulli", False).components["z"]
+
+
+def terms(segment: Segment) -> Component:
+    return kantorovich_bending(segment, 16, "complete", rotary_inertia=False)
+
+
+KINDS = pytest.mark.parametrize("model_of", [elements, terms])
+
+
+def frequencies(model: Component) -> Array:
+    """ω of the elastic modes in rad/s."""
+    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
+    return np.sqrt(modes.omega2[model.rigid_modes :])
+
+
+@KINDS
+@pytest.mark.parametrize(
+    ("supports", "numbers"),
+    [
+        ((Support(3.0, "clamped"),), CLAMPED_FREE),
+        ((Support(8.0, "clamped"),), CLAMPED_FREE),
+        ((Support(3.0, "clamped"), Support(8.0)), CLAMPED_PINNED),
+        ((Support(3.0, "clamped"), Support(8.0, "clamped")), CLAMPED_CLAMPED),
+    ],
+    ids=["at the start", "at the end", "and pinned", "at both ends"],
+)
+def test_clamped_supports(
+    beam: Beam,
+    model_of: Callable[[Segment], Component],
+    supports: tuple[Support, ...],
+    numbers: tuple[float, ...],
+) -> None:
+    """Reference: analytic βL."""
+    segment = beam(supports=supports)
+    model = model_of(segment)
+    assert model.rigid_modes == 0
+    expected = angular_frequencies(segment, numbers)
+    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=3e-6)
+
+
+def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
+    """ω of a cantilever whose end is held by ``hold(ω)`` in N/m: −ω² M for a mass, k for a spring.
+
+    1 + cos βL cosh βL = hold / (E J β³) · (cos βL sinh βL − sin βL cosh βL)
+    """
+    stiffness, length = segment.bending_stiffness, segment.length
+
+    def omega(beta: float) -> float:
+        return beta**2 * float(np.sqrt(stiffness / segment.mass_per_length))
+
+    def defect(number: float) -> float:
+        beta = number / length
+        cosine, sine = np.cos(number), np.sin(number)
+        # Both sides over cosh, which grows without bound.
+        turned = cosine * np.tanh(number) - sine
+        share = hold(omega(beta)) / (stiffness * beta**3)
+        return float(1.0 / np.cosh(number) + cosine - share * turned)
+
+    grid = np.linspace(0.1, 12.0, 400)
+    values = np.array([defect(number) for number in grid])
+    (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
+    roots = [brentq(defect, grid[k], grid[k + 1], xtol=1e-13) for k in changes]
+    return np.array([omega(root / length) for root in roots])
+
+
+@KINDS
+def test_a_spring_under_the_end_of_a_cantilever(
+    beam: Beam, model_of: Callable[[Segment], Component]
+) -> None:
+    """Reference: analytic, the transcendental equation of a clamped beam on an end spring."""
+    stiff = 2.0e7
+    segment = beam(supports=(Support(3.0, "clamped"), Support(8.0, stiffness=stiff)))
+    expected = tip_frequencies(segment, lambda omega: stiff)
+    # Neither free nor pinned there.
+    assert expected[0] > 1.2 * angular_frequencies(segment, CLAMPED_FREE)[0]
+    assert expected[0] < 0.8 * angular_frequencies(segment, CLAMPED_PINNED)[0]
+    np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected[:3], rtol=1e-6)
+
+
+@KINDS
+def test_a_mass_on_the_end_of_a_cantilever(
+    beam: Beam, model_of: Callable[[Segment], Component]
+) -> None:
+    """Reference: analytic, the same equation with −ω² M in place of the spring."""
+    mass = 900.0
+    segment = beam(supports=(Support(3.0, "clamped"),), masses=(PointMass(8.0, mass),))
+    expected = tip_frequencies(segment, lambda omega: -mass * omega**2)
+    assert expected[0] < 0.8 * angular_frequencies(segment, CLAMPED_FREE)[0]
+    np.testing.assert_allclose(frequencies(model_of(segment))[:3], expected[:3], rtol=1e-6)
+
+
+@KINDS
+def test_rest_on_two_springs(beam: Beam, model_of: Callable[[Segment], Component]) -> None:
+    """Reference: analytic. The beam on rigid supports, on the line between what springs give."""
+    soft, hard = 2.0e6, 7.0e6
+    segment = beam(supports=(Support(3.0, stiffness=soft), Support(6.0, stiffness=hard)))
+    model = model_of(segment)
+    assert model.rigid_modes == 0
+    load = 1.0e4 * model.at(8.0)
+    rest = np.linalg.solve(model.stiffness, load)
+    bent = OverhangingBeam(beam(supports=(3.0, 6.0)), [(8.0, 1.0e4)], 0.0)
+    at_soft, at_hard = -1.0e4 * 2.0 / 3.0 / soft, 1.0e4 * 5.0 / 3.0 / hard
+    for x in (3.0, 4.5, 6.0, 8.0):
+        given = at_soft + (at_hard - at_soft) * (x - 3.0) / 3.0
+        # Twelve powers reach the kink over the inner support to four digits.
+        assert model.at(x) @ rest == pytest.approx(bent.deflection(x) + given, rel=2e-4)
+
+
+def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
+    """Reference: analytic. About its spring the beam turns freely."""
+    segment = beam(supports=(Support(4.0, stiffness=1.0e6),))
+    for model in (elements(segment), terms(segment)):
+        assert model.rigid_modes == 1
+        modes = natural_modes(model.stiffness, model.mass, 1)
+        assert modes.omega2[1] > 100.0
+        shape = modes.shapes[:, 0]
+        turn = np.array([model.at(x) @ shape for x in (3.0, 4.0, 5.0, 8.0)])
+        np.testing.assert_allclose(turn / turn[0], [1.0, 0.0, -1.0, -4.0], atol=5e-5)
+
+
+def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
+    """Reference: other code, Hermite elements. A clamped, a pinned and an elastic support.
+
+    The reaction inside the span breaks the third derivative: order three in the terms.
+    """
+    supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
+    segment = beam(supports=supports)
+    fine = frequencies(elements(segment))[:3]
+    errors = []
+    for count in (8, 12, 24, 48):
+        model = kantorovich_bending(segment, count, "complete", rotary_inertia=False)
+        for x, order in ((3.0, 0), (3.0, 1), (5.0, 0)):
+            step = 1e-6 if order else 0.0
+            change = model.at(x + step) - order * model.at(x - step)
+            size = np.abs(model.at(6.5)).max()
+            assert np.abs(change).max() < 1e-7 * size
+        errors.append((frequencies(model)[:3] / fine - 1.0).max())
+    assert errors[0] < 7e-3
+    assert errors[3] < 4e-5
+    assert np.log2(errors[2] / errors[3]) == pytest.approx(3.0, abs=0.2)
+
+
+@pytest.mark.parametrize("base", ["as printed", "pinned"])
+@pytest.mark.parametrize(
+    "support", [Support(3.0, "clamped"), Support(3.0, stiffness=1.0e6)], ids=["clamped", "elastic"]
+)
+def test_the_printed_functions_know_pinned_supports_alone(
+    beam: Beam, base: Base, support: Support
+) -> None:
+    message = (
+        f"segment: 'beam' has clamped or elastic supports, for which the functions {base!r} have "
+        "no form; use base = 'complete'"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        kantorovich_bending(beam(supports=(support,)), 5, base, rotary_inertia=False)
+
+
+def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
+    """Reference: analytic. Uniform, it is the segment's own load; at a point, its deflection."""
+    loads = (
+        Load(1, "z", 55.07, None, Step()),
+        Load(0, "z", -2.0e3, 10.0, Step()),
+    )
+    system = gap_system(replace(paper_boom, loads=loads), elements(0.5), [paper_law])
+    uniform, point = system.excitations
+    own = np.where(system.observers["tip"].row != 0.0, system.load, 0.0)
+    np.testing.assert_allclose(uniform.load, own, atol=1e-12 * np.abs(own).max())
+    np.testing.assert_allclose(point.load, -2.0e3 * system.observers["head"].row)
+    assert uniform.history == Step()
+
+
+def test_a_stop_holds_the_tip_up(
+    paper_boom: Boom, elements: Models, paper_law: PowerContact
+) -> None:
+    """Reference: analytic. A stop under the tip pushes up, one above it down, or not at all."""
+    stop = Stop(1, 19.0, 5.0e-3, stiffness=0.0, stiffness_below=2.0e8, exponent=1.0)
+    boom = replace(paper_boom, stops=(stop,))
+    system = gap_system(boom, elements(0.5), [paper_law])
+    assert list(system.stations) == [9.0, 10.0, 19.0]
+    assert list(system.station_of_row) == [0, 1, 2]
+    np.testing.assert_array_equal(system.rows[2], system.observers["tip"].row)
+    law = system.laws[2]
+    assert law.force(np.array([-6.0e-3, -4.0e-3, 6.0e-3])) == pytest.approx([-2.0e5, 0.0, 0.0])
+    # The tip falls onto it and is thrown back: 55 kg/m by 1 m/s² in reverse.
+    falling = replace(system, load=-system.load)
+    run = integrate(falling, 0.3, energy_bound=1e-3)
+    assert run.data["tip"].min() < -5.0e-3
+    assert run.data["tip"].min() > -6.0e-3
+    assert run.data["contact_force"].sel(station=19.0).min() < -1.0e3
+    assert run.data["contact_force"].sel(station=19.0).max() == 0.0

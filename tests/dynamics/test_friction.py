@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Dry friction: exact rest, the right way to it, never more than μ N and never a gain of energy."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from scipy.integrate import solve_ivp
+
+from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, Sine
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.splitting import integrate
+
+pytestmark = pytest.mark.quick
+
+OneMass = Callable[..., GapSystem]
+Array = npt.NDArray[np.float64]
+
+
+def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = None) -> GapSystem:
+    """The system with friction on rows, its tip unless given, at one station."""
+    rows = system.observers["tip"].row.reshape(1, -1) if rows is None else rows
+    return replace(
+        system, friction_rows=rows, frictions=frictions, stations=[0.0],
+        station_directions=("z",),
+    )  # fmt: skip
+
+
+def modes(omega: Array, load: Array, rows: Array, limits: Array, **more: Any) -> GapSystem:
+    """Modes under load that friction rows with prescribed μ N couple."""
+    return GapSystem(
+        omega2=omega**2,
+        load=load,
+        rows=np.zeros((0, omega.size)),
+        laws=[],
+        station_of_row=np.zeros(0, dtype=np.int64),
+        stations=[0.0, 1.0],
+        observers={"first": Observer(np.eye(omega.size)[0])},
+        friction_rows=rows,
+        frictions=[DryFriction(0.25, j % 2, 4.0 * limit) for j, limit in enumerate(limits)],
+        **more,
+    )
+
+
+def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
+    """Reference: analytic. Each half cycle takes 2 μN/k from the amplitude, in the time π √(m/k),
+    until a turning point lies within μN/k; from there on nothing moves at all."""
+    mass, spring, limit = 2.0, 50.0, 3.0
+    system = rubbing(one_mass(mass, spring=spring), DryFriction(0.3, 0, limit / 0.3))
+    half = np.pi * np.sqrt(mass / spring)
+    stick = limit / spring
+    start = 9.4 * stick
+    run = integrate(
+        system, 8.0 * half, output_step=half / 100.0, position=np.array([start * np.sqrt(mass)])
+    )
+    tip = run.data["tip"].values
+    turns = np.array([(9.4 - 2.0 * k) * (-1) ** k * stick for k in range(6)])
+    np.testing.assert_allclose(tip[:501:100], turns, atol=1e-6 * start)
+    assert abs(turns[-1]) < stick
+    assert np.ptp(tip[501:]) <= 1e-16
+    lost = 0.5 * spring * (start**2 - tip[-1] ** 2)
+    assert float(run.data["friction_loss"][-1]) == pytest.approx(lost, rel=1e-12)
+    # At rest friction is what the spring is; sliding it is μ N against the motion.
+    force = run.data["friction_force"].values[:, 0]
+    assert force[-1] == pytest.approx(spring * tip[-1], rel=1e-9)
+    assert force[1:100] == pytest.approx(limit, rel=1e-12)
+    assert force[101:200] == pytest.approx(-limit, rel=1e-12)
+    assert run.energy_residual < 1e-13
+
+
+def test_a_force_below_the_limit_moves_nothing(one_mass: OneMass) -> None:
+    """Reference: analytic. Sliding sets in beyond μ N, at (F − μ N)/m, and not before."""
+    for force in (4.999, -4.999, 5.001):
+        system = rubbing(one_mass(2.0, force=force), DryFriction(0.5, 0, 10.0))
+        run = integrate(system, 1.0, output_step=0.1, step=0.01)
+        moved = max(0.0, abs(force) - 5.0) / 2.0 * run.time**2 / 2.0
+        np.testing.assert_allclose(run.data["tip"], moved, rtol=1e-12, atol=1e-17)
+
+
+class Stretch:
+    """Motion of a system while the same rows slide, ``sign`` ±1, or rest, 0."""
+
+    def __init__(self, system: GapSystem, limits: Array, sign: Array) -> None:
+        self.system, self.limits, self.sign = system, limits, sign
+        self.held = np.flatnonzero(sign == 0.0)
+
+    def forces(self, state: Array) -> Array:
+        """On all rows; on those at rest what keeps them there."""
+        n, rows = self.system.num_modes, self.system.friction_rows
+        forces = -self.limits * self.sign
+        free = self.system.load - self.system.omega2 * state[:n] + rows.T @ forces
+        rest = rows[self.held]
+        forces[self.held] = -np.linalg.solve(rest @ rest.T, rest @ free)
+        return np.asarray(forces)
+
+    def rate(self, _: float, state: Array) -> Array:
+        system, n = self.system, self.system.num_modes
+        pull = system.load - system.omega2 * state[:n]
+        return np.concatenate([state[n:], pull + system.friction_rows.T @ self.forces(state)])
+
+    def event(self, j: int) -> Callable[[float, Array], float]:
+        """Falls through zero when row j comes to rest, or cannot be held any longer."""
+
+        def room(_: float, state: Array) -> float:
+            if self.sign[j] == 0.0:
+                return float(self.limits[j] - abs(self.forces(state)[j]))
+            speed = self.system.friction_rows[j] @ state[self.system.num_modes :]
+            return float(self.sign[j] * speed)
+
+        room.terminal, room.direction = True, -1.0  # type: ignore[attr-defined]
+        return room
+
+
+def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: Array) -> Array:
+    """(num_times, num_modes) from scipy's DOP853, stopped where a row comes to rest or sets out."""
+    n = system.num_modes
+    state = np.concatenate([np.zeros(n), velocity])
+    sign = np.sign(system.friction_rows @ velocity)
+    now, out = times[0], [state[:n]]
+    while now < times[-1]:
+        stretch = Stretch(system, limits, sign)
+        held = np.abs(stretch.forces(state)) / limits
+        if (held[stretch.held] > 1.0).any():
+            j = stretch.held[held[stretch.held].argmax()]
+            sign[j] = -np.sign(stretch.forces(state)[j])
+            continue
+        part = solve_ivp(
+            stretch.rate, (now, times[-1]), state, "DOP853", rtol=1e-11, atol=1e-13,
+            events=[stretch.event(j) for j in range(limits.size)], dense_output=True,
+        )  # fmt: skip
+        inside = times[(times > now) & (times <= part.t[-1])]
+        out.extend(part.sol(inside).T[:, :n] if inside.size else [])
+        now, state = part.t[-1], part.y[:, -1]
+        for j, at in enumerate(part.t_events):
+            if at.size:
+                force = stretch.forces(state)[j]
+                sign[j] = 0.0 if stretch.sign[j] != 0.0 else -np.sign(force)
+        sign = sign.copy()
+    return np.array(out)
+
+
+COUPLED = modes(
+    omega=np.array([1.3, 2.9, 7.1]),
+    load=np.array([0.9, 0.4, 2.0]),
+    rows=np.array([[0.8, 0.5, -0.3], [0.5, -0.6, 0.4]]),
+    limits=np.array([0.525, 0.375]),
+)
+LIMITS = np.array([0.525, 0.375])
+THROWN = np.array([1.0, 0.3, -0.5])
+
+
+def test_two_coupled_rows_against_located_events() -> None:
+    """Reference: other code, scipy's DOP853 from event to event. Slope 2, and the error itself."""
+    times = np.linspace(0.0, 12.0, 121)
+    expected = motion_by_events(COUPLED, LIMITS, THROWN, times)
+    slips = np.diff(expected @ COUPLED.friction_rows.T, axis=0)
+    # The motion has it all: sliding both ways, and rest.
+    for kind in (slips > 1e-3, slips < -1e-3, np.abs(slips) < 1e-9):
+        assert (kind.sum(axis=0) > 10).all()
+    errors = []
+    for step in 0.05 / 2.0 ** np.arange(7):
+        run = integrate(COUPLED, 12.0, output_step=0.1, step=step, velocity=THROWN)
+        errors.append(np.abs(run.states - expected).max() / np.abs(expected).max())
+        assert run.energy_residual < 1e-12
+    # Where in its step a row comes to rest or sets out is a matter of chance, so single halvings
+    # vary; all six together do not.
+    assert np.log2(errors[0] / errors[-1]) / 6.0 == pytest.approx(2.0, abs=0.2)
+    assert errors[-1] < 1e-6
+
+
+def test_friction_never_exceeds_its_limit_nor_gives_energy() -> None:
+    run = integrate(COUPLED, 20.0, output_step=1e-3, step=1e-3, velocity=THROWN)
+    force = np.abs(run.data["friction_force"].values)
+    assert (force <= LIMITS * (1.0 + 1e-12)).all()
+    assert (force.max(axis=0) > 0.999 * LIMITS).all()
+    loss = np.diff(run.data["friction_loss"].values)
+    assert loss.min() >= -1e-15
+    assert float(run.data["friction_loss"][-1]) > 0.5
+
+
+def test_what_sticks_does_not_creep() -> None:
+    """100 000 steps of shaken modes, of which friction holds two places to the last digits."""
+    generator = np.random.default_rng(4)
+    rows = generator.normal(size=(2, 8))
+    system = modes(
+        omega=np.concatenate([[0.0], np.linspace(2.0, 60.0, 7)]),
+        load=generator.normal(size=8),
+        rows=rows,
+        limits=np.array([60.0, 60.0]),
+        excitations=[Excitation(generator.normal(size=8), Sine(1.7))],
+        damping=np.linspace(0.0, 0.3, 8),
+    )
+    run = integrate(system, 10.0, output_step=0.01, step=1e-4)
+    assert run.data.attrs["steps"] == 100_000
+    assert np.ptp(run.data["first"].values) > 0.05
+    assert np.abs(run.states @ rows.T).max() < 1e-15
+    assert np.abs(run.data["friction_force"].values).max() < 50.0
+    assert float(run.data["friction_loss"][-1]) < 1e-8 * float(run.data["work"][-1])
+
+
+def test_rows_that_say_the_same_share_the_force() -> None:
+    """Reference: other code path. Three rows in a plane, one of them doubled with half the limit,
+    move as if each were there once; what can be said of the forces alone is their sum."""
+    row = COUPLED.friction_rows
+    once = modes(np.sqrt(COUPLED.omega2), COUPLED.load, row, LIMITS)
+    twice = modes(
+        np.sqrt(COUPLED.omega2),
+        COUPLED.load,
+        row[[0, 1, 0, 1]],
+        np.array([0.5, 0.3, 0.5, 0.7]) * LIMITS[[0, 1, 0, 1]],
+    )
+    one, two = (
+        integrate(system, 12.0, output_step=0.01, velocity=THROWN) for system in (once, twice)
+    )
+    np.testing.assert_allclose(two.states, one.states, atol=1e-9)
+    np.testing.assert_allclose(two.data["friction_force"], one.data["friction_force"], atol=1e-6)
+    assert two.energy_residual < 1e-12
+
+
+def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.0e6) -> GapSystem:
+    """2 kg that can slide (mode 0) on a floor that it is pressed to (mode 1) by 2 kg · 10 m/s²."""
+    root = np.sqrt(2.0)
+    return GapSystem(
+        omega2=np.zeros(2),
+        load=np.array([0.0, -10.0 * root]),
+        rows=np.array([[0.0, 1.0 / root]]),
+        laws=[PowerContact(stiffness, 1.0, 0.0).lower()],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"way": Observer(np.array([1.0 / root, 0.0]))},
+        friction_rows=np.array([[1.0 / root, 0.0]]),
+        frictions=[friction],
+    )
+
+
+def test_a_sled_stops_where_its_weight_stops_it() -> None:
+    """Reference: analytic. Pressed by its weight alone, v²/(2 μ g) far; with a prescribed normal
+    force beside it, v²/(2 μ (g + N/m))."""
+    rest = np.array([0.0, -20.0 / 1.0e6 * np.sqrt(2.0)])
+    for extra in (0.0, 8.0):
+        system = sled(3.0, 0.0, DryFriction(0.5, 0, extra, (0,)))
+        velocity = np.array([3.0 * np.sqrt(2.0), 0.0])
+        run = integrate(system, 1.0, output_step=0.01, step=1e-3, position=rest, velocity=velocity)
+        slowing = 0.5 * (10.0 + extra / 2.0)
+        way = run.data["way"].values
+        assert way[-1] == pytest.approx(9.0 / (2.0 * slowing), rel=1e-9)
+        assert np.ptp(way[run.time > 3.0 / slowing + 0.01]) == 0.0
+        assert float(run.data["friction_loss"][-1]) == pytest.approx(9.0, rel=1e-9)
+        assert float(run.data["friction_force"][10, 0]) == pytest.approx(-2.0 * slowing, rel=1e-9)
+
+
+def test_a_bounce_takes_its_impulse_times_friction() -> None:
+    """Reference: analytic. The floor pushes by 2 m u from below, and μ times that from the side."""
+    system = replace(sled(3.0, 1.0, DryFriction(0.3, 0, 0.0, (0,))), load=np.zeros(2))
+    start, velocity = np.array([0.0, 0.1]), np.array([3.0, -1.0]) * np.sqrt(2.0)
+    errors = []
+    for step in (2e-5, 1e-5):
+        run = integrate(system, 0.2, output_step=0.01, step=step, position=start, velocity=velocity)
+        speed = float(np.diff(run.data["way"].values)[-1]) / 0.01
+        errors.append(abs(speed - (3.0 - 0.3 * 2.0)))
+        assert run.data.attrs["contact_changes"] == 2
+        loss = 0.5 * 2.0 * (9.0 - 2.4**2)
+        assert float(run.data["friction_loss"][-1]) == pytest.approx(loss, rel=1e-4)
+    assert max(errors) < 1e-4
+    impulse = 0.01 * float(run.data["friction_force"].sum())
+    assert impulse == pytest.approx(-0.3 * 0.01 * float(np.abs(run.data["contact_force"]).sum()))
+
+
+def test_contact_and_friction_on_one_row_share_one_ledger(one_mass: OneMass) -> None:
+    """A loaded mass that rubs while it knocks at its stop until it is still."""
+    stop = PowerContact(stiffness=1.0e5, exponent=1.5, clearance=0.02)
+    system = rubbing(one_mass(4.0, stop, spring=100.0, force=30.0), DryFriction(0.2, 0, 20.0))
+    run = integrate(system, 3.0, output_step=0.01)
+    assert run.data.attrs["contact_changes"] > 4
+    assert np.diff(run.data["friction_loss"].values).min() >= 0.0
+    assert run.energy_residual < 1e-4
+    assert np.ptp(run.data["tip"].values[-50:]) < 1e-16
+
+
+def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
+    """Reference: the same system without rows. μ = 0 changes nothing but round-off."""
+    plain = one_mass(4.0, PowerContact(1.0e4, 1.0, 0.05), spring=100.0, force=30.0)
+    one, two = (
+        integrate(system, 2.0, output_step=0.01, step=1e-4)
+        for system in (plain, rubbing(plain, DryFriction(0.0, 0, 1e3)))
+    )
+    np.testing.assert_allclose(two.data["tip"], one.data["tip"], atol=1e-12)
+    assert not two.data["friction_loss"].values.any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"coefficient": -0.1}, "coefficient must be finite, not negative, got -0.1"),
+        ({"coefficient": float("nan")}, "coefficient must be finite, not negative, got nan"),
+        ({"normal_force": -1.0}, "normal_force must be finite, not negative, got -1.0 N"),
+        ({"normal_force": float("inf")}, "normal_force must be finite, not negative, got inf N"),
+    ],
+)
+def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        DryFriction(**{"coefficient": 0.2, "station": 0, **arguments})  # type: ignore[arg-type]

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Contact damping gives the restitution that it was chosen for, and never pulls."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact, restitution_damping
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.splitting import integrate
+
+pytestmark = pytest.mark.quick
+
+OneMass = Callable[..., GapSystem]
+
+
+@pytest.mark.parametrize("restitution", [0.05, 0.3, 0.8, 0.99, 0.99999, 1.0 - 1e-12])
+def test_damping_of_a_restitution(restitution: float) -> None:
+    """Reference: analytic, (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d, and d = 3(1 − e)/(2 v) close to
+    e = 1 (Hunt and Crossley 1975)."""
+    speed = 1.7
+    damping = restitution_damping(restitution, speed)
+    x = damping * speed
+    assert 0.0 < x < 1.0 / restitution
+    left, right = (1.0 + restitution) * x, np.log1p(x) - np.log1p(-restitution * x)
+    assert left == pytest.approx(right, rel=1e-9 if restitution > 0.1 else 1e-6)
+    if restitution > 0.999:
+        assert x == pytest.approx(1.5 * (1.0 - restitution), rel=1.1 * (1.0 - restitution) + 1e-4)
+
+
+def test_a_full_rebound_needs_no_damping_and_speed_divides_it() -> None:
+    assert restitution_damping(1.0, 3.0) == 0.0
+    assert restitution_damping(0.6, 2.0) == pytest.approx(restitution_damping(0.6, 1.0) / 2.0)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("restitution", [0.3, 0.8])
+def test_a_mass_rebounds_as_it_should(
+    one_mass: OneMass, exponent: float, restitution: float
+) -> None:
+    """Reference: analytic, the same e for every exponent. The error falls with the step."""
+    mass, speed = 3.0, 2.0
+    damping = restitution_damping(restitution, speed)
+    stiffness = {1.0: 1.0e6, 1.5: 1.0e8, 2.0: 1.0e9}[exponent]
+    stop = PowerContact(stiffness, exponent, clearance=0.01, damping=damping).upper()
+    errors = []
+    for step in (4.0e-5, 1.0e-5):
+        run = integrate(
+            one_mass(mass, stop), 0.05, output_step=1.0e-3, step=step,
+            velocity=np.array([speed * np.sqrt(mass)]),
+        )  # fmt: skip
+        assert run.data.attrs["contact_changes"] == 2
+        after = float(np.diff(run.data["tip"].values)[-1]) / -1.0e-3
+        errors.append(abs(after / speed - restitution))
+        lost = 0.5 * mass * speed**2 * (1.0 - restitution**2)
+        assert float(run.data["contact_loss"][-1]) == pytest.approx(lost, rel=1e-3)
+        assert np.diff(run.data["contact_loss"].values).min() >= -1e-12
+        assert float(run.data["contact_force"].min()) >= 0.0
+        assert run.energy_residual < 2e-4
+    assert errors[0] < 1e-4
+    assert errors[1] < max(errors[0] / 8.0, 1e-8)
+
+
+def test_contact_never_pulls(one_mass: OneMass) -> None:
+    """A load tears a mass off a stop faster than 1/d: the contact lets go, and what it still
+    stored is lost."""
+    stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.0, damping=5.0).upper()
+    system = one_mass(1.0, stop, force=-2.0e3)
+    run = integrate(system, 0.05, output_step=1e-4, position=np.array([0.1]))
+    force = run.data["contact_force"].values
+    assert force.min() >= 0.0
+    tip = run.data["tip"].values
+    assert (force[1:, 0][(tip[1:] > 0.01) & (tip[1:] < 0.09)] == 0.0).any()
+    assert float(run.data["contact_loss"][-1]) > 0.5 * 0.5 * 1.0e4 * 0.1**2
+    assert run.energy_residual < 1e-3
+
+
+def test_no_damping_is_no_damping(one_mass: OneMass) -> None:
+    """Reference: the same system without. The compiled path is another, the motion is not."""
+    stop = PowerContact(stiffness=1.0e5, exponent=1.5, clearance=0.02)
+    plain = one_mass(2.0, stop, spring=50.0, force=10.0)
+    # A damped law on the side that is never touched takes the other path.
+    other = replace(
+        plain,
+        rows=np.repeat(plain.rows, 2, axis=0),
+        laws=[stop, PowerContact(1.0, 1.0, 1.0e3, damping=1.0)],
+        station_of_row=np.zeros(2, dtype=np.int64),
+    )
+    one, two = (integrate(s, 1.0, output_step=0.01, step=2e-5) for s in (plain, other))
+    assert one.data.attrs["contact_changes"] == two.data.attrs["contact_changes"] >= 2
+    np.testing.assert_allclose(two.data["tip"], one.data["tip"], atol=1e-11)
+    assert not two.data["contact_loss"].values.any()
+
+
+def test_rows_that_press_together_lose_energy_together() -> None:
+    """Two damped rows of two modes: never a gain, and a ledger of second order in the step."""
+    law = PowerContact(stiffness=2.0e5, exponent=1.5, clearance=0.01, damping=0.4)
+    system = GapSystem(
+        omega2=np.array([30.0, 400.0]),
+        load=np.array([2.0, 5.0]),
+        rows=np.array([[1.0, 0.6], [0.4, -0.7]]),
+        laws=[law, law],
+        station_of_row=np.array([0, 1]),
+        stations=[0.0, 1.0],
+        observers={"first": Observer(np.array([1.0, 0.0]))},
+    )
+    residuals = []
+    for step in (4.0e-5, 2.0e-5, 1.0e-5):
+        run = integrate(system, 1.0, output_step=2e-3, step=step)
+        assert np.diff(run.data["contact_loss"].values).min() >= -1e-15
+        residuals.append(run.energy_residual)
+    assert run.data.attrs["contact_changes"] >= 8
+    assert float(run.data["contact_loss"][-1]) > 0.05 * float(run.data["work"].max())
+    assert np.log2(residuals[0] / residuals[2]) / 2.0 == pytest.approx(2.0, abs=0.5)
+    assert residuals[-1] < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("restitution", "speed", "message"),
+    [
+        (0.0, 1.0, "restitution must be above 0 and at most 1, got 0.0"),
+        (1.1, 1.0, "restitution must be above 0 and at most 1, got 1.1"),
+        (0.5, 0.0, "speed must be finite and positive, got 0.0 m/s"),
+        (0.5, float("inf"), "speed must be finite and positive, got inf m/s"),
+    ],
+)
+def test_refuses_what_has_no_meaning(restitution: float, speed: float, message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        restitution_damping(restitution, speed)

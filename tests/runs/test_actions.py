@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What acts on a boom, from the case file to the motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.excitation import Ramp, Sine, Step, Table
+from runs import case as case_file
+from runs.bad_input import BadInput
+from runs.build import build_boom
+from runs.pipeline import run_case
+from runs.results import Results
+
+pytestmark = pytest.mark.quick
+
+CANTILEVER = """
+title = "One segment"
+
+[time]
+duration = 2.0
+output_step = 1e-3
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[[segment]]
+name = "beam"
+span = [0.0, 10.0]
+supports = [{ x = 0.0, kind = "clamped" }]
+mass_per_length = 83.16
+second_moment_of_area = 3.7986e-4
+rotary_inertia = 0.0
+"""
+
+ELEMENTS = """
+[[model]]
+name = "beam-fe"
+kind = "finite-element"
+element_length = 1.0
+"""
+
+BENDING = 2.1e11 * 3.7986e-4
+# βL of a cantilever's first mode.
+FIRST = (1.875104069 / 10.0) ** 2 * np.sqrt(BENDING / 83.16)
+
+
+def run(folder: Path, text: str) -> Results:
+    """Results of the cantilever with what ``text`` says besides."""
+    path = folder / "case.toml"
+    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
+    finished = run_case(case_file.load(str(path)), "", None, folder, lambda *_: None)
+    assert finished is not None
+    return finished.results
+
+
+def tip(folder: Path, text: str) -> np.ndarray:
+    return np.asarray(run(folder, text).trajectories["tip"].values[0])
+
+
+def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
+    """Reference: analytic, P L³ / 3 E J, under a load that has acted for ever and goes on."""
+    text = """
+    [start]
+    state = "equilibrium"
+    [[load]]
+    segment = "beam"
+    x = 10.0
+    magnitude = -500.0
+    """
+    moved = tip(tmp_path, text)
+    assert moved == pytest.approx(np.full(moved.size, -500.0 * 10.0**3 / (3.0 * BENDING)), rel=1e-6)
+
+
+def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
+    """Reference: analytic. It starts where the load held it, and swings about zero."""
+    text = """
+    [[load]]
+    segment = "beam"
+    x = 10.0
+    magnitude = -500.0
+    released = true
+    """
+    moved = tip(tmp_path, text)
+    held = -500.0 * 10.0**3 / (3.0 * BENDING)
+    assert moved[0] == pytest.approx(held, rel=1e-6)
+    time = np.arange(moved.size) / 1000
+    # 97 % of the deflection is in the first mode; the others may be against it.
+    assert moved == pytest.approx(held * np.cos(FIRST * time), abs=0.06 * abs(held))
+
+
+def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
+    """Reference: analytic. A mass far above the beam's own swings at √(3 E J / m L³) about the
+    deflection of its weight.
+    """
+    moved = tip(tmp_path, "[payload]\nmass = 2e4\n")
+    static = -2.0e4 * 9.80665 * 10.0**3 / (3.0 * BENDING)
+    # A beam's mass adds 33/140 of itself to the tip (Rayleigh).
+    omega = np.sqrt(3.0 * BENDING / ((2.0e4 + 33.0 / 140.0 * 831.6) * 10.0**3))
+    time = np.arange(moved.size) / 1000
+    assert moved == pytest.approx(static * (1.0 - np.cos(omega * time)), abs=0.01 * abs(static))
+
+
+def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> None:
+    """Reference: the same loads given one by one."""
+    given = """
+    [[load]]
+    segment = "beam"
+    magnitude = 83.16
+    frequency = 0.7
+    [[load]]
+    segment = "beam"
+    x = 10.0
+    magnitude = 300.0
+    frequency = 0.7
+    [payload]
+    mass = 300.0
+    gravity = 0.0
+    """
+    shaken = """
+    [[base]]
+    acceleration = -1.0
+    frequency = 0.7
+    [payload]
+    mass = 300.0
+    gravity = 0.0
+    """
+    expected, found = tip(tmp_path, given), tip(tmp_path, shaken)
+    assert found == pytest.approx(expected, abs=1e-9 * np.ptp(expected))
+
+
+def test_a_thrown_segment_has_the_momentum_of_its_speed(tmp_path: Path) -> None:
+    """Reference: analytic. What the support leaves of ½ m v² is the modes' share of the momentum,
+    nearly all of it for a fine beam, which holds still at one point alone.
+    """
+    results = run(tmp_path, "[start]\nvelocity = { beam = 0.1 }\n")
+    kinetic = float(results.trajectories["kinetic_energy"].values[0, 0])
+    whole = 0.5 * 831.6 * 0.1**2
+    assert 0.9 * whole < kinetic < whole
+
+
+def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
+    """Reference: analytic. From rest a mode of ratio ζ swings as e^(−ζ ω t) (cos ω' t +
+    ζ ω / ω' sin ω' t) with ω' = √(1 − ζ²) ω.
+    """
+    text = """
+    [damping]
+    modal = 0.05
+    [[load]]
+    segment = "beam"
+    x = 10.0
+    magnitude = -500.0
+    released = true
+    """
+    moved = tip(tmp_path, text)
+    time = np.arange(moved.size) / 1000
+    slower = np.sqrt(1.0 - 0.05**2) * FIRST
+    swings = np.cos(slower * time) + 0.05 * FIRST / slower * np.sin(slower * time)
+    expected = moved[0] * np.exp(-0.05 * FIRST * time) * swings
+    assert moved == pytest.approx(expected, abs=0.06 * abs(moved[0]))
+
+
+def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
+    (tmp_path / "gust.csv").write_text("0, 0\n0.5, 1\n2, -0.25\n", encoding="utf-8")
+    text = "".join(
+        f'[[load]]\nsegment = "beam"\nmagnitude = 1.0\n{history}\n'
+        for history in (
+            "",
+            "ramp = 0.3",
+            "frequency = 2.0",
+            "table = [[0.0, 1.0], [1.0, 2.0]]",
+            'file = "gust.csv"',
+        )
+    )
+    path = tmp_path / "case.toml"
+    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
+    histories = [load.history for load in build_boom(case_file.load(str(path))).loads]
+    assert histories == [
+        Step(),
+        Ramp(0.3),
+        Sine(2.0),
+        Table((0.0, 1.0), (1.0, 2.0)),
+        Table((0.0, 0.5, 2.0), (0.0, 1.0, -0.25)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            '[[load]]\nsegment = "bean"\nmagnitude = 1.0',
+            "load[1].segment: 'bean' is no segment; give 'beam'",
+        ),
+        (
+            '[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nfrequency = 1.0',
+            "load[1].frequency: ramp is given; leave one of them out",
+        ),
+        (
+            "[[base]]\nacceleration = 1.0\ntable = [[0.0, 1.0], [0.0, 2.0]]",
+            "base[1].table: times must rise",
+        ),
+        (
+            '[[base]]\nacceleration = 1.0\nfile = "none.csv"',
+            "base[1].file: 'none.csv' cannot be read (None); give a CSV file of two columns, time "
+            "in s and factor",
+        ),
+        (
+            '[[base]]\nacceleration = 1.0\nfile = "words.csv"',
+            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns, "
+            "time in s and factor",
+        ),
+        (
+            '[[base]]\nacceleration = 1.0\nfile = "three.csv"',
+            "base[1].file: 'three.csv' has other columns; give a CSV file of two columns, time in "
+            "s and factor",
+        ),
+        (
+            "[start]\nvelocity = { fly = 1.0 }",
+            "start.velocity: 'fly' is no segment; give 'beam'",
+        ),
+        (
+            "[start]\nvelocity = { beam = true }",
+            "start.velocity.beam: must be a number, got true",
+        ),
+        (
+            "[payload]\nmass = -1.0",
+            "payload.mass: must be a number greater than 0, got -1.0",
+        ),
+    ],
+)
+def test_says_what_cannot_act(tmp_path: Path, text: str, line: str) -> None:
+    (tmp_path / "words.csv").write_text("time, factor\n", encoding="utf-8")
+    (tmp_path / "three.csv").write_text("0, 1, 2\n", encoding="utf-8")
+    path = tmp_path / "case.toml"
+    path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
+    with pytest.raises(BadInput) as caught:
+        case_file.load(str(path))
+    assert str(caught.value) == f"{path}: {line}"

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The tables of what can be known hold the summary's numbers, and nothing where it has none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+from dynamics.comparison import Distributions, PeakDifferences, Pointwise
+from runs import case as case_file
+from runs.knowledge import compared_tables, known_tables
+from runs.model_tables import law_table, model_table, step_table
+from runs.results import Results
+from runs.tables import TextTable
+
+pytestmark = pytest.mark.quick
+
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")
+
+
+def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
+    """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
+    case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
+    joints = tuple(joint.model_copy(update={"friction": friction}) for joint in case.joints)
+    time = case.time.model_copy(update={"duration": 10.0})
+    model = {
+        "kind": "kantorovich",
+        "degrees_of_freedom": 4,
+        "modes": 4,
+        "step": 4.2e-6,
+        "steps": 2_380_952,
+        "contact_changes": 2020,
+        "first_contact": 0.11856,
+        "first_peak": {"tip": [0.554, 0.16888]},
+        "peak_contact_force": 441_005.9,
+        "energy_residual": 5.6e-5,
+        "seconds": {"build": 0.1, "motion": 0.2},
+    }
+    models = {name: dict(model) for name in MODELS}
+    models["kantorovich-4"] |= changes
+    summary = {
+        "models": models,
+        "ensemble": {"members": 32, "relative": 1e-9, "vary": "load", "slow_below": 1.67},
+        "comparisons": comparisons,
+    }
+    case = case.model_copy(update={"time": time, "joints": joints})
+    return Results(case, xr.Dataset(), summary, [])
+
+
+ENSEMBLE = {
+    "horizons": {"0.01": 0.802, "0.2": None},
+    "slow_peaks": {
+        "time": [0.5469, 1.5906],
+        "time_spread": [0.001, 0.022],
+        "height": [0.1522, 0.14691],
+        "height_spread": [0.00019, 0.0068],
+        "period": 1.0437,
+        "period_spread": 0.021,
+    },
+}
+LEVELS = {
+    "pointwise": {"until": 0.802, "largest": 0.1829, "rms": 0.0793},
+    "peaks": {
+        "time": [-0.026, 0.004],
+        "time_spread": [0.001, 0.024],
+        "height": [-0.01542, 0.001],
+        "height_spread": [0.00023, 0.0075],
+        "explained": [False, True],
+    },
+    "distributions": {
+        "since": 4.643,
+        "range": [0.1681, 0.1757],
+        "mean": [0.0995, 0.0807],
+        "deviation": [0.0478, 0.04],
+        "distance": 0.199,
+    },
+}
+MEASURED = {
+    "relatives": [1e-12, 1e-6],
+    "shares": [0.01, 0.2],
+    "times": [[1.5, 6.0], [1.0, None]],
+    "of_step": [1.2, None],
+    "rate": [27.63, None],
+    "limits": ["step", "physics"],
+}
+
+
+def test_nothing_is_known_of_a_run_without_ensembles() -> None:
+    assert known_tables(results()) == []
+    assert compared_tables(results()) == []
+    assert not any("horizon" in heading for heading in model_table(results()).headings)
+
+
+def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
+    found = results(ensemble=ENSEMBLE)
+    horizons, peaks = known_tables(found)
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "2", "1.044 ± 0.021")]
+    assert "32 members, loads changed by up to 1 × 10⁻⁹" in horizons.notes[0]
+    assert peaks.headings == ("peak", "kantorovich-4")
+    assert peaks.rows == [
+        ("1", "0.547 ± 0.001 s\n152.20 ± 0.19 mm"),
+        ("2", "1.591 ± 0.022 s\n146.91 ± 6.80 mm"),
+    ]
+    table = model_table(found)
+    at = table.headings.index("horizon 1 %\ns")
+    assert [row[at : at + 2] for row in table.rows] == [("0.80", "> 10"), ("–", "–"), ("–", "–")]
+
+
+def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
+    (horizons,) = known_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
+
+
+def test_growth_says_what_limits() -> None:
+    _, growth, _ = known_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
+    assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
+    assert growth.rows == [
+        ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),
+        ("kantorovich-4", "20 %", "6.00", "–", "–", "–", "the motion"),
+    ]
+
+
+def test_each_level_says_what_it_decides() -> None:
+    """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
+    ensembles = {"kantorovich-4": LEVELS}
+    tables = compared_tables(results({"reference": "shell", "ensembles": ensembles}))
+    for table, level in zip(tables, (Pointwise, PeakDifferences, Distributions), strict=True):
+        assert level.decides in table.notes
+        assert "against shell" in table.title
+    pointwise, peaks, distributions = (table.rows for table in tables)
+    assert pointwise == [("kantorovich-4", "0.80", "18.29", "7.93")]
+    assert peaks == [
+        ("1", "−26 ± 1 ms\n−15.42 ± 0.23 mm *"),
+        ("2", "+4 ± 24 ms\n+1.00 ± 7.50 mm"),
+    ]
+    assert distributions == [
+        ("kantorovich-4", "4.64", "175.7 / 168.1", "80.7 / 99.5", "40.0 / 47.8", "0.199")
+    ]
+
+
+def test_a_whole_run_is_compared_with_friction() -> None:
+    whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
+    (table,) = compared_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
+    assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
+    assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
+    assert table.statements == ("S7",)
+
+
+def statements(table: TextTable | None) -> tuple[str, ...]:
+    assert table is not None
+    return tuple(table.statements)
+
+
+def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
+    plain = step_table(results())
+    assert plain.rows[0] == ("kantorovich-4", "4.2", "2\N{NO-BREAK SPACE}380\N{NO-BREAK SPACE}952",
+                             "2\N{NO-BREAK SPACE}020")  # fmt: skip
+    assert statements(plain) == ("S10",)
+    assert statements(step_table(results(friction=0.2))) == ("S8", "S10")
+    needed = {"peaks": 3, "within": 0.01, "fewest": 1500}
+    more = step_table(results(steps_for_peaks=needed, step_halving=0.0123))
+    assert [row[-2:] for row in more.rows] == [
+        ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
+    ]  # fmt: skip
+    assert "the first 3 of them within 1 %" in " ".join(more.notes)
+
+
+def test_contact_laws_are_those_of_the_models() -> None:
+    table = law_table(results())
+    assert table is not None
+    assert table.rows == [
+        (name, "inner in outer", "7.0", "1 × 10¹³", "1 × 10¹³", "2", "168.9") for name in MODELS[:2]
+    ]
+    assert statements(table) == ("S9",)
+    free = results()
+    tied = free.case.model_copy(update={"joints": ()})
+    assert law_table(Results(tied, free.trajectories, free.summary, [])) is None

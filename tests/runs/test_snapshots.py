@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A snapshot's caption says when it is, what is coloured, and whose it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from runs import case as case_file
+from runs.results import Results
+from runs.snapshots import describe
+
+pytestmark = pytest.mark.quick
+
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+TIME = np.arange(1001) / 1000
+
+
+def results(*shells: str) -> Results:
+    """Shells whose tips swing once a second by 100 mm, and touch at 0.25 s with 2 kN."""
+    case = case_file.select(case_file.load(str(COARSE)), "", ["shell"], None)
+    models = tuple(case.models[0].model_copy(update={"name": name}) for name in shells)
+    force = np.zeros((len(shells), TIME.size, 1))
+    force[:, 250] = 2000.0
+    tips = np.tile(0.05 * (1.0 - np.cos(2.0 * np.pi * TIME)), (len(shells), 1))
+    trajectories = xr.Dataset(
+        {
+            "tip": (("model", "time"), tips),
+            "contact_force_peak": (("model", "time", "station"), force),
+        },
+        coords={"model": list(shells), "time": TIME, "station": [9.0]},
+    )
+    return Results(case.model_copy(update={"models": models}), trajectories, {}, [])
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "seen"),
+    [
+        ("boom-first-peak.png", "Boom: first peak of the tip at 0.500 s", "tip at +100.0 mm"),
+        ("boom-largest-force.png", "Boom: largest contact force at 0.250 s", "Colour: deflection"),
+        ("boom-0.25s.png", "Boom: 0.250 s", "tip at +50.0 mm"),
+        ("overlap-first-contact.png", "Overlap: first contact at 0.250 s", "cut open"),
+        ("overlap-2-1s.png", "Overlap of joint 2: 1.000 s", "Blue: outer segment"),
+        ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: at rest"),
+        ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),
+    ],
+)
+def test_a_caption_says_what_is_seen(name: str, title: str, seen: str) -> None:
+    """Reference: analytic, a tip of 50 mm (1 − cos 2πt)."""
+    figure = describe(results("shell"), Path(name))
+    assert figure.title == title
+    assert seen in figure.caption
+    assert "'shell'" in figure.caption
+    assert "magnifi" in figure.caption
+
+
+def test_of_several_shells_the_right_one_is_named() -> None:
+    both = results("shell", "shell-fine")
+    for name in ("shell", "shell-fine"):
+        assert f"{name!r}" in describe(both, Path(f"{name}-boom-first-peak.png")).caption
+        assert f"{name!r}" in describe(both, Path(f"{name}-motion.gif")).caption

@@ -1,0 +1,413 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sweep is what single runs of its points are, and runs no point twice."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure as Sheet
+from PIL import Image
+
+from runs import case as case_file
+from runs import sweep, sweep_output, theme
+from runs.bad_input import BadInput
+from runs.build import build_boom
+from runs.pipeline import run_case
+from runs.quantities import QUANTITIES, settling_time
+from runs.schema import Case
+from runs.sweep import Outcome
+from runs.sweep_points import Plan, plan
+
+pytestmark = pytest.mark.quick
+
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+FAST = ["kantorovich-4", "beam-fe-tied"]
+
+Planned = Callable[..., Plan]
+
+
+@pytest.fixture
+def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
+    """Plans a sweep of case.toml, the coarse case until shortly after its first contact."""
+    monkeypatch.chdir(tmp_path)
+    text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
+    Path("case.toml").write_text(text, encoding="utf-8")
+
+    def sweep_of(*texts: str, models: Sequence[str] | None = None) -> Plan:
+        return plan("case.toml", texts, models or FAST, None)
+
+    return sweep_of
+
+
+@pytest.fixture
+def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
+    """The cases that points have been run of."""
+    cases: list[Case] = []
+    run_point = sweep.run_point
+
+    def count(case: Case) -> Outcome:
+        cases.append(case)
+        return run_point(case)
+
+    monkeypatch.setattr(sweep, "run_point", count)
+    return cases
+
+
+def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
+    """All outcomes of a sweep, run in this process."""
+    sweep.prepare(folder, planned.file)
+    with ThreadPoolExecutor(1) as pool:
+        return sweep.run_points(planned.points, folder, pool, lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("given", "values"),
+    [
+        ("0:0.02:5", [0.0, 0.005, 0.01, 0.015, 0.02]),
+        ("0.01,0,0.002", [0.0, 0.002, 0.01]),
+        ("0:0.01:11", [round(0.001 * i, 3) for i in range(11)]),
+        ("0.014:0.004:2", [0.004, 0.014]),
+    ],
+)
+def test_values_are_those_that_a_person_would_write(
+    planned: Planned, given: str, values: list[float]
+) -> None:
+    """Reference: the same decimals as Python reads them, so that sweeps share their points."""
+    (variation,) = planned(f"joint.play={given}").variations
+    assert list(variation.values) == values
+    assert [point.case.joints[0].play for point in planned(f"joint.play={given}").points] == values
+
+
+def test_keys_go_where_they_say(planned: Planned) -> None:
+    sweeping = planned("segment[2].load=20,40", "segment[2].span[2]=18.5,19", "payload.mass=5,9")
+    assert list(sweeping.units) == ["N/m", "m", "kg"]
+    assert [point.label for point in sweeping.points][:3] == [
+        "segment[2].load=20 segment[2].span[2]=18.5 payload.mass=5",
+        "segment[2].load=20 segment[2].span[2]=18.5 payload.mass=9",
+        "segment[2].load=20 segment[2].span[2]=19 payload.mass=5",
+    ]
+    case = sweeping.points[-1].case
+    assert [segment.load for segment in case.segments] == [83.16, 40.0]
+    assert [segment.span for segment in case.segments] == [(0.0, 10.0), (9.0, 19.0)]
+    assert case.payload is not None
+    assert case.payload.mass == 9.0
+    assert [segment.load for segment in planned("segment.load=1,2").points[1].case.segments] == [
+        2.0,
+        2.0,
+    ]
+
+
+def test_the_play_is_varied_alone(planned: Planned) -> None:
+    """Reference: the boxes that the case infers with its own play of 14 mm."""
+    own = [segment.section for segment in build_boom(case_file.load("case.toml")).segments]
+    for point in planned("joint.play=0,0.007,0.014", models=["timoshenko"]).points:
+        assert [segment.section for segment in build_boom(point.case).segments] == own
+        assert point.case.joints[0].play == point.values[0]
+
+
+def test_what_shapes_a_section_does_so_with_the_case_s_own_play(planned: Planned) -> None:
+    """Reference: the boxes of a case file with the other ratio and the play of 14 mm."""
+    text = Path("case.toml").read_text(encoding="utf-8")
+    Path("flat.toml").write_text(
+        text.replace("height_to_width = 1.5", "height_to_width = 1.4"), encoding="utf-8"
+    )
+    boxes = [
+        [segment.section for segment in build_boom(case_file.load(name)).segments]
+        for name in ("flat.toml", "case.toml")
+    ]
+    points = planned(
+        "segment[1].height_to_width=1.4,1.5", "joint.play=0,0.01", models=["timoshenko"]
+    ).points
+    found = [[segment.section for segment in build_boom(point.case).segments] for point in points]
+    assert found == [boxes[0], boxes[0], boxes[1], boxes[1]]
+
+
+def test_beams_that_need_no_plates_take_any_play(planned: Planned) -> None:
+    assert len(planned("joint.play=0.01,0.1").points) == 2
+
+
+@pytest.mark.parametrize(
+    ("texts", "line"),
+    [
+        (["joint.plaz=0,1"], "joint.plaz: unknown key; the nearest known one is play"),
+        (["jiont.play=0,1"], "jiont.play: unknown key; the nearest known one is joint"),
+        (["joint.play=-1,1"], "joint.play: must be a number not less than 0, got -1"),
+        (["joint.play"], "joint.play: not understood; give KEY=START:STOP:COUNT or KEY=A,B,..."),
+        (["joint..play=1,2"], "joint..play: not understood; give a key such as joint[1].play"),
+        (
+            ["joint.play=0:1"],
+            "joint.play: '0:1' is not understood; give KEY=START:STOP:COUNT or KEY=A,B,...",
+        ),
+        (
+            ["joint.play=0:1:x"],
+            "joint.play: COUNT must be a whole number, got 'x'; give KEY=START:STOP:COUNT or "
+            "KEY=A,B,...",
+        ),
+        (["joint.play=0:1:1"], "joint.play: COUNT must be from 2 to 10000, got 1"),
+        (
+            ["joint.play=0,inf"],
+            "joint.play: must be finite numbers, got 'inf'; give KEY=START:STOP:COUNT or "
+            "KEY=A,B,...",
+        ),
+        (["joint.play=0"], "joint.play: one value varies nothing; give two or more"),
+        (["joint.play=1,1"], "joint.play: a value is given twice in '1,1'; give each once"),
+        (
+            ["joint.play=0,0.01", "joint.play=0,0.02"],
+            "joint.play: given twice; give all its values at once",
+        ),
+        (
+            ["joint[2].play=0,0.01"],
+            "joint[2].play: the case has no joint[2], its last one is joint[1]",
+        ),
+        (["load.magnitude=1,2"], "load.magnitude: the case has no load; there is nothing to vary"),
+        (["time[1].step=1,2"], "time[1].step: time is not a list; leave out [1]"),
+        (["joint.play.x=1,2"], "joint.play.x: joint[1].play is not a table; end the key there"),
+        (
+            ["ensemble.members=2,3"],
+            "ensemble.members: a sweep runs no ensembles; leave it out",
+        ),
+        (
+            ["payload.gravity=1,2"],
+            "payload.gravity=1: payload.mass: missing; it is the mass in kg",
+        ),
+        (
+            ["joint.play=0,0.01", "segment[2].span[2]=8,19"],
+            "joint.play=0 segment[2].span[2]=8: segment[2].span: must run from a smaller to a "
+            "larger x, got [9, 8] m",
+        ),
+        (
+            ["model[3].element_length=0.5,1"],
+            "model[3].element_length: nothing that is run depends on it; leave it out, or run "
+            "the models that do",
+        ),
+    ],
+    ids=lambda value: value if isinstance(value, str) else " ".join(value),
+)
+def test_a_mistake_is_said_with_its_option(planned: Planned, texts: list[str], line: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        planned(*texts)
+    assert str(refused.value) == f"case.toml: --vary {line}"
+
+
+def test_too_many_points_are_refused(planned: Planned) -> None:
+    with pytest.raises(BadInput) as refused:
+        planned("joint.play=0:0.01:101", "segment.load=1:2:100")
+    assert str(refused.value) == (
+        "case.toml: --vary: 10100 points are too many; at most 10000 are run"
+    )
+
+
+def test_a_box_without_room_for_the_play_is_refused(planned: Planned) -> None:
+    with pytest.raises(BadInput) as refused:
+        planned("joint.play=0:0.02:3", models=["timoshenko"])
+    assert str(refused.value) == (
+        "case.toml: --vary joint.play=0.02: joint[1].play: 'inner' does not fit in 'outer': 0.014 "
+        "m of height and 0.044042 m of width are free, and a play of 0.02 m is asked for; make "
+        "the inner section or the play smaller (the boxes are those that the case infers with its "
+        "own play)"
+    )
+
+
+def test_a_folder_of_something_else_is_refused(planned: Planned) -> None:
+    with pytest.raises(BadInput) as refused:
+        sweep.prepare(Path(), planned("joint.play=0,0.01").file)
+    assert str(refused.value) == (
+        "case.toml: --out .: holds files that are not a sweep's; give a new folder or an earlier "
+        "sweep's"
+    )
+
+
+def test_a_decay_settles_when_the_formula_says() -> None:
+    """Reference: analytic, τ ln 20 for exp(−t/τ); the mean of the last fifth is e⁻¹⁶ off."""
+    time = np.linspace(0.0, 20.0, 20001)
+    settled = settling_time(time, 0.3 - 0.1 * np.exp(-time))
+    assert settled == pytest.approx(math.log(20.0), abs=2e-3)
+
+
+def test_what_swings_on_does_not_settle_and_what_rests_has() -> None:
+    time = np.linspace(0.0, 20.0, 2001)
+    assert settling_time(time, 0.3 + np.cos(time)) is None
+    assert settling_time(time, np.full(time.size, 0.3)) == 0.0
+
+
+def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> None:
+    """Reference: run_case on case files with each play, both models at a time."""
+    sweeping = planned("joint.play=0.008,0.014")
+    data = sweep_output.write(sweeping, run(sweeping), Path("out"))
+    text = Path("case.toml").read_text(encoding="utf-8")
+    for play in (0.008, 0.014):
+        Path("single.toml").write_text(
+            text.replace("play = 0.014", f"play = {play}"), encoding="utf-8"
+        )
+        case = case_file.select(case_file.load("single.toml"), "", FAST)
+        single = run_case(case, "", None, tmp_path, lambda *_: None)
+        assert single is not None
+        for name, summary in single.results.summary["models"].items():
+            there = data.sel({"joint.play": play, "model": name})
+            tip = single.results.trajectories["tip"].sel(model=name).values
+            assert float(there["tip_amplitude"]) == np.abs(tip).max() > 0.0
+            for key in ("peak_contact_force", "first_contact", "energy_residual"):
+                expected = math.nan if summary[key] is None else summary[key]
+                assert float(there[key]) == pytest.approx(expected, rel=1e-12, nan_ok=True)
+
+
+def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
+    sweeping = planned("joint.play=0.008,0.014")
+    sweep_output.write(sweeping, run(sweeping), Path("out"))
+    data = xr.load_dataset("out/sweep.nc", engine="scipy")
+    assert data["tip_amplitude"].dims == ("joint.play", "model")
+    assert data["joint.play"].attrs["units"] == "m"
+    assert {q.name: data[q.name].attrs["units"] for q in QUANTITIES} == {
+        "tip_amplitude": "m",
+        "peak_contact_force": "N",
+        "settling_time": "s",
+        "first_contact": "s",
+        "energy_residual": "1",
+    }
+    with open("out/sweep.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["joint.play"], row["model"]) for row in rows] == [
+        (play, model) for play in ("0.008", "0.014") for model in FAST
+    ]
+    for row in rows:
+        there = data.sel({"joint.play": float(row["joint.play"]), "model": row["model"]})
+        for quantity in QUANTITIES:
+            assert float(row[quantity.name] or "nan") == pytest.approx(
+                float(there[quantity.name]), rel=1e-8, nan_ok=True
+            )
+
+
+def test_what_is_done_is_not_done_again(planned: Planned, ran: list[Case]) -> None:
+    first = run(planned("joint.play=0:0.01:2"))
+    finer = run(planned("joint.play=0:0.01:3"))
+    again = run(planned("joint.play=0:0.01:3"))
+    assert [case.joints[0].play for case in ran] == [0.0, 0.01, 0.005]
+    assert again == finer
+    assert [finer[0], finer[2]] == first
+
+
+def test_another_case_is_another_point(planned: Planned, ran: list[Case]) -> None:
+    run(planned("joint.play=0,0.01"))
+    run(planned("joint.play=0,0.01", models=["kantorovich-5"]))
+    assert len(ran) == 4
+
+
+def test_a_damaged_file_is_done_again(planned: Planned, ran: list[Case]) -> None:
+    outcomes = run(planned("joint.play=0,0.01"))
+    damaged, other = Path("out/points").iterdir()
+    damaged.write_text(damaged.read_text(encoding="utf-8")[:40], encoding="utf-8")
+    other.write_text("[]", encoding="utf-8")
+    assert run(planned("joint.play=0,0.01")) == outcomes
+    assert len(ran) == 4
+    assert all(json.loads(path.read_text()) for path in Path("out/points").iterdir())
+
+
+def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
+    """A millisecond is too coarse for the contacts; the model without any does not mind."""
+    sweeping = planned("time.step=1e-5,1e-3")
+    outcomes = run(sweeping)
+    assert run(sweeping) == outcomes
+    assert len(ran) == 2
+    data = sweep_output.write(sweeping, outcomes, Path("out"))
+    assert data["failed"].values.tolist() == [[0, 0], [1, 0]]
+    assert np.isnan(data["tip_amplitude"].values).tolist() == [[False, False], [True, False]]
+    (failure,) = outcomes[1].failures.values()
+    assert failure.startswith("the energy residual is ")
+    with open("out/sweep.csv", newline="", encoding="utf-8") as file:
+        assert [row["failure"] for row in csv.DictReader(file)] == ["", "", failure, ""]
+
+
+def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def break_down(case: Case) -> Outcome:
+        if case.joints[0].play == 0.0:
+            return Outcome({}, {"kantorovich-4": "no number is finite"})
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(sweep, "run_point", break_down)
+    with pytest.raises(RuntimeError, match="broken"):
+        run(planned("joint.play=0,0.01"))
+    assert len(list(Path("out/points").iterdir())) == 1
+
+
+def charts(sweeping: Plan) -> list[str]:
+    """Draw invented numbers, with a gap; what has been drawn."""
+    outcomes = [
+        Outcome(
+            {
+                name: {
+                    quantity.name: 1.0 + 0.1 * i if quantity.name != "settling_time" else None
+                    for quantity in QUANTITIES
+                }
+                for name in FAST[: 1 if i == 2 else 2]
+            },
+            {FAST[1]: "no number is finite"} if i == 2 else {},
+        )
+        for i in range(len(sweeping.points))
+    ]
+    sweep_output.write(sweeping, outcomes, Path())
+    names = sorted(path.name for path in Path("figures").iterdir())
+    for name in names:
+        with Image.open(Path("figures") / name) as image:
+            assert image.size[0] == round(theme.WIDTH * theme.DPI)
+            assert np.asarray(image.convert("L")).min() < 128
+    return names
+
+
+@pytest.mark.parametrize(
+    ("texts", "names"),
+    [
+        (["joint.play=0:0.01:4"], ["sweep-lines.png"]),
+        (
+            ["joint.play=0:0.01:4", "joint.stiffness=1e8,1e9,1e10,1e11"],
+            ["sweep-peak-contact-force.png", "sweep-tip-amplitude.png"],
+        ),
+        (
+            ["joint.play=0,0.01", "segment[2].load=20,40,60", "damping.modal=0,0.1"],
+            [f"sweep-lines-{number}.png" for number in range(1, 5)],
+        ),
+    ],
+    ids=["one key", "two keys", "three keys"],
+)
+def test_charts_fit_the_number_of_keys(
+    planned: Planned, texts: list[str], names: list[str]
+) -> None:
+    """What no model has anywhere, the settling time here, has no chart."""
+    assert charts(planned(*texts)) == names
+
+
+def test_lines_are_in_shown_units_with_gaps(
+    planned: Planned, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the invented numbers, 1.0, 1.1, ... m and N, the third missing in one model."""
+    sheets: list[Sheet] = []
+    save = Sheet.savefig
+
+    def keep(sheet: Sheet, path: Path) -> None:
+        sheets.append(sheet)
+        save(sheet, path)
+
+    monkeypatch.setattr(Sheet, "savefig", keep)
+    charts(planned("joint.play=0:0.009:4"))
+    (sheet,) = sheets
+    panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}
+    assert list(panels) == [
+        "tip amplitude (mm)", "peak contact force (kN)", "first contact (s)", "energy residual (–)",
+    ]  # fmt: skip
+    assert sheet.axes[-1].get_xlabel() == "joint.play (m)"
+    for title, factor in (("tip amplitude (mm)", 1e3), ("peak contact force (kN)", 1e-3)):
+        lines = {str(line.get_label()): line for line in panels[title].get_lines()}
+        assert list(lines) == FAST
+        for name, third in zip(FAST, (1.2, math.nan), strict=True):
+            expected = factor * np.array([1.0, 1.1, third, 1.3])
+            np.testing.assert_allclose(lines[name].get_ydata(), expected, rtol=1e-12)
+            np.testing.assert_allclose(lines[name].get_xdata(), [0.0, 0.003, 0.006, 0.009])

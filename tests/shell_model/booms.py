@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms for the shell's tests: the paper's in its plane and in space, and one of three segments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from dynamics.contact import PowerContact
+from geometry.boom import Boom, Joint, Lateral, Material, Segment, Support
+from geometry.section import BoxSection, infer_inner_section, infer_outer_section
+
+STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+HELD = (Support(0.0), Support(2.0))
+LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=5.0e-3)
+
+
+def box_segment(
+    name: str,
+    start: float,
+    end: float,
+    section: BoxSection,
+    load: float = 0.0,
+    supports: tuple[Support, ...] = (),
+    lateral_load: float = 0.0,
+) -> Segment:
+    """A segment of steel whose beam's numbers, in both planes, are those of its box."""
+    density, sideways = STEEL.density, section.lateral_second_moment_of_area
+    return Segment(
+        name=name,
+        start=start,
+        end=end,
+        material=STEEL,
+        mass_per_length=section.mass_per_length(density),
+        second_moment_of_area=section.second_moment_of_area,
+        rotary_inertia=density * section.second_moment_of_area,
+        section=section,
+        load=load,
+        supports=supports,
+        lateral=Lateral(
+            second_moment_of_area=sideways,
+            rotary_inertia=density * sideways,
+            torsion_constant=section.torsion_constant,
+            polar_inertia=density * section.polar_second_moment_of_area,
+            load=lateral_load,
+        ),
+    )
+
+
+def flat_boom(friction: float = 0.0) -> Boom:
+    """The paper's two segments in their plane, with its normal forces where there is friction."""
+    outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
+    inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.clearance)
+    return Boom(
+        (
+            box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
+            box_segment("inner", 9.0, 19.0, inner, 55.07),
+        ),
+        (
+            Joint(
+                outer=0,
+                inner=1,
+                stations=(9.0, 10.0),
+                clearance=LAW.clearance,
+                stiffness=LAW.stiffness,
+                stiffness_below=LAW.below,
+                exponent=LAW.exponent,
+                friction=friction,
+                normal_forces=(4500.0, 5000.0) if friction > 0.0 else (),
+            ),
+        ),
+    )
+
+
+def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
+    """The same with lateral play.
+
+    Args:
+        friction: μ; the contact forces press.
+        sideways: lateral load over that along z.
+    """
+    flat = flat_boom()
+    segments = tuple(
+        replace(segment, lateral=replace(segment.lateral, load=sideways * segment.load))
+        for segment in flat.segments
+        if segment.lateral is not None
+    )
+    joint = replace(flat.joints[0], lateral_clearance=LATERAL_LAW.clearance, friction=friction)
+    return Boom(segments, (joint,))
+
+
+def three_segments(tied: bool = False) -> Boom:
+    """A third box in the second, with the overlap of the first joint."""
+    two = flat_boom()
+    inner = two.segments[1].section
+    assert inner is not None
+    inmost = BoxSection(inner.height - 0.025, inner.width - 0.025, inner.flange, inner.web)
+    middle = replace(two.segments[1], end=16.0)
+    third = box_segment("third", 15.0, 21.0, inmost, 40.0)
+    first = replace(two.joints[0], tied=tied)
+    second = replace(first, outer=1, inner=2, stations=(15.0, 16.0))
+    return Boom((two.segments[0], middle, third), (first, second))

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Friction, stops, loads and ties of the flat shell, and booms of three segments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from mpi4py import MPI
+
+from beam_model.finite_element import finite_element_segment
+from beam_model.segment_model import tied_system
+from dynamics.contact import PowerContact
+from dynamics.excitation import Ramp, Step
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from geometry.boom import Boom, Load, Stop
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.joint_rows import ContactLine
+from shell_model.reduction import KrylovOptions
+from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
+
+Array = npt.NDArray[np.float64]
+
+
+@cache
+def _system(boom: Boom, size: float = 0.5, line: ContactLine = "near webs") -> GapSystem:
+    options = ShellOptions(size, contact_line=line, krylov=KrylovOptions(moments=1))
+    return reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_WORLD).system
+
+
+@pytest.mark.parametrize("line", ["near webs", "across"])
+def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> None:
+    """Reference: analytic. Of webs to webs, one top and one bottom row; of points across, each
+    with its weight. Friction needs no coordinates that contact has not asked for.
+    """
+    system = _system(flat_boom(friction=0.2), line=line)
+    assert system.num_modes == _system(flat_boom(), line=line).num_modes
+    assert [(f.station, f.normal_force) for f in system.frictions] == [(0, 4500.0), (1, 5000.0)]
+    assert all(f == DryFriction(0.2, f.station, f.normal_force) for f in system.frictions)
+    for station, row in enumerate(system.friction_rows):
+        mine = system.station_of_row == station
+        stiffness = [
+            max(w.stiffness, w.below) for w, at in zip(system.laws, mine, strict=True) if at
+        ]
+        mean = np.average(system.rows[mine], axis=0, weights=stiffness)
+        assert row == pytest.approx(mean, rel=1.0e-9, abs=1.0e-12)
+
+
+def test_friction_takes_energy_and_gives_none_back() -> None:
+    """Reference: analytic. The loss never falls, and the ledger closes; the smooth boom loses
+    nothing.
+    """
+    rough, smooth = (
+        integrate(_system(flat_boom(friction)), duration=0.25) for friction in (0.2, 0.0)
+    )
+    loss = rough.data["friction_loss"].values
+    assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
+    assert loss[-1] > 0.01 * float(rough.data["work"][-1])
+    assert rough.energy_residual < 1.0e-4
+    assert not smooth.data["friction_loss"].values.any()
+    largest = np.abs(rough.data["friction_force"]).max("time").values
+    assert largest == pytest.approx([0.2 * 4500.0, 0.2 * 5000.0], rel=1.0e-3)
+
+
+def test_loads_act_where_and_when_they_say() -> None:
+    """Reference: analytic. The middle of a free segment moves with force over mass, whatever
+    the load; a uniform one is the step load's own vector.
+    """
+    boom = flat_boom()
+    ramp = Ramp(0.1)
+    loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))
+    system = _system(replace(boom, loads=loads))
+    uniform, point = (excitation.load for excitation in system.excitations)
+    assert system.excitations[1].history is ramp
+    free = system.omega2 == 0.0
+    inner = system.load.copy()
+    inner[: np.flatnonzero(free)[0]] = 0.0
+    assert uniform == pytest.approx(inner, rel=1.0e-9, abs=1.0e-12 * np.abs(inner).max())
+    tip, tail = (system.observers[name].row[free] for name in ("tip", "tail"))
+    mass = STEEL.density * boom.segments[1].length * _area(boom, 1)
+    assert 0.5 * (tip + tail) @ point[free] == pytest.approx(100.0 / mass, rel=1.0e-9)
+
+
+def _area(boom: Boom, number: int) -> float:
+    section = boom.segments[number].section
+    assert section is not None
+    return section.area
+
+
+@pytest.mark.quick
+def test_a_stop_reads_the_flange_that_it_meets() -> None:
+    """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
+    stop = Stop(0, 8.0, 0.01, 0.0, 1.0e8, 1.0)
+    system = _system(replace(flat_boom(), stops=(stop,)))
+    assert list(system.stations) == [9.0, 10.0, 8.0]
+    assert system.station_of_row.tolist() == [0, 0, 1, 1, 2]
+    assert system.laws[-1] == PowerContact(0.0, 1.0, 0.01, stiffness_below=1.0e8)
+    rest = _rest(system, [2])
+    observed = system.observers["head"].row @ rest
+    # From the support at 2 m the outer segment rises in a line that bends a little.
+    assert 0.6 * observed < system.rows[-1] @ rest < 0.8 * observed
+
+
+def _rest(system: GapSystem, stations: list[int], spring: float = 1.0e12) -> Array:
+    """Rest position with springs in place of contact, at all stations but those left out."""
+    kept = ~np.isin(system.station_of_row, stations)
+    rows = system.rows[kept]
+    return np.asarray(np.linalg.solve(np.diag(system.omega2) + spring * rows.T @ rows, system.load))
+
+
+@pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
+def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
+    """Reference: other code, this project's Timoshenko elements with the segments tied.
+
+    They are up to 0.25 % apart, for the corners that take the forces in the overlaps; shear is
+    3 %. The middle one of three segments has two joints.
+    """
+    system = _system(boom, size=0.25)
+    rest = _rest(system, [])
+    elements = [
+        finite_element_segment(s, 0.25, boom.stations_of(k), "timoshenko", rotary_inertia=True)
+        for k, s in enumerate(boom.segments)
+    ]
+    beams = tied_system(boom, elements)
+    expected = beams.static_response(beams.load)
+    assert set(beams.observers) <= set(system.observers)
+    for name, observer in beams.observers.items():
+        assert system.observers[name].row @ rest == pytest.approx(
+            observer.row @ expected, rel=5.0e-3
+        )
+
+
+def test_a_tied_joint_has_no_play() -> None:
+    """Reference: other code, the tied Timoshenko elements: no contact is left, the tip and the
+    lowest frequency agree within 0.2 %, and no motion is free.
+    """
+    boom = three_segments(tied=True)
+    options = ShellOptions(0.25, krylov=KrylovOptions(moments=1))
+    shell = reduce_boom(boom, [], options, MPI.COMM_WORLD)
+    system = shell.system
+    assert system.rows.shape == (0, system.num_modes)
+    assert not (system.omega2 == 0.0).any()
+    elements = [
+        finite_element_segment(s, 0.25, boom.stations_of(k), "timoshenko", rotary_inertia=True)
+        for k, s in enumerate(boom.segments)
+    ]
+    beams = tied_system(boom, elements)
+    assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
+    rest, expected = (one.static_response(one.load) for one in (system, beams))
+    tip = system.observers["tip"].row @ rest
+    assert tip == pytest.approx(beams.observers["tip"].row @ expected, rel=2.0e-3)
+    # The pictures' modes are those of the coordinates.
+    assert shell.fields is not None
+    moved = np.tensordot(rest, shell.fields["modes"].values, axes=1)
+    at_tip = np.abs(shell.fields["points"].values[:, 0] - boom.tip) < 1.0e-9
+    assert moved[at_tip, 2].mean() == pytest.approx(tip, rel=1.0e-3)

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A page in a real headless browser, driven through the DevTools protocol's pipe.
+
+Its messages are JSON objects that end with a zero byte: requests go to the browser's file
+descriptor 3, answers and events come from its 4.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+SECONDS = 60.0
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--remote-debugging-pipe",
+)
+# Gives the pipes the numbers that the protocol asks for; they may have each other's.
+LAUNCH = """
+import fcntl, os, sys
+ends = [fcntl.fcntl(int(end), fcntl.F_DUPFD, 10) for end in sys.argv[1:3]]
+for end, number in zip(ends, (3, 4)):
+    os.dup2(end, number)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+
+
+def find_browser() -> str | None:
+    """The path of a Chromium, None where there is none."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    return next(filter(None, map(shutil.which, names)), None)
+
+
+class Page:
+    """A tab of the browser, and everything that it complains of."""
+
+    def __init__(self, requests: int, answers: int) -> None:
+        self._requests, self._answers = requests, answers
+        self._rest = b""
+        self._number = 0
+        self._session: str | None = None
+        self._loaded = False
+        self.complaints: list[str] = []
+        target = self._ask("Target.createTarget", url="about:blank")["targetId"]
+        attached = self._ask("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = attached["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self._ask(f"{domain}.enable")
+
+    def open(self, path: Path, width: int, height: int = 800) -> None:
+        """Load a file at a width in CSS pixels, as a telephone does."""
+        self._ask(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=True,
+        )
+        self._loaded = False
+        self._ask("Page.navigate", url=path.resolve().as_uri())
+        while not self._loaded:
+            self._receive()
+
+    def evaluate(self, expression: str) -> Any:
+        """The value of a JavaScript expression in the page."""
+        answer = self._ask("Runtime.evaluate", expression=expression, returnByValue=True)
+        assert "exceptionDetails" not in answer, answer
+        return answer["result"].get("value")
+
+    def _ask(self, method: str, **parameters: Any) -> Any:
+        self._number += 1
+        number = self._number
+        request = {"id": number, "method": method, "params": parameters}
+        if self._session is not None:
+            request["sessionId"] = self._session
+        os.write(self._requests, json.dumps(request).encode() + b"\0")
+        while True:
+            answer = self._receive()
+            if answer.get("id") == number:
+                assert "error" not in answer, answer
+                return answer["result"]
+
+    def _receive(self) -> Any:
+        end = time.monotonic() + SECONDS
+        while b"\0" not in self._rest:
+            ready, _, _ = select.select([self._answers], [], [], end - time.monotonic())
+            part = os.read(self._answers, 1 << 16) if ready else b""
+            assert part, "the browser does not answer"
+            self._rest += part
+        message, _, self._rest = self._rest.partition(b"\0")
+        answer = json.loads(message)
+        self._note(answer.get("method", ""), answer.get("params", {}))
+        return answer
+
+    def _note(self, method: str, what: dict[str, Any]) -> None:
+        if method == "Page.loadEventFired":
+            self._loaded = True
+        elif method == "Runtime.exceptionThrown":
+            self.complaints.append(what["exceptionDetails"]["text"])
+        elif method == "Runtime.consoleAPICalled":
+            self.complaints.append(str(what["args"]))
+        elif method == "Log.entryAdded":
+            self.complaints.append(what["entry"]["text"])
+        elif method == "Network.loadingFailed":
+            self.complaints.append(what["errorText"])
+
+
+@contextmanager
+def blank_page(browser: str, folder: Path) -> Iterator[Page]:
+    """A browser with one page; it ends with the context.
+
+    Args:
+        browser: its path.
+        folder: for its profile.
+    """
+    to_browser, requests = os.pipe()
+    answers, from_browser = os.pipe()
+    ends = (str(to_browser), str(from_browser))
+    process = subprocess.Popen(
+        [sys.executable, "-c", LAUNCH, *ends, browser, *FLAGS, f"--user-data-dir={folder}"],
+        pass_fds=(to_browser, from_browser),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(to_browser)
+    os.close(from_browser)
+    try:
+        yield Page(requests, answers)
+    finally:
+        os.close(requests)
+        os.close(answers)
+        process.terminate()
+        process.wait(SECONDS)

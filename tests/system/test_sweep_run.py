@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The sweep as a command: on all cores, on ranks, killed and taken up again."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.system.run_folder import COARSE, ROOT, files, protractile
+
+MODELS = "--models", "kantorovich-4,beam-fe-tied"
+COMMAND = "from runs import cli; cli.main()"
+PLAYS = "--vary", "joint.play=0.006:0.014:3"
+
+
+@pytest.fixture
+def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """case.toml in the current folder: the coarse case until shortly after its first contact."""
+    monkeypatch.chdir(tmp_path)
+    text = Path(COARSE).read_text(encoding="utf-8")
+    text = text.replace("duration = 0.6", "duration = 0.2")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    return "case.toml"
+
+
+def stamps(folder: str) -> dict[str, int]:
+    """When each point was written."""
+    return {path.name: path.stat().st_mtime_ns for path in Path(folder, "points").iterdir()}
+
+
+def test_a_sweep_leaves_its_files_and_is_taken_up(
+    case: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert protractile("sweep", case, *PLAYS, *MODELS, "--out", "out") == 0
+    out, err = capsys.readouterr()
+    assert (out.splitlines()[0], err) == ("out/sweep.csv", "")
+    assert "Sweep over joint.play: 3 points" in out
+    before = stamps("out")
+    assert len(before) == 3
+    expected = {"sweep.nc", "sweep.csv", "figures/sweep-lines.png"}
+    assert files(Path("out")) == expected | {f"points/{name}" for name in before}
+    with Image.open("out/figures/sweep-lines.png") as image:
+        image.verify()
+    more = "--vary", "joint.play=0.006:0.014:5"
+    assert protractile("sweep", case, *more, *MODELS, "--out", "out") == 0
+    after = stamps("out")
+    assert len(after) == 5
+    assert before.items() <= after.items()
+
+
+def test_failures_are_lines_and_count_if_nothing_is_left(
+    case: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    steps = "--vary", "time.step=1e-3,0.5e-3", "--models", "kantorovich-4"
+    assert protractile("sweep", case, *steps, "--out", "out") == 3
+    first, second = capsys.readouterr().err.splitlines()
+    opening = "protractile: case.toml: --vary time.step="
+    assert first.startswith(f"{opening}0.0005: kantorovich-4: the energy residual is ")
+    assert second.startswith(f"{opening}0.001: kantorovich-4: the energy residual is ")
+
+
+def test_a_bad_key_is_one_line_and_no_folder(case: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert protractile("sweep", case, "--vary", "joint.plaz=0,1") == 2
+    assert capsys.readouterr() == (
+        "",
+        "protractile: case.toml: --vary joint.plaz: unknown key; the nearest known one is play\n",
+    )
+    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
+
+
+def test_two_ranks_leave_what_the_cores_do(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]], case: str
+) -> None:
+    pytest.importorskip("mpi4py", reason="ranks need mpi4py")
+    assert protractile("sweep", case, *PLAYS, *MODELS, "--out", "one") == 0
+    answer = two_ranks(COMMAND, "sweep", case, *PLAYS, *MODELS, "--out", "two")
+    assert answer.returncode == 0
+    assert answer.stdout.count("two/sweep.csv") == 1
+    assert Path("two/sweep.csv").read_bytes() == Path("one/sweep.csv").read_bytes()
+    assert stamps("two").keys() == stamps("one").keys()
+
+
+def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
+    arguments = ["sweep", case, "--vary", "joint.play=0.004:0.014:6", *MODELS, "--out", "out"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", COMMAND, *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    points = Path("out/points")
+    while not list(points.glob("*.json")):
+        assert process.poll() is None
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    before = stamps("out")
+    assert len(before) > 0
+    for name in before:
+        assert json.loads((points / name).read_text(encoding="utf-8"))["models"]
+    assert not Path("out/sweep.csv").exists()
+    assert protractile(*arguments) == 0
+    after = stamps("out")
+    assert len(after) == 6
+    assert before.items() <= after.items()
