@@ -74,8 +74,9 @@ def close_up(pen: Pen) -> list[Figure]:
 
 def heads(pen: Pen) -> list[Figure]:
     """The head of each outer segment; it rattles, so each model has its own panel."""
-    places = [str(name) for name in pen.data.data_vars if str(name).split("-")[0] == "head"]
-    return [_head(pen, place) for place in places if "lateral" not in place]
+    joints = range(1, len(pen.case.joints) + 1)
+    places = ["head", *(f"head-{number}" for number in joints if number > 1)]
+    return [_head(pen, place) for place in places if place in pen.data]
 
 
 def _head(pen: Pen, place: str) -> Figure:

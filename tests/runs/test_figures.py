@@ -278,7 +278,8 @@ def test_peak_forces_have_labels_on_one_scale(
 
 
 def test_every_head_has_a_figure(results: Results, tmp_path: Path) -> None:
-    data = results.trajectories.assign({"head-2": results.trajectories["head"]})
+    head = results.trajectories["head"]
+    data = results.trajectories.assign({"head-2": head, "head-2_rotation": head})
     joints = results.case.joints * 2
     case = results.case.model_copy(update={"joints": joints})
     found = draw_some(heads, replace(results, trajectories=data, case=case), tmp_path)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Every case that comes with the project runs and is reported, on coarse meshes and briefly."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from runs import case as case_file
+from runs.figures import draw
+from runs.pipeline import run_case
+from runs.report import render
+
+CASES = Path(case_file.__file__).parent / "cases"
+NAMES = ["paper", "paper-friction", "spatial", "three-segments"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
+    """Reference: the models among each other. Up to the first contact they are alike."""
+    file = str(CASES / f"{name}.toml")
+    case = case_file.select(case_file.load(file), file, mesh_size=0.5, members=0)
+    short = case.time.model_copy(update={"duration": 0.15})
+    run = run_case(
+        case.model_copy(update={"time": short}), file, MPI.COMM_SELF, tmp_path, lambda *_: None
+    )
+    assert run is not None
+    results = run.results
+    figures = draw(results, tmp_path)
+    page = render(results, figures, [])
+    assert all(figure.path.stat().st_size > 10_000 for figure in figures)
+    assert case.title in page
+    models = results.summary["models"]
+    assert list(models) == [model.name for model in case.models]
+    assert max(model["energy_residual"] for model in models.values()) < 1e-3
+    with_play = [
+        str(model) for model in results.trajectories["model"].values if model[-4:] != "tied"
+    ]
+    tips = results.trajectories["tip"].sel(model=with_play).values
+    before = results.trajectories["time"].values < 0.11
+    # Nothing touches yet. The inner segment is free, or bends under friction, for which the
+    # shortest series have no function.
+    falling = tips[:, before]
+    alike = 0.1 if any(joint.friction > 0.0 for joint in case.joints) else 0.02
+    assert np.ptp(falling, axis=0).max() < alike * np.ptp(falling)
