@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dynamics.horizon import SHARES
-from runs.comparisons import rubs
+from runs.comparisons import reference_of, rubs
 from runs.questions import tied
 from runs.results import Results
 from runs.tables import TextTable
@@ -167,6 +167,30 @@ def law_table(results: Results) -> TextTable | None:
     )  # fmt: skip
     notes = ("Force = stiffness · penetrationⁿ, beyond the clearance each way.",)
     return TextTable("Contact laws", headings, rows, notes, name="laws", statements=("S9",))
+
+
+def space_table(results: Results) -> TextTable | None:
+    """First peaks along both directions against the reference; None for a flat boom."""
+    models: Mapping[str, Any] = results.summary["models"]
+    reference = reference_of(results.case)
+    if reference is None or "tip_lateral" not in models[reference]["first_peak"]:
+        return None
+    rows = []
+    for name, model in models.items():
+        cells = [name]
+        for place in ("tip", "tip_lateral"):
+            peak = model["first_peak"][place]
+            cells += _first_peak(peak, results.case.time.duration)
+            height, other = peak[1], models[reference]["first_peak"][place][1]
+            known = height is not None and other is not None
+            cells.append(_in_percent(height / other - 1.0 if known else None))
+        rows.append(tuple(cells))
+    headings = (
+        "model",
+        *("up\ns", "\nmm", f"off {reference}\n%"),
+        *("sideways\ns", "\nmm", f"off {reference}\n%"),
+    )
+    return TextTable("First peaks of the tip in space", headings, rows, name="space")
 
 
 def _first_peak(peak: Sequence[float | None], duration: float) -> tuple[str, str]:

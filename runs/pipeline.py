@@ -218,7 +218,7 @@ def _summary(
         "energy_residual": attributes["energy_residual"],
         "first_peak": {
             name: [_known(number) for number in trajectory.first_peak(name)]
-            for name in ("tip", "head")
+            for name in ("tip", "head", "tip_lateral")
             if name in trajectory.data
         },
         "peak_contact_force": float(peaks.max()) if peaks.size else None,

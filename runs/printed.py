@@ -61,8 +61,6 @@ def print_verdicts(runs: Mapping[str, Results], console: Console) -> None:
     table.add_column("verdict")
     table.add_column("measured", justify="right")
     table.add_column("threshold", justify="right")
-    if len(judging) > 1:
-        table.add_column("case")
     table.add_column("statement", ratio=1)
     for statement in STATEMENTS:
         name, verdict = decisive(judging, statement)
@@ -70,10 +68,12 @@ def print_verdicts(runs: Mapping[str, Results], console: Console) -> None:
         unit = f" ({verdict.unit})" if verdict.unit else ""
         table.add_row(
             statement,
-            Text(f"{verdict.verdict}{demanded}", style=_STYLES[verdict.verdict]),
+            Text.assemble(
+                (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
+                (f"\nin {name}" if len(judging) > 1 else "", "dim"),
+            ),
             number(verdict.measured),
             number(verdict.threshold),
-            *([Text(name)] if len(judging) > 1 else []),
             Text.assemble(verdict.statement, (unit, "dim")),
         )
     console.print(table)

@@ -8,7 +8,7 @@ from itertools import chain
 
 from runs import theme, toml
 from runs.knowledge import compared_tables, known_tables
-from runs.model_tables import law_table, model_table, step_table
+from runs.model_tables import law_table, model_table, space_table, step_table
 from runs.pages import MARKS, page
 from runs.pen import Figure
 from runs.questions import tied
@@ -35,7 +35,8 @@ def render(
         readings: tables of a survey of the case's readings.
     """
     models = [model_table(results), step_table(results)]
-    models += [table for table in [law_table(results)] if table is not None]
+    more = (law_table(results), space_table(results))
+    models += [table for table in more if table is not None]
     motion, knowledge = (
         [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")
     )

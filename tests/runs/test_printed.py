@@ -58,10 +58,15 @@ def printed(runs: dict[str, Results]) -> str:
 
 
 def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
-    lines = {line.split()[0]: line for line in printed(RUNS).splitlines() if line.strip()}
-    assert lines["S7"].split()[1:5] == ["contradicted", "–", "–", "paper-friction"]
-    assert lines["S1"].split()[1:5] == ["reproduced", "–", "–", "paper"]
-    assert "case" not in printed({"paper": RUNS["paper"]})
+    lines = [line.split() for line in printed(RUNS).splitlines() if line.strip()]
+    for statement, verdict, name in (
+        ("S7", "contradicted", "paper-friction"),
+        ("S1", "reproduced", "paper"),
+    ):
+        at = next(i for i, words in enumerate(lines) if words[0] == statement)
+        assert lines[at][1:4] == [verdict, "–", "–"]
+        assert lines[at + 1][:2] == ["in", name]
+    assert "in paper" not in printed({"paper": RUNS["paper"]})
 
 
 def test_runs_without_a_series_judge_nothing() -> None:

@@ -15,7 +15,7 @@ from runs.pipeline import run_case
 from runs.report import render
 
 CASES = Path(case_file.__file__).parent / "cases"
-NAMES = ["paper", "paper-friction", "spatial", "three-segments"]
+NAMES = ["friction-walk", "paper", "paper-friction", "spatial", "three-segments"]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -33,6 +33,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     page = render(results, figures, [])
     assert all(figure.path.stat().st_size > 10_000 for figure in figures)
     assert case.title in page
+    assert ("First peaks of the tip in space" in page) == (name == "spatial")
     models = results.summary["models"]
     assert list(models) == [model.name for model in case.models]
     assert max(model["energy_residual"] for model in models.values()) < 1e-3
