@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Wall times are taken in turns, and shown with the digits that they have."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from functools import partial
+
+import pytest
+
+from runs.timing import MEASURABLE, by_turns, shown
+
+pytestmark = pytest.mark.quick
+
+
+def test_runs_take_turns() -> None:
+    order: list[str] = []
+
+    def slow(name: str) -> None:
+        order.append(name)
+        time.sleep(1.1 * MEASURABLE)
+
+    seconds = by_turns([partial(slow, "a"), partial(slow, "b")], 2, 10.0)
+    assert order == ["a", "b", "a", "b"]
+    assert [len(taken) for taken in seconds] == [2, 2]
+
+
+def test_what_takes_long_is_not_repeated() -> None:
+    """Reference: analytic. Two sleeps pass the budget, or one does."""
+    nap = 1.1 * MEASURABLE
+    runs = [partial(time.sleep, nap), partial(time.sleep, 0.001)]
+    assert [len(taken) for taken in by_turns(runs, 3, 1.5 * nap)] == [2, 3]
+    assert [len(taken) for taken in by_turns(runs, 3, 0.5 * nap)] == [1, 3]
+
+
+def test_what_takes_little_is_averaged() -> None:
+    """Reference: analytic. Sleeps of 5 and 15 ms by turns take 10 ms in the mean."""
+    naps = itertools.cycle((0.005, 0.015))
+    ((taken,),) = by_turns([lambda: time.sleep(next(naps))], 1, 10.0)
+    assert 0.009 < taken < 0.014
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ((0.0151, 0.0156, 0.0165), "0.0156"),
+        ((1.0, 1.24, 1.6), "1.2"),
+        ((120.0, 134.0, 150.0), "130"),
+        ((1.0, 4.0, 9.0), "~4"),
+        ((0.2, 4.0, 90.0), "~4"),
+        ((123.4,), "100"),
+        ((1.0, 1.0), "1"),
+        ((0.0, 0.0), "0"),
+    ],
+)
+def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
+    """Reference: half the range by hand; its first digit is the last shown."""
+    assert shown(values) == text
