@@ -36,6 +36,8 @@ TITLE = "Convergence of the paper's example with friction"
 # The models whose integration is refined, and parts of the case's own step.
 STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")
 STEPS = (1.0, 0.5, 0.25)
+# Small enough, in s, for the highest modes of all further refinements.
+FINE_STEP = 1.25e-6
 TERMS = (3, 6, 12, 24)
 ELEMENTS = (2.0, 1.0, 0.5, 0.25)
 # From the paper's series to the shell: what is changed, and the model that has it.
@@ -136,7 +138,7 @@ def survey(case: Case, tell: Callable[[str], None]) -> list[Refinement]:
     ]
     for what, name, sizes, unit, at in asked:
         tell(f"{name}: {what}")
-        found.append(refine(case, what, models[name], sizes, unit, at))
+        found.append(refine(case, what, _with_step(models[name], FINE_STEP), sizes, unit, at))
     return found
 
 
