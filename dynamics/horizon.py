@@ -124,15 +124,21 @@ class Horizons:
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
         """(num_shares) what ends the predictability of a run.
 
-        ``step`` where a finer step parts two runs sooner than the largest of the changes does: a
-        finer step would help. ``physics`` where it does not: data are not known as well as that.
-        ``nothing`` where neither does within the duration.
+        ``step`` where a finer step changes it more than the largest of the changes does: a finer
+        step would help. ``physics`` where it does not: data are not known as well as that.
+        ``nothing`` where neither parts two runs so far within the duration.
+
+        Where growth is known, its line decides for all shares: which of two runs passes a large
+        one first is chance.
         """
+        largest = self.relatives[-1]
         found: list[Literal["step", "physics", "nothing"]] = []
         for of_step, of_data in zip(self.of_step, self.times[-1], strict=True):
+            sooner = of_step < np.nan_to_num(of_data, nan=np.inf)
+            known = np.isfinite(self.step_change)
             if np.isnan(of_step) and np.isnan(of_data):
                 found.append("nothing")
-            elif of_step < np.nan_to_num(of_data, nan=np.inf):
+            elif self.step_change > largest if known else sooner:
                 found.append("step")
             else:
                 found.append("physics")
@@ -145,7 +151,7 @@ def measure_horizons(
     vary: Vary,
     duration: float,
     output_step: float = 1.0e-3,
-    partners: int = 1,
+    partners: int = 3,
     position: Array | None = None,
     velocity: Array | None = None,
     integrator: Integrator | None = None,
@@ -156,8 +162,8 @@ def measure_horizons(
 ) -> Horizons:
     """Run the system as it is, with a finer step, and changed by each size; all at once.
 
-    One partner a size is enough for the growth at a small share; its scatter tells how well it is
-    known. Horizons at large shares are chance, and come sooner the more partners there are.
+    Few partners are enough for the growth at a small share; its scatter tells how well it is known.
+    Horizons at large shares are chance, and come sooner the more partners there are.
 
     Args:
         system: unchanged.

@@ -220,6 +220,7 @@ def integrate(
     gaps, means, peaks = np.zeros((3, outputs + 1, m))
     energies = np.zeros((outputs + 1, len(ENERGIES)))
     states[0], gaps[0] = a, y
+    means[0] = peaks[0] = [w.force(gap) for w, gap in zip(system.laws, y, strict=True)]
     energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
     energies[0, 2] = sum(float(w.energy(y)) for w, y in zip(system.laws, gaps[0], strict=True))
     recorded = (states, energies, gaps, means, peaks, frictions)

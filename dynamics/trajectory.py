@@ -22,6 +22,9 @@ Array = npt.NDArray[np.float64]
 
 Dims = str | tuple[str, str]
 
+# A peak below this part of the deflection is the round-off of something at rest.
+STILL = 1.0e-6
+
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
@@ -30,7 +33,8 @@ class Trajectory:
     Args:
         data: dims ``time`` and ``station``; the output of each observer;
             ``contact_force`` in N, positive where the inner segment presses up, as the mean
-            over the output interval that ends at the time (so that its sum is the impulse);
+            over the output interval that ends at the time (so that its sum is the impulse), at the
+            start as it is;
             ``contact_force_peak``, the largest in that interval; ``friction_force`` in N, the
             mean likewise, positive where it pushes the inner segment along its row; ``gap`` in m,
             the mean of u − w over a station's rows; the energies in J. Coordinate ``direction``
@@ -135,6 +139,8 @@ class Trajectory:
         """
         deflection = np.asarray(self.data[observer].values)
         outstanding = 0.2 * np.ptp(deflection)
+        if outstanding < STILL * np.abs(deflection).max():
+            return float("nan"), float("nan")
         off = deflection - deflection[0]
         side = np.sign(off[np.argmax(np.abs(off) > outstanding)])
         peaks, _ = find_peaks(side * deflection, prominence=outstanding)

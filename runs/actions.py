@@ -37,6 +37,13 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         )
         for number, table in enumerate(case.loads, start=1)
     ]
+    for number, table in enumerate(case.loads, start=1):
+        if table.released and not isinstance(given[number - 1].history, Step):
+            raise BoomError(
+                f"load[{number}].released",
+                "a load that is let go has acted for ever, without ramp, frequency or table; leave "
+                "one of them out",
+            )
     both = list(zip(given, case.loads, strict=True))
     during = [load for load, table in both if not table.released]
     released = [load for load, table in both if table.released]
@@ -62,8 +69,13 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
     """The rests on the ground.
 
     Raises:
-        BoomError: a name that is no segment.
+        BoomError: a name that is no segment, a rest that nothing can press.
     """
+    for number, table in enumerate(case.stops, start=1):
+        if table.stiffness == 0.0 and not table.stiffness_below:
+            raise BoomError(
+                f"stop[{number}].stiffness", "must be positive on one side at least, got 0 on both"
+            )
     return tuple(
         Stop(
             segment=_segment(f"stop[{number}].segment", table.segment, segments),

@@ -31,6 +31,7 @@ def build_boom(case: Case) -> Boom:
         BoomError: no boom can be like that.
     """
     check_names("segment", [segment.name for segment in case.segments])
+    _check_flat(case)
     joints = tuple(_joint(case, number) for number in range(len(case.joints)))
     sections = _sections(case, joints)
     segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
@@ -109,6 +110,10 @@ def _joint(case: Case, index: int) -> Joint:
                 f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; give "
                 "all their stations there",
             )
+    if table.tied and table.friction > 0.0:
+        raise BoomError(
+            f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
+        )
     return Joint(
         outer=names.index(table.outer),
         inner=names.index(table.inner),
@@ -154,6 +159,19 @@ def _masses(case: Case, index: int) -> tuple[PointMass, ...]:
     if case.payload is not None and index == len(case.segments) - 1:
         masses.append(PointMass(table.span[1], case.payload.mass))
     return tuple(masses)
+
+
+def _check_flat(case: Case) -> None:
+    """Nothing acts to the sides of a boom that does not move there."""
+    if _in_space(case):
+        return
+    remedy = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
+    for number, segment in enumerate(case.segments, start=1):
+        if segment.lateral_load != 0.0:
+            raise BoomError(f"segment[{number}].lateral_load", remedy)
+    for number, base in enumerate(case.base, start=1):
+        if base.direction == "y":
+            raise BoomError(f"base[{number}].direction", remedy)
 
 
 def _in_space(case: Case) -> bool:

@@ -160,15 +160,19 @@ def _read_tables(case: Case, path: str) -> Case:
 
 
 def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
-    remedy = "give a CSV file of two columns, time in s and factor"
+    remedy = "give a CSV file of two columns without a heading, time in s and factor"
+    place = Path(path).parent / file
     try:
-        pairs = np.loadtxt(Path(path).parent / file, delimiter=",", ndmin=2)
+        pairs = np.loadtxt(place, delimiter=",", ndmin=2)
     except OSError as error:
-        raise BadInput(path, key, f"{file!r} cannot be read ({error.strerror}); {remedy}") from None
+        reason = error.strerror or "there is no such file"
+        raise BadInput(path, key, f"{str(place)!r} cannot be read ({reason}); {remedy}") from None
     except ValueError:
         raise BadInput(path, key, f"{file!r} holds other than numbers; {remedy}") from None
-    if pairs.size == 0 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise BadInput(path, key, f"{file!r} has other columns; {remedy}")
+    if len(pairs) < 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise BadInput(path, key, f"{file!r} has other columns, or one line alone; {remedy}")
+    if (np.diff(pairs[:, 0]) <= 0.0).any():
+        raise BadInput(path, key, f"the times in {file!r} must rise")
     return tuple((float(t), float(factor)) for t, factor in pairs)
 
 

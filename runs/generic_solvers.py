@@ -108,7 +108,8 @@ def matched(
 ) -> tuple[float | None, float]:
     """The loosest of ``TOLERANCES`` that leaves no more than ``target``, and what it leaves.
 
-    By bisection; None, and the least that was found, where no tolerance leaves so little.
+    By bisection, as if less tolerance left less; None, and the least that was found, where the
+    tightest ones do not.
     """
     residuals: dict[int, float] = {}
 

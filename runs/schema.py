@@ -241,7 +241,7 @@ class HistoryTable(Table):
 
     ramp: Positive | None = Field(None, description="the time in s in which it rises to its value")
     frequency: Positive | None = Field(None, description="the frequency of a sine in Hz")
-    table: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=1)] | None = Field(
+    table: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=2)] | None = Field(
         None,
         description="pairs of a time in s and a factor, linear between them and constant beyond",
     )
@@ -295,7 +295,9 @@ class StartTable(Table):
 class DampingTable(Table):
     """Damping of all modes."""
 
-    modal: NotNegative = Field(0.0, description="the damping ratio of every mode")
+    modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] = Field(
+        0.0, description="the damping ratio of every mode, 0.02 for 2 %"
+    )
     mass: NotNegative = Field(0.0, description="Rayleigh's factor of the mass in 1/s")
     stiffness: NotNegative = Field(0.0, description="Rayleigh's factor of the stiffness in s")
 

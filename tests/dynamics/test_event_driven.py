@@ -18,6 +18,7 @@ from scipy.special import gamma
 from dynamics.contact import PowerContact
 from dynamics.event_driven import integrate_events, what_hinders
 from dynamics.excitation import Excitation, Step
+from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
@@ -273,6 +274,22 @@ def test_refuses_what_has_no_closed_form(change: dict[str, Any], what: str) -> N
     assert what_hinders(system) == what
     with pytest.raises(ValueError, match=f"^{re.escape(what)}; integrate by splitting$"):
         integrate_events(system, 1.0)
+
+
+def test_a_tolerance_that_loses_energy_ends_the_run(one_mass: OneMass) -> None:
+    """The load keeps the mass at the stop, where it swings a hundred times."""
+    system = one_mass(1.0, PowerContact(1.0e4, 2.0, clearance=0.0), force=100.0)
+    assert integrate_events(system, 5.0).energy_residual < 1e-8
+    with pytest.raises(NumericsError, match=r"at a tolerance of 10; make it smaller$"):
+        integrate_events(system, 5.0, tolerance=10.0)
+
+
+def test_endless_rattling_ends(one_mass: OneMass) -> None:
+    """A mass without play between stops so hard that it turns 1e8 times between two outputs."""
+    stop = PowerContact(stiffness=1.0e24, exponent=1.0, clearance=0.0)
+    message = "more than 1000000 contacts follow within 0.001 s; make the contact softer"
+    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
+        integrate_events(one_mass(1.0, stop, force=1.0), 1.0)
 
 
 def test_nothing_hinders_the_rest() -> None:

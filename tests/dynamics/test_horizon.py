@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from dynamics.ensemble import integrate_ensemble
-from dynamics.horizon import Growth, horizon, horizons_of, measure_horizons, spread
+from dynamics.horizon import Growth, Horizons, horizon, horizons_of, measure_horizons, spread
 from dynamics.integrators import Events, Integrator, Splitting
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
@@ -106,14 +107,32 @@ def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
 def test_says_whether_step_or_physics_limits() -> None:
     """The step's error changes a run more than 1e-12 of the load does, and less than 1e-2."""
     for relative, expected in ((1e-12, "step"), (1e-2, "physics")):
-        found = measure_horizons(CHAOTIC, [relative], "load", 20.0, 1e-2)
+        found = measure_horizons(CHAOTIC, [relative], "load", 20.0, 1e-2, partners=1)
         assert found.limits[0] == expected
         assert (found.of_step[0] < found.times[0, 0]) == (expected == "step")
 
 
+def test_growth_decides_where_chance_would() -> None:
+    """Reference: by hand. The finer step passes the large share first by chance, and acts as 1e-9
+    at the small one."""
+    growth = Growth(rate=10.0, start=-1.0, scatter=0.0)
+    found = Horizons(
+        relatives=np.array([1e-12, 1e-6]),
+        shares=np.array([1e-4, 0.01, 0.2]),
+        times=np.array([[1.8, 2.0, np.nan], [0.4, 2.1, np.nan]]),
+        of_step=np.array([1.0, 1.9, np.nan]),
+        growth=[growth, Growth.fit(np.ones(1), np.ones(1)), Growth.fit(np.ones(1), np.ones(1))],
+        step_change=growth.change(1.0),
+    )
+    assert found.step_change == pytest.approx(np.exp(-20.0))
+    assert found.limits == ["physics", "physics", "nothing"]
+    coarse = replace(found, step_change=1e-5)
+    assert coarse.limits == ["step", "step", "nothing"]
+
+
 def test_tells_its_progress() -> None:
     parts: list[float] = []
-    measure_horizons(LINEAR, [1e-9, 1e-6], "load", 1.0, 1e-2, progress=parts.append)
+    measure_horizons(LINEAR, [1e-9, 1e-6], "load", 1.0, 1e-2, partners=1, progress=parts.append)
     assert parts == [0.25, 0.5, 0.75, 1.0]
 
 

@@ -78,6 +78,17 @@ BAD_EDITS = {
         "joint[1].lateral_play: 'inner' does not fit in 'outer': 0.044042 m of width are free, and "
         "a lateral play of 0.1 m is asked for; make the inner section or the lateral play smaller",
     ),
+    "lateral load in a flat boom": (
+        "load = 55.07\n",
+        "load = 55.07\nlateral_load = 20.0\n",
+        "segment[2].lateral_load: the boom is flat, and nothing moves along 'y'; give the joints "
+        "lateral_play",
+    ),
+    "friction of a tied joint": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]\n",
+        "joint[1].friction: the joint is tied, and nothing slides; leave it out",
+    ),
     "load of no segment": (
         "load = 55.07\n\n[[joint]]",
         'load = 55.07\n\n[[load]]\nsegment = "jib"\nmagnitude = 1.0\n\n[[joint]]',

@@ -77,6 +77,29 @@ def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
     assert moved == pytest.approx(np.full(moved.size, -500.0 * 10.0**3 / (3.0 * BENDING)), rel=1e-6)
 
 
+def test_what_rests_is_pressed_from_the_start_and_has_no_peak(tmp_path: Path) -> None:
+    """Reference: analytic. The lever rule on the stop, a cantilever's end under a uniform load that
+    a stiff stop carries with 3/8 of it.
+    """
+    text = """
+    [start]
+    state = "equilibrium"
+    [[load]]
+    segment = "beam"
+    magnitude = -1000.0
+    [[stop]]
+    segment = "beam"
+    x = 10.0
+    play = 0.0
+    stiffness = 0.0
+    stiffness_below = 1e12
+    """
+    results = run(tmp_path, text)
+    forces = results.trajectories["contact_force"].values[0, :, 0]
+    assert forces == pytest.approx(np.full(forces.size, -0.375 * 10_000.0), rel=1e-3)
+    assert results.summary["models"]["beam-fe"]["first_peak"]["tip"] == [None, None]
+
+
 def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
     """Reference: analytic. It starts where the load held it, and swings about zero."""
     text = """
@@ -206,18 +229,40 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "none.csv"',
-            "base[1].file: 'none.csv' cannot be read (None); give a CSV file of two columns, time "
-            "in s and factor",
+            "base[1].file: '{folder}/none.csv' cannot be read (there is no such file); give a CSV "
+            "file of two columns without a heading, time in s and factor",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "words.csv"',
-            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns, "
-            "time in s and factor",
+            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns "
+            "without a heading, time in s and factor",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "three.csv"',
-            "base[1].file: 'three.csv' has other columns; give a CSV file of two columns, time in "
-            "s and factor",
+            "base[1].file: 'three.csv' has other columns, or one line alone; give a CSV file of "
+            "two columns without a heading, time in s and factor",
+        ),
+        (
+            '[[base]]\nacceleration = 1.0\nfile = "back.csv"',
+            "base[1].file: the times in 'back.csv' must rise",
+        ),
+        (
+            '[[base]]\nacceleration = 1.0\ndirection = "y"',
+            "base[1].direction: the boom is flat, and nothing moves along 'y'; give the joints "
+            "lateral_play",
+        ),
+        (
+            '[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nreleased = true',
+            "load[1].released: a load that is let go has acted for ever, without ramp, frequency "
+            "or table; leave one of them out",
+        ),
+        (
+            '[[stop]]\nsegment = "beam"\nx = 10.0\nplay = 0.01\nstiffness = 0.0',
+            "stop[1].stiffness: must be positive on one side at least, got 0 on both",
+        ),
+        (
+            "[damping]\nmodal = 2.0",
+            "damping.modal: must be a number less than 1, got 2.0",
         ),
         (
             "[start]\nvelocity = { fly = 1.0 }",
@@ -236,8 +281,9 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
 def test_says_what_cannot_act(tmp_path: Path, text: str, line: str) -> None:
     (tmp_path / "words.csv").write_text("time, factor\n", encoding="utf-8")
     (tmp_path / "three.csv").write_text("0, 1, 2\n", encoding="utf-8")
+    (tmp_path / "back.csv").write_text("0, 1\n0.2, 2\n0.1, 3\n", encoding="utf-8")
     path = tmp_path / "case.toml"
     path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
     with pytest.raises(BadInput) as caught:
         case_file.load(str(path))
-    assert str(caught.value) == f"{path}: {line}"
+    assert str(caught.value) == f"{path}: {line.format(folder=tmp_path)}"
