@@ -252,6 +252,8 @@ def integrate_events(
         _SHUT * np.where(law[2] > 0.0, law[2], 1.0e-3),
     )
     gaps = system.rows @ a
+    peaks[0] = [w.force(gap) for w, gap in zip(system.laws, gaps, strict=True)]
+    impulses[0] = output_step * peaks[0]
     pressed = 1.0 * (gaps > touch[1]) - (gaps < touch[0])
     tally = np.array([0.0 if pressed.any() else np.nan, 0.0, 0.0])
     series = Series.room(n, law[3])

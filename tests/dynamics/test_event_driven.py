@@ -234,6 +234,8 @@ def test_starts_pressed(one_mass: OneMass) -> None:
     )
     assert run.first_contact == 0.0
     assert run.data.attrs["contact_changes"] == 1
+    for name in ("contact_force", "contact_force_peak"):
+        assert float(run.data[name][0, 0]) == pytest.approx(-0.5, rel=1e-12)
     assert float(run.data["tip"][-1]) == pytest.approx(-0.1 + 0.05 * quarter, rel=1e-12)
 
 
