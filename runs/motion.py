@@ -137,6 +137,7 @@ class Motion:
             "times": [_known(row) for row in found.times],
             "of_step": _known(found.of_step),
             "rate": _known(np.array([growth.rate for growth in found.growth])),
+            "step_change": _known(np.array([found.step_change]))[0],
             "limits": list(found.limits),
         }
 
