@@ -8,7 +8,9 @@ the shell each thing makes that the one leaves out and the other has.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,9 +21,10 @@ from mpi4py import MPI
 from rich.console import Console
 
 from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
 from runs import case as case_file
 from runs.build import build_boom
-from runs.pipeline import run_case
+from runs.motion import Motion
 from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
 from runs.systems import beam_system, reduce_shell
 from runs.tables import TextTable, write
@@ -127,7 +130,8 @@ def survey(case: Case, tell: Callable[[str], None]) -> list[Refinement]:
     found = []
     for name in STEPPED:
         tell(f"{name}: step")
-        (own,) = _steps(case, [name])
+        own = models[name].step or case.time.step
+        assert own is not None
         steps = [factor * own for factor in STEPS]
         found.append(refine(case, "step", models[name], steps, "s", _with_step))
     asked: Sequence[tuple[str, str, Sequence[float], str, Callable[[Model, float], Model]]] = [
@@ -243,12 +247,8 @@ def flexibilities(case: Case) -> TextTable:
     boom = build_boom(case)
     models = {model.name: model for model in case.models}
     beam, shell = models["timoshenko"], models["shell"]
-    assert isinstance(beam, FiniteElementTable)
-    assert isinstance(shell, ShellTable)
-    stiff = beam_system(case, boom, beam)
-    with TemporaryDirectory(prefix="protractile-") as scratch:
-        folder = Path(scratch) / shell.name
-        soft = reduce_shell(case, boom, shell, MPI.COMM_SELF, folder, lambda *_: None).system
+    stiff = _system(case, boom, beam)
+    soft = _system(case, boom, shell)
 
     def compliance(system: GapSystem, rows: Array) -> Array:
         """Diagonal of B (Ω² + σ)⁻¹ Bᵀ in m/N."""
@@ -289,21 +289,19 @@ def main() -> None:
 
 def _tips(case: Case) -> tuple[Array, list[float]]:
     """(num_models, num_times) tips in m, and the first peak of each."""
-    with TemporaryDirectory(prefix="protractile-") as scratch:
-        run = run_case(case, str(CASE), MPI.COMM_SELF, Path(scratch), lambda *_: None)
-    assert run is not None
-    peaks = [entry["first_peak"]["tip"][1] for entry in run.results.summary["models"].values()]
-    return np.asarray(run.results.trajectories["tip"].values), peaks
+    boom = build_boom(case)
+    motions = [Motion.of(_system(case, boom, model), case, boom, model) for model in case.models]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = list(pool.map(lambda motion: motion.trajectory(lambda part: None), motions))
+    return np.array([run.data["tip"].values for run in runs]), [run.first_peak()[1] for run in runs]
 
 
-def _steps(case: Case, names: Sequence[str]) -> list[float]:
-    """The step in s that each model takes by itself."""
-    short = case.time.model_copy(update={"duration": case.time.output_step})
-    chosen = case_file.select(case.model_copy(update={"time": short}), str(CASE), names)
+def _system(case: Case, boom: Boom, model: Model) -> GapSystem:
+    if not isinstance(model, ShellTable):
+        return beam_system(case, boom, model)
     with TemporaryDirectory(prefix="protractile-") as scratch:
-        run = run_case(chosen, str(CASE), MPI.COMM_SELF, Path(scratch), lambda *_: None)
-    assert run is not None
-    return [entry["step"] for entry in run.results.summary["models"].values()]
+        folder = Path(scratch) / model.name
+        return reduce_shell(case, boom, model, MPI.COMM_SELF, folder, lambda *_: None).system
 
 
 def _with_step(model: Model, step: float) -> Model:
