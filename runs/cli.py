@@ -41,6 +41,10 @@ app = typer.Typer(
 )
 
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
+ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")]
+MeshSize = Annotated[
+    float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
+]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
@@ -50,19 +54,14 @@ def run(
     out: Annotated[
         str | None, typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE]")
     ] = None,
-    models: Annotated[
-        str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")
-    ] = None,
-    mesh_size: Annotated[
-        float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
-    ] = None,
+    models: ModelNames = None,
+    mesh_size: MeshSize = None,
     members: Annotated[
         int | None, typer.Option(metavar="N", help="Runs in each model's ensemble, 0 for none.")
     ] = None,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
-    names = None if models is None else [name.strip() for name in models.split(",")]
-    effective = case_file.select(case_file.load(case), case, names, mesh_size, members)
+    effective = case_file.select(case_file.load(case), case, _names(models), mesh_size, members)
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
         comm = sweep_runs.launched_world(case)
@@ -131,12 +130,8 @@ def sweep(
         str | None,
         typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
     ] = None,
-    models: Annotated[
-        str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")
-    ] = None,
-    mesh_size: Annotated[
-        float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
-    ] = None,
+    models: ModelNames = None,
+    mesh_size: MeshSize = None,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -144,8 +139,7 @@ def sweep(
     those of its own play, whatever play a point has. Under mpirun the ranks but the first run the
     points, else the cores do. Ensembles are left out.
     """
-    names = None if models is None else [name.strip() for name in models.split(",")]
-    plan = sweep_points.plan(case, vary, names, mesh_size)
+    plan = sweep_points.plan(case, vary, _names(models), mesh_size)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
     with _all_ranks_end_together(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
@@ -220,6 +214,11 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
             raise
         known = _explain(error)
         ranks.fail(*(known or (traceback.format_exc(), 1)), comm)
+
+
+def _names(models: str | None) -> list[str] | None:
+    """The elements of a comma-separated list."""
+    return None if models is None else [name.strip() for name in models.split(",")]
 
 
 def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from dynamics.comparison import Comparison, Distributions, PeakDifferences, Pointwise, compare
+from runs.known import known
 from runs.questions import tied
 from runs.schema import Case, ShellTable
 
@@ -97,11 +97,11 @@ def _levels(comparison: Comparison) -> dict[str, Any]:
             "explained": peaks.explained.tolist(),
         },
         "distributions": {
-            "since": _known(spread.since),
-            "range": [_known(value) for value in spread.ranges],
-            "mean": [_known(value) for value in spread.means],
-            "deviation": [_known(value) for value in spread.deviations],
-            "distance": _known(spread.distance),
+            "since": known(spread.since),
+            "range": [known(value) for value in spread.ranges],
+            "mean": [known(value) for value in spread.means],
+            "deviation": [known(value) for value in spread.deviations],
+            "distance": known(spread.distance),
         },
     }
 
@@ -114,10 +114,6 @@ def _whole(trajectories: xr.Dataset, reference: str, name: str) -> dict[str, Any
     found = [Pointwise.of(one, other, time, end) for end in dict.fromkeys(ends)]
     return {
         "until": [part.until for part in found],
-        "largest": [_known(part.largest) for part in found],
-        "rms": [_known(part.rms) for part in found],
+        "largest": [known(part.largest) for part in found],
+        "rms": [known(part.rms) for part in found],
     }
-
-
-def _known(number: float) -> float | None:
-    return number if np.isfinite(number) else None

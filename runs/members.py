@@ -16,6 +16,7 @@ from beam_model.segment_model import tied_system
 from dynamics.horizon import SHARES, horizons_of
 from dynamics.slow_motion import CUTOFF_SHARE, SlowPeaks
 from geometry.boom import Boom
+from runs.known import known
 from runs.schema import TimeTable
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def sum_up(ensemble: xr.Dataset, cutoff: float | None) -> dict[str, Any]:
     """
     shares = zip(SHARES, horizons_of(ensemble), strict=True)
     summary: dict[str, Any] = {
-        "horizons": {f"{share:g}": _known(time) for share, time in shares},
+        "horizons": {f"{share:g}": known(time) for share, time in shares},
         "energy_residual": float(ensemble["energy_residual"].max()),
         "slow_peaks": None,
     }
@@ -80,8 +81,8 @@ def sum_up(ensemble: xr.Dataset, cutoff: float | None) -> dict[str, Any]:
             "time_spread": peaks.time_spreads.tolist(),
             "height": peaks.heights.tolist(),
             "height_spread": peaks.height_spreads.tolist(),
-            "period": _known(peaks.period),
-            "period_spread": _known(peaks.period_spread),
+            "period": known(peaks.period),
+            "period_spread": known(peaks.period_spread),
         }
     return summary
 
@@ -102,7 +103,3 @@ def gather(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     return together.drop_vars("station", errors="ignore").assign_attrs(
         vary=kept[0].attrs["vary"], relative=kept[0].attrs["relative"], seed=kept[0].attrs["seed"]
     )
-
-
-def _known(number: float) -> float | None:
-    return number if np.isfinite(number) else None

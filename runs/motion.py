@@ -21,6 +21,7 @@ from dynamics.step import contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs import actions
+from runs.known import known
 from runs.schema import Case, EnsembleTable, Model, TimeTable
 from runs.systems import damped
 
@@ -134,10 +135,10 @@ class Motion:
         return {
             "relatives": found.relatives.tolist(),
             "shares": found.shares.tolist(),
-            "times": [_known(row) for row in found.times],
-            "of_step": _known(found.of_step),
-            "rate": _known(np.array([growth.rate for growth in found.growth])),
-            "step_change": _known(np.array([found.step_change]))[0],
+            "times": [[known(time) for time in row] for row in found.times],
+            "of_step": [known(time) for time in found.of_step],
+            "rate": [known(growth.rate) for growth in found.growth],
+            "step_change": known(found.step_change),
             "limits": list(found.limits),
         }
 
@@ -147,7 +148,3 @@ class Motion:
         return integrator(
             self.system, duration, self.time.output_step, self.position, self.velocity, progress
         )
-
-
-def _known(numbers: Array) -> list[float | None]:
-    return [float(number) if np.isfinite(number) else None for number in numbers]

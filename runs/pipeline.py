@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
-import math
-import platform
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -25,11 +21,13 @@ from runs import members, toml
 from runs.build import build_boom
 from runs.comparisons import compare_models
 from runs.economy import steps_for_peaks
+from runs.known import known
 from runs.motion import Motion
 from runs.results import Results, label
 from runs.schema import Case, Model, ShellTable
 from runs.systems import beam_system, reduce_shell
 from runs.verdicts import judge
+from runs.versions import versions
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -113,7 +111,7 @@ def run_case(
     summary: dict[str, Any] = {
         "title": case.title,
         "case_hash": toml.digest(case),
-        "versions": _versions(),
+        "versions": versions(),
         "models": {name: outcome.summary for name, outcome in outcomes.items()},
     }
     ensembles = members.gather(
@@ -213,11 +211,11 @@ def _summary(
         "seconds": seconds,
         "step": attributes["step"],
         "steps": attributes["steps"],
-        "first_contact": _known(trajectory.first_contact),
+        "first_contact": known(trajectory.first_contact),
         "contact_changes": attributes["contact_changes"],
         "energy_residual": attributes["energy_residual"],
         "first_peak": {
-            name: [_known(number) for number in trajectory.first_peak(name)]
+            name: [known(number) for number in trajectory.first_peak(name)]
             for name in ("tip", "head", "tip_lateral")
             if name in trajectory.data
         },
@@ -235,23 +233,3 @@ def _shell_output(
     ).assign_attrs(model=name)
     names = [segment.name for segment in boom.segments]
     return ShellOutput(fields, dict(zip(names, reduced.meshes, strict=True)))
-
-
-def _known(number: float) -> float | None:
-    return number if math.isfinite(number) else None
-
-
-def _versions() -> dict[str, str | None]:
-    """What computed: a module counts if it has been loaded, which a beam's run spares FEniCSx."""
-    modules: Sequence[str] = (
-        "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
-    )  # fmt: skip
-    try:
-        own = version("protractile")
-    except PackageNotFoundError:
-        own = None
-    return {
-        "protractile": own,
-        "python": platform.python_version(),
-        **{name: getattr(sys.modules.get(name), "__version__", None) for name in modules},
-    }

@@ -22,6 +22,11 @@ _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 _GRACE = 5.0
 
 
+def launched() -> bool:
+    """Whether a launcher has started this process."""
+    return any(name in os.environ for name in _LAUNCHERS)
+
+
 def launched_rank() -> int:
     """This process's rank, 0 without a launcher."""
     return next((int(os.environ[name]) for name in _LAUNCHERS if name in os.environ), 0)

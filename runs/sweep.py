@@ -17,7 +17,6 @@ from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, version
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,13 +24,14 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 from dynamics.failure import NumericsError
-from runs import members, toml
+from runs import members, ranks, toml
 from runs.bad_input import BadInput
 from runs.files import whole
 from runs.pipeline import Progress, run_case
 from runs.quantities import QUANTITIES, Measured, measure
 from runs.schema import Case, ShellTable
 from runs.sweep_points import Point
+from runs.versions import own_version
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -40,9 +40,7 @@ POINTS = "points"
 
 # Libraries that would take all cores in each process.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-# What a launcher tells each process, and all that could make a rank of it: Open MPI, PMIx, MPICH
-# and its kin.
-_LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE")
+# What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
 
@@ -85,7 +83,7 @@ def launched_world(file: str) -> MPI.Intracomm | None:
     Raises:
         BadInput: it did, and mpi4py is not installed.
     """
-    if not any(name in os.environ for name in _LAUNCHED):
+    if not ranks.launched():
         return None
     try:
         from mpi4py import MPI
@@ -105,8 +103,8 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
             have nothing to do any more.
     """
     if comm is not None and comm.size > 1:
-        with members.workers(comm) as ranks:
-            yield ranks
+        with members.workers(comm) as others:
+            yield others
         return
     # A process takes the number of its threads from here when it starts.
     outside = {name: os.environ.get(name) for name in _THREADS}
@@ -204,11 +202,7 @@ def _end_with_parent() -> None:
 
 
 def _key(case: Case) -> str:
-    try:
-        own = version("protractile")
-    except PackageNotFoundError:
-        own = ""
-    return hashlib.sha256(f"{toml.digest(case)} {own}".encode()).hexdigest()
+    return hashlib.sha256(f"{toml.digest(case)} {own_version() or ''}".encode()).hexdigest()
 
 
 def _load(path: Path) -> Outcome | None:

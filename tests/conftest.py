@@ -89,7 +89,7 @@ def paper_law() -> PowerContact:
 def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Runs a Python program with its arguments on two ranks in an empty folder."""
     if shutil.which("mpirun") is None:
-        pytest.skip("mpirun is not installed")
+        pytest.skip("two ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
     environment = {

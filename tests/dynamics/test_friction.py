@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -106,17 +106,25 @@ class Stretch:
         pull = system.load - system.omega2 * state[:n]
         return np.concatenate([state[n:], pull + system.friction_rows.T @ self.forces(state)])
 
-    def event(self, j: int) -> Callable[[float, Array], float]:
-        """Falls through zero when row j comes to rest, or cannot be held any longer."""
 
-        def room(_: float, state: Array) -> float:
-            if self.sign[j] == 0.0:
-                return float(self.limits[j] - abs(self.forces(state)[j]))
-            speed = self.system.friction_rows[j] @ state[self.system.num_modes :]
-            return float(self.sign[j] * speed)
+@dataclass(frozen=True)
+class Turn:
+    """Falls through zero when row j comes to rest, or cannot be held any longer.
 
-        room.terminal, room.direction = True, -1.0  # type: ignore[attr-defined]
-        return room
+    ``terminal`` and ``direction`` are what scipy's ``solve_ivp`` reads of an event.
+    """
+
+    stretch: Stretch
+    j: int
+    terminal: bool = True
+    direction: float = -1.0
+
+    def __call__(self, _: float, state: Array) -> float:
+        stretch, j = self.stretch, self.j
+        if stretch.sign[j] == 0.0:
+            return float(stretch.limits[j] - abs(stretch.forces(state)[j]))
+        speed = stretch.system.friction_rows[j] @ state[stretch.system.num_modes :]
+        return float(stretch.sign[j] * speed)
 
 
 def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: Array) -> Array:
@@ -134,7 +142,7 @@ def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: A
             continue
         part = solve_ivp(
             stretch.rate, (now, times[-1]), state, "DOP853", rtol=1e-11, atol=1e-13,
-            events=[stretch.event(j) for j in range(limits.size)], dense_output=True,
+            events=[Turn(stretch, j) for j in range(limits.size)], dense_output=True,
         )  # fmt: skip
         inside = times[(times > now) & (times <= part.t[-1])]
         out.extend(part.sol(inside).T[:, :n] if inside.size else [])
@@ -305,6 +313,6 @@ def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
         ({"normal_force": float("inf")}, "normal_force must be finite, not negative, got inf N"),
     ],
 )
-def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:
+def test_refuses_what_has_no_meaning(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        DryFriction(**{"coefficient": 0.2, "station": 0, **arguments})  # type: ignore[arg-type]
+        replace(DryFriction(0.2, 0), **arguments)

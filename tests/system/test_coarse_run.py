@@ -100,7 +100,7 @@ def test_snapshots_are_made_again_at_given_times(whole: Path, tmp_path: Path) ->
     again = tmp_path / "out"
     shutil.copytree(whole, again)
     if not can_draw():
-        pytest.skip("VTK finds no working OpenGL")
+        pytest.skip("pictures take OpenGL, and VTK finds none that works")
     assert protractile("snapshot", again, "--time", "0.25") == 0
     names = {path.name for path in (again / "snapshots").iterdir()}
     assert "boom-0.25s.png" in names

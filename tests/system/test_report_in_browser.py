@@ -57,7 +57,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     browser = find_browser()
     if browser is None:
-        pytest.skip("no chromium on PATH")
+        pytest.skip("a report is opened in chromium, and there is none on PATH")
     with blank_page(browser, tmp_path_factory.mktemp("profile")) as opened:
         yield opened
 
