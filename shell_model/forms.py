@@ -27,6 +27,24 @@ SHEAR_CORRECTION = 5.0 / 6.0
 DRILLING = 1.0e-2
 
 
+class Strains(NamedTuple):
+    """Of the mid-surface, in the facet's frame (e1, e2, e3).
+
+    At the height ζ along e3 the strain in the facet is ``membrane`` + ζ ``bending``.
+
+    Args:
+        membrane: (2, 2) ε.
+        bending: (2, 2) κ in 1/m.
+        shear: (2,) γ.
+        drilling: turn of the facet in its plane beyond the rotation about e3, in rad.
+    """
+
+    membrane: Any
+    bending: Any
+    shear: Any
+    drilling: Any
+
+
 class ShellForms(NamedTuple):
     """Compiled bilinear forms, and the linear form of a unit load along ``load_direction``."""
 
@@ -47,6 +65,25 @@ def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
     e3 = e3 / ufl.sqrt(ufl.dot(e3, e3))
     e1 = t1 / ufl.sqrt(ufl.dot(t1, t1))
     return e1, ufl.cross(e3, e1), e3
+
+
+def strains(domain: Any, u: Any, theta: Any) -> Strains:
+    """Strains of a displacement u in m and a rotation θ in rad."""
+    e1, e2, e3 = facet_frame(domain)
+    plane = ufl.as_matrix([[e1[i] for i in range(3)], [e2[i] for i in range(3)]])
+    gradient = ufl.grad(u)
+    in_plane = plane * gradient * plane.T
+    return Strains(
+        membrane=ufl.sym(in_plane),
+        bending=ufl.sym(plane * ufl.grad(ufl.cross(theta, e3)) * plane.T),
+        shear=plane * (gradient.T * e3 + ufl.cross(theta, e3)),
+        drilling=0.5 * (in_plane[1, 0] - in_plane[0, 1]) - ufl.dot(theta, e3),
+    )
+
+
+def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
+    """(2, 2) stress in Pa of a strain (2, 2) in a plate that is free of stress across."""
+    return young / (1.0 - nu**2) * ((1.0 - nu) * strain + nu * ufl.tr(strain) * ufl.Identity(2))
 
 
 def shell_forms(
@@ -73,34 +110,15 @@ def shell_forms(
     }
     young, nu, density = constant["E"], constant["nu"], constant["rho"]
     shear_modulus = young / (2.0 * (1.0 + nu))
-    e1, e2, e3 = facet_frame(domain)
-    plane = ufl.as_matrix([[e1[i] for i in range(3)], [e2[i] for i in range(3)]])
-
-    def in_plane(gradient: Any) -> Any:
-        return plane * gradient * plane.T
-
-    def strains(u: Any, theta: Any) -> tuple[Any, Any, Any, Any]:
-        gradient = ufl.grad(u)
-        membrane = in_plane(gradient)
-        bending = ufl.sym(in_plane(ufl.grad(ufl.cross(theta, e3))))
-        shear = plane * (gradient.T * e3 + ufl.cross(theta, e3))
-        twist = 0.5 * (membrane[1, 0] - membrane[0, 1]) - ufl.dot(theta, e3)
-        return ufl.sym(membrane), bending, shear, twist
-
-    def plane_stress(strain: Any) -> Any:
-        identity = ufl.Identity(2)
-        return young / (1.0 - nu**2) * ((1.0 - nu) * strain + nu * ufl.tr(strain) * identity)
-
     u, theta = ufl.split(ufl.TrialFunction(space))
     v, eta = ufl.split(ufl.TestFunction(space))
-    membrane, bending, shear, twist = strains(u, theta)
-    membrane_v, bending_v, shear_v, twist_v = strains(v, eta)
+    strain, virtual = strains(domain, u, theta), strains(domain, v, eta)
     t = thickness
     stiffness = (
-        t * ufl.inner(plane_stress(membrane), membrane_v)
-        + t**3 / 12.0 * ufl.inner(plane_stress(bending), bending_v)
-        + SHEAR_CORRECTION * shear_modulus * t * ufl.inner(shear, shear_v)
-        + constant["drilling"] * shear_modulus * t * twist * twist_v
+        t * ufl.inner(plane_stress(young, nu, strain.membrane), virtual.membrane)
+        + t**3 / 12.0 * ufl.inner(plane_stress(young, nu, strain.bending), virtual.bending)
+        + SHEAR_CORRECTION * shear_modulus * t * ufl.inner(strain.shear, virtual.shear)
+        + constant["drilling"] * shear_modulus * t * strain.drilling * virtual.drilling
     ) * ufl.dx(degree=2, domain=domain)
     mass = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
     direction = fem.Constant(domain, np.zeros(3, dtype=PETSc.ScalarType))
