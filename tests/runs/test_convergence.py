@@ -1,49 +1,81 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Refinements of a regular motion, and the orders that they show."""
+"""The report of the studies, and the page of proofs."""
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
+import io
+from pathlib import Path
 
-from runs import case as case_file
-from runs.convergence import CASE, WALK, Refinement, refine, table
-from runs.schema import Case, Model
+import pytest
+from rich.console import Console
+
+from runs import convergence
+from runs.studies import verification
+from runs.studies.study import Plot, Proof, Study
+from runs.tables import TextTable
 
 pytestmark = pytest.mark.quick
 
 
-@pytest.fixture
-def case() -> Case:
-    """The first press of the paper's example with friction."""
-    long = case_file.load(str(CASE))
-    time = long.time.model_copy(update={"duration": 0.6})
-    return long.model_copy(update={"time": time})
+def proof(value: float, allowed: float = 0.01) -> Proof:
+    return Proof("roof", value, 0.3024, "m", "external", "MacNeal and Harder 1985", allowed, 1.9)
 
 
-def with_step(model: Model, step: float) -> Model:
-    return model.model_copy(update={"step": step})
+def test_a_proof_holds_within_its_bar() -> None:
+    assert proof(0.3024 * 1.009).holds
+    assert not proof(0.3024 * 1.011).holds
+    # Where the reference is zero, the value is the error.
+    assert not Proof("strain", 0.02, 0.0, "", "analytic", "rigid motion", 0.01).holds
 
 
-def test_orders_are_those_of_a_power_law() -> None:
-    """Reference: analytic, errors of 3 h²."""
-    sizes = np.array([0.4, 0.2, 0.1, 0.05])
-    errors = 3.0 * sizes**2
-    found = Refinement("", "", sizes.tolist(), "m", np.abs(np.diff(errors)).tolist(), [0.1] * 4)
-    assert found.orders == pytest.approx([2.0, 2.0])
+def test_the_page_of_proofs_marks_what_fails() -> None:
+    study = Study("shells", "Shells", tables=[], proofs=[proof(0.3030), proof(0.4)])
+    lines = verification.markdown([study]).splitlines()
+    rows = [line for line in lines if line.startswith("| roof")]
+    assert rows[0] == (
+        "| roof | 0.303 m | 0.3024 m | external | MacNeal and Harder 1985 | 0.2 | 1 | 1.90 | ✓ |"
+    )
+    assert rows[1].endswith("| 32 | 1 | 1.90 | ✗ |")
 
 
-def test_a_finer_step_settles_with_the_splitting_s_order(case: Case) -> None:
-    """Reference: analytic. The splitting is of second order, with friction too."""
-    model = next(model for model in case.models if model.name == "kantorovich-5-linear")
-    found = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], "s", with_step)
-    assert found.differences[0] < 1e-3
-    assert np.mean(found.orders) == pytest.approx(2.0, abs=0.4)
-    rows = table([found]).rows
-    assert [row[0] for row in rows] == ["kantorovich-5-linear: step", "", "", ""]
-    assert rows[-1][2] == ""
+def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = Study(
+        "shells",
+        "Shells",
+        tables=[TextTable("Roof", ("mesh", "m"), [("1", "0.3")], name="roof")],
+        proofs=[proof(0.3030)],
+        plots=[Plot("roof", "It settles", "h (m)", "error", {"roof": ([1, 2], [1, 4])}, "So.")],
+        data={"roof": 0.303},
+    )
+    monkeypatch.setattr(convergence, "run", lambda name: (study, 1.0))
+    monkeypatch.setattr(convergence, "ProcessPoolExecutor", _Here)
+    shown = io.StringIO()
+    folder = tmp_path / "convergence"
+    convergence.survey(["shells"], folder, Console(file=shown, width=120))
+    assert "Roof" in shown.getvalue()
+    assert "Shells: 1 s" in shown.getvalue()
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == [
+        "convergence.json", "convergence.md", "figures", "report.html", "verification.md",
+    ]  # fmt: skip
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "data:image/png" in page
+    assert page.count("MacNeal and Harder 1985") == 1
 
 
-def test_the_walk_has_its_models(case: Case) -> None:
-    names = [model.name for model in case.models]
-    assert [name for _, name in WALK] == names
+class _Here:
+    """A pool that does its work at once."""
+
+    def __init__(self, *_: object, **__: object) -> None: ...
+
+    def __enter__(self) -> _Here:
+        return self
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def submit(self, task, *arguments):  # type: ignore[no-untyped-def]
+        from concurrent.futures import Future
+
+        future = Future()
+        future.set_result(task(*arguments))
+        return future

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How near the shell of the paper's boom is to one of infinitely fine mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import find_peaks
+
+from dynamics.gap_system import GapSystem
+from dynamics.trajectory import Trajectory
+from runs.build import build_boom
+from runs.motion import Motion
+from runs.schema import Case
+from runs.studies.grid_convergence import GridConvergence
+from runs.studies.motions import compliance, friction_case, gap_system, model_of
+from runs.studies.study import Plot, Proof, Study
+from runs.tables import TextTable
+from runs.theme import fixed, number
+
+Array = npt.NDArray[np.float64]
+
+RATIO = 2.0
+# What is allowed of the default mesh, relative to the limit of infinitely fine ones.
+ALLOWED = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured.
+
+    Args:
+        meshes: edge lengths in m, each half the one before, three at least.
+        default: the one that a run takes unless told otherwise.
+        duration: of the motion in s.
+        frequencies, peaks: how many of the lowest natural frequencies, of the first tip peaks.
+    """
+
+    meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
+    default: float = 0.1
+    duration: float = 3.0
+    frequencies: int = 3
+    peaks: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A result on every mesh.
+
+    Args:
+        what: it is.
+        unit: of the values.
+        values: one for each mesh.
+    """
+
+    what: str
+    unit: str
+    values: Sequence[float]
+
+    @property
+    def convergence(self) -> GridConvergence:
+        """Of the three finest."""
+        return GridConvergence.of(self.values, RATIO)
+
+
+def measure(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> list[Quantity]:
+    """Frequencies, flexibilities and tip peaks on every mesh.
+
+    Args:
+        case: with friction and a model ``shell``.
+        sizes: what is measured.
+        tell: told which mesh.
+    """
+    time = case.time.model_copy(update={"duration": sizes.duration})
+    case = case.model_copy(update={"time": time})
+    boom = build_boom(case)
+    results: list[Mapping[tuple[str, str], float]] = []
+    for size in sizes.meshes:
+        tell(f"mesh of {size:g} m")
+        model = model_of(case, "shell").model_copy(update={"mesh_size": size})
+        system = gap_system(case, boom, model)
+        motion = Motion.of(system, case, boom, model).trajectory(lambda part: None)
+        results.append(_quantities(system, motion, sizes))
+    return [
+        Quantity(what, unit, [result[what, unit] for result in results])
+        for what, unit in results[-1]
+    ]
+
+
+def table(quantities: Sequence[Quantity], sizes: Sizes) -> TextTable:
+    """One row a quantity."""
+    rows = []
+    for quantity in quantities:
+        found = quantity.convergence
+        rows.append(
+            (
+                f"{quantity.what} ({quantity.unit})",
+                *(number(value, 6) for value in quantity.values),
+                fixed(found.order, 2),
+                number(found.limit, 6),
+                fixed(100.0 * found.index, 3),
+            )
+        )
+    return TextTable(
+        "Meshes of the paper's boom, with friction",
+        (
+            "quantity",
+            *(f"{size:g} m" for size in sizes.meshes),
+            "order",
+            "limit",
+            "GCI (%)",
+        ),
+        rows,
+        (
+            "Order, Richardson's limit and the grid convergence index of the finest mesh, from the "
+            "three finest, with the safety factor 1.25 (Roache 1994). No order where values do not "
+            "go one way with ever smaller steps.",
+        ),
+        name="meshes",
+    )
+
+
+def proofs(quantities: Sequence[Quantity], sizes: Sizes) -> list[Proof]:
+    """The default mesh against the limit."""
+    default = sizes.meshes.index(sizes.default)
+    found = []
+    for quantity in quantities:
+        convergence = quantity.convergence
+        extrapolated = np.isfinite(convergence.limit)
+        found.append(
+            Proof(
+                what=f"{quantity.what}, mesh of {sizes.default:g} m",
+                value=quantity.values[default],
+                reference=convergence.limit if extrapolated else quantity.values[-1],
+                unit=quantity.unit,
+                kind="other code",
+                source="limit of its refinement (Richardson 1911)"
+                if extrapolated
+                else f"mesh of {sizes.meshes[-1]:g} m",
+                allowed=ALLOWED,
+                order=convergence.order if extrapolated else None,
+            )
+        )
+    return found
+
+
+def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+    """The shell of the paper's boom with friction, on ever finer meshes."""
+    sizes = sizes or Sizes()
+    quantities = measure(friction_case(), sizes, tell)
+    curves = {}
+    for quantity in quantities:
+        limit = quantity.convergence.limit
+        if np.isfinite(limit):
+            errors = [abs(value / limit - 1.0) for value in quantity.values]
+            curves[quantity.what] = (list(sizes.meshes), errors)
+    return Study(
+        name="mesh",
+        title="Meshes of the paper's boom",
+        tables=[table(quantities, sizes)],
+        proofs=proofs(quantities, sizes),
+        plots=[
+            Plot(
+                "mesh",
+                "The shell settles as its mesh refines",
+                "mesh size (m)",
+                "error against the limit",
+                curves,
+                "Relative distance from Richardson's limit of the three finest meshes, for the "
+                "paper's boom with friction.",
+            )
+        ],
+        data={
+            "meshes": list(sizes.meshes),
+            "quantities": [
+                {"what": one.what, "unit": one.unit, "values": list(one.values)}
+                for one in quantities
+            ],
+        },
+    )
+
+
+def _quantities(
+    system: GapSystem, motion: Trajectory, sizes: Sizes
+) -> dict[tuple[str, str], float]:
+    elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]
+    found = {(f"natural frequency {i}", "Hz"): float(f) for i, f in enumerate(elastic, start=1)}
+    flexible = compliance(system, system.rows)
+    for station, x in enumerate(system.stations):
+        row = int(np.argmax(system.station_of_row == station))
+        found[f"contact compliance at {x:g} m", "m/N"] = float(flexible[row])
+    for i, height in enumerate(_peaks(motion)[: sizes.peaks], start=1):
+        found[f"tip peak {i}", "mm"] = 1.0e3 * height
+    return found
+
+
+def _peaks(motion: Trajectory) -> list[float]:
+    """Heights in m of the tip's peaks, on parabolas through the three highest output values."""
+    tip = np.asarray(motion.data["tip"].values)
+    places, _ = find_peaks(tip, prominence=0.2 * np.ptp(tip))
+    before, top, after = tip[places - 1], tip[places], tip[places + 1]
+    bend = before - 2.0 * top + after
+    return [float(height) for height in top - 0.125 * (after - before) ** 2 / bend]

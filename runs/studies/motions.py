@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The motion that the studies share: the paper's example with friction.
+
+It is regular, so that two runs may be compared from moment to moment.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from dynamics.gap_system import GapSystem
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom
+from runs import case as case_file
+from runs.build import build_boom
+from runs.motion import Motion
+from runs.schema import Case, Model, ShellTable
+from runs.systems import beam_system, reduce_shell
+
+Array = npt.NDArray[np.float64]
+
+CASE = Path(__file__).parents[1] / "cases" / "friction-walk.toml"
+
+# At which the flexibility of a station is read: below all elastic modes, above the rigid ones.
+SLOW = 5.0
+
+
+def friction_case() -> Case:
+    """The paper's example with friction, and the models from its series to the shell."""
+    return case_file.load(str(CASE))
+
+
+def model_of(case: Case, name: str) -> Model:
+    """A model by its name."""
+    return next(model for model in case.models if model.name == name)
+
+
+def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
+    """Any model of a case as a gap system, shells on this process alone."""
+    if not isinstance(model, ShellTable):
+        return beam_system(case, boom, model)
+    with TemporaryDirectory(prefix="protractile-") as scratch:
+        folder = Path(scratch) / model.name
+        return reduce_shell(case, boom, model, MPI.COMM_SELF, folder, lambda *_: None).system
+
+
+def trajectories(case: Case) -> list[Trajectory]:
+    """The motions of all models of a case, in their order, side by side on the cores."""
+    boom = build_boom(case)
+    motions = [Motion.of(gap_system(case, boom, m), case, boom, m) for m in case.models]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(lambda motion: motion.trajectory(lambda part: None), motions))
+
+
+def compliance(system: GapSystem, rows: Array) -> Array:
+    """(num_rows,) diagonal of B (Ω² + σ)⁻¹ Bᵀ in m/N, at σ = (2π · ``SLOW``)²."""
+    return np.asarray((rows**2 / (system.omega2 + (2.0 * np.pi * SLOW) ** 2)).sum(axis=1))

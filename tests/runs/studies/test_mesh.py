@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The paper's boom on three coarse meshes."""
+
+from __future__ import annotations
+
+import pytest
+
+from runs.studies.mesh import Sizes, study
+
+TINY = Sizes(meshes=(0.8, 0.4, 0.2), default=0.2, duration=0.9, frequencies=2, peaks=1)
+
+
+def test_coarse_meshes_close_in() -> None:
+    """Reference: other code, the limit of the refinement itself.
+
+    Refinement softens: the lowest frequency falls, compliances rise. The order of quadratic
+    displacements around the box's folded edges is 1.
+    """
+    told: list[str] = []
+    found = study(told.append, TINY)
+    assert told == ["mesh of 0.8 m", "mesh of 0.4 m", "mesh of 0.2 m"]
+    values = {one["what"]: one["values"] for one in found.data["quantities"]}
+    lowest = values["natural frequency 1"]
+    assert lowest[0] > lowest[1] > lowest[2]
+    for what in ("contact compliance at 9 m", "contact compliance at 10 m"):
+        assert values[what][0] < values[what][1] < values[what][2]
+    proofs = {proof.what: proof for proof in found.proofs}
+    frequency = proofs["natural frequency 1, mesh of 0.2 m"]
+    assert frequency.holds
+    assert frequency.error < 0.005
+    assert frequency.order is not None
+    assert 0.8 < frequency.order < 1.5
+    assert values["tip peak 1"][2] == pytest.approx(177.5, rel=0.005)
