@@ -152,7 +152,7 @@ def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> 
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.masses]
     inside = [x for x in (*own, *breaks) if segment.holds(x)]
     places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
-    places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE])]
+    places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE * segment.length])]
     spans = [
         np.linspace(a, b, max(1, int(np.ceil((b - a) / element_length - SAME_PLACE))) + 1)[:-1]
         for a, b in pairwise(places)

@@ -68,6 +68,12 @@ class PowerContact:
         """The same law on the side y < 0 alone."""
         return replace(self, stiffness=0.0, stiffness_below=self.below)
 
+    def one_sided(self, side: int) -> PowerContact | None:
+        """The law on the side of this sign alone; None where it never touches."""
+        if (self.stiffness if side > 0 else self.below) == 0.0:
+            return None
+        return self.upper() if side > 0 else self.lower()
+
     def shared(self, weight: float) -> PowerContact:
         """The part ``weight`` of the law, for one of several points that carry it together."""
         return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)

@@ -19,6 +19,7 @@ from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError
 from dynamics.flight import jump, pulls, safe_time, tabulate
 from dynamics.gap_system import GapSystem
+from dynamics.step import closing_speeds, initial_speeds
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -27,7 +28,7 @@ Array = npt.NDArray[np.float64]
 # five-term case.
 TOLERANCE = 1.0e-10
 
-# A gap is shut within this part of its clearance, or of 1 mm without one.
+# A gap is shut within this part of its clearance; without one, of its way in an output step.
 _SHUT = 1.0e-13
 
 # The shortest jump, as a part of the output step: far below any contact, above round-off.
@@ -206,6 +207,13 @@ def what_hinders(system: GapSystem) -> str | None:
     return None
 
 
+def _way(system: GapSystem, a: Array, v: Array, time: float) -> Array:
+    """(num_rows,) about how far each gap may move within a time, in m."""
+    speeds = closing_speeds(system, initial_speeds(system, a, v))
+    fall = 0.5 * time**2 * np.abs(system.rows) @ np.abs(system.load)
+    return np.asarray(time * speeds + fall)
+
+
 def integrate_events(
     system: GapSystem,
     duration: float,
@@ -249,7 +257,7 @@ def integrate_events(
     touch = (
         np.where(law[1] > 0.0, -law[2], -np.inf),
         np.where(law[0] > 0.0, law[2], np.inf),
-        _SHUT * np.where(law[2] > 0.0, law[2], 1.0e-3),
+        _SHUT * np.where(law[2] > 0.0, law[2], _way(system, a, v, output_step)),
     )
     gaps = system.rows @ a
     peaks[0] = [w.force(gap) for w, gap in zip(system.laws, gaps, strict=True)]

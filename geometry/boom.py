@@ -17,6 +17,8 @@ import numpy.typing as npt
 from geometry.segment import (
     SAME_PLACE,
     BoomError,
+    Collar,
+    Diaphragm,
     Lateral,
     Material,
     PointMass,
@@ -28,11 +30,14 @@ __all__ = [
     "SAME_PLACE",
     "Boom",
     "BoomError",
+    "Collar",
+    "Diaphragm",
     "Direction",
     "Joint",
     "Lateral",
     "Load",
     "Material",
+    "PadSize",
     "PointMass",
     "Segment",
     "Stop",
@@ -40,6 +45,14 @@ __all__ = [
 ]
 
 Direction = Literal["z", "y"]
+
+
+@dataclass(frozen=True, slots=True)
+class PadSize:
+    """A slide pad: its length along x and its width from a corner inwards, in m."""
+
+    length: float
+    width: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +71,7 @@ class Joint:
         normal_forces: N of (28) in N, one for each station; empty in space, where what presses
             is the contact force of the other plane.
         tied: the segments deflect (and in space twist) alike at the stations, without play.
+        pad: of the slide pads in the corners; shells touch in the corners themselves without it.
     """
 
     outer: int
@@ -71,6 +85,7 @@ class Joint:
     friction: float = 0.0
     normal_forces: tuple[float, ...] = ()
     tied: bool = False
+    pad: PadSize | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +98,8 @@ class Load:
         magnitude: in N/m along the whole segment, or in N at one place.
         x: the place in m; None for the whole segment.
         history: (num_times,) in s → (num_times,), what multiplies the magnitude.
+        inertial: whether it is an acceleration of the mass per length along the whole segment,
+            which collars and diaphragms feel beyond that.
     """
 
     segment: int
@@ -90,6 +107,7 @@ class Load:
     magnitude: float
     x: float | None
     history: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+    inertial: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +154,14 @@ class Boom:
         for number, joint in enumerate(self.joints, start=1):
             _check_joint(f"joint[{number}]", joint, self.segments)
         self._check_order()
+        self._check_diaphragms()
         self._check_held()
         if self.spatial:
             self._check_space()
         for number, joint in enumerate(self.joints, start=1):
             _check_friction(f"joint[{number}]", joint, self.spatial)
+            if joint.pad is not None:
+                _check_pad(f"joint[{number}]", joint, joint.pad, self)
         self._check_loads()
         self._check_stops()
 
@@ -184,6 +205,10 @@ class Boom:
         places |= {mass.x for mass in self.segments[segment].masses}
         return tuple(sorted(places))
 
+    def overlap(self, joint: Joint) -> tuple[float, float]:
+        """x in m between which both segments of a joint are."""
+        return _overlap(joint, self.segments)
+
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
 
@@ -213,6 +238,21 @@ class Boom:
                     f"{inner.name!r} is nearer to the base than {outer.name!r}; exchange inner and "
                     "outer",
                 )
+
+    def _check_diaphragms(self) -> None:
+        """No plate closes a box where another one is inside.
+
+        Segments end one beyond the other, so what is deeper inside is inside the next one, too.
+        """
+        for joint in self.joints:
+            outer, inner = self.segments[joint.outer], self.segments[joint.inner]
+            for number, diaphragm in enumerate(outer.diaphragms, start=1):
+                if inner.holds(diaphragm.x):
+                    raise BoomError(
+                        f"segment[{joint.outer + 1}].diaphragms[{number}].x",
+                        f"{inner.name!r} slides inside {outer.name!r} at {diaphragm.x:g} m, and no "
+                        f"plate can close the box there; it must be below {inner.start:g} m",
+                    )
 
     def _check_held(self) -> None:
         held = {i for i, segment in enumerate(self.segments) if segment.rigid_modes == 0}
@@ -262,7 +302,8 @@ class Boom:
             segment = self.segments[stop.segment]
             _check_place(f"stop[{number}].x", stop.x, segment)
             for support in segment.supports:
-                if support.stiffness is None and abs(support.x - stop.x) <= SAME_PLACE:
+                near = SAME_PLACE * segment.length
+                if support.stiffness is None and abs(support.x - stop.x) <= near:
                     raise BoomError(
                         f"stop[{number}].x",
                         f"a support holds {segment.name!r} at {stop.x:g} m already; move one of "
@@ -270,9 +311,14 @@ class Boom:
                     )
 
 
+def _overlap(joint: Joint, segments: tuple[Segment, ...]) -> tuple[float, float]:
+    outer, inner = segments[joint.outer], segments[joint.inner]
+    return max(outer.start, inner.start), min(outer.end, inner.end)
+
+
 def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> None:
     outer, inner = segments[joint.outer], segments[joint.inner]
-    start, end = max(outer.start, inner.start), min(outer.end, inner.end)
+    start, end = _overlap(joint, segments)
     if not start < end:
         raise BoomError(
             where,
@@ -286,25 +332,47 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
                 f"{x:g} m lies outside the overlap of {outer.name!r} and {inner.name!r}; it must "
                 f"be between {start:g} and {end:g} m",
             )
-    if any(right - left <= SAME_PLACE for left, right in pairwise(joint.stations)):
+    near = SAME_PLACE * outer.length
+    if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")
     if outer.section is None or inner.section is None:
         return
     height = outer.section.clear_height_around(inner.section)
     width = outer.section.clear_width_around(inner.section)
-    if height < 2.0 * joint.clearance - SAME_PLACE or width < 0.0:
+    if height < 2.0 * joint.clearance - near or width < 0.0:
         raise BoomError(
             f"{where}.play",
             f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
             f"{width:.6g} m of width are free, and a play of {2.0 * joint.clearance:.6g} m is "
             "asked for; make the inner section or the play smaller",
         )
-    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - SAME_PLACE:
+    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - near:
         raise BoomError(
             f"{where}.lateral_play",
             f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
             f"a lateral play of {2.0 * joint.lateral_clearance:.6g} m is asked for; make the inner "
             "section or the lateral play smaller",
+        )
+
+
+def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
+    if joint.tied:
+        raise BoomError(f"{where}.pad", "the joint is tied, and nothing touches; leave it out")
+    start, end = boom.overlap(joint)
+    if not 0.0 < pad.length <= end - start:
+        raise BoomError(
+            f"{where}.pad.length",
+            f"must be above 0 and not above the overlap of {end - start:g} m, got {pad.length:g} m",
+        )
+    section = boom.segments[joint.inner].section
+    if section is None:
+        return
+    room = 0.5 * (min(section.width, section.height) if boom.spatial else section.width)
+    if not 0.0 < pad.width <= room:
+        raise BoomError(
+            f"{where}.pad.width",
+            f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m, got "
+            f"{pad.width:g} m",
         )
 
 

@@ -5,7 +5,8 @@ Every wall is cut into transfinite patches, so that mesh lines lie exactly where
 stations and contact points are, whatever the lengths and the mesh size, and so that the mesh
 does not depend on gmsh's version. The triangles mirror each other in y and in z: a load in
 the plane of bending then moves the section in that plane, to round-off. The mesh of a box on
-its side lies on its side.
+its side lies on its side. A diaphragm has four patches, which share the nodes of its outline
+with the walls: there an edge has three triangles.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 import gmsh
 import meshio
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import SAME_PLACE
+from geometry.boom import SAME_PLACE, Segment
 from geometry.section import BoxSection
 
 WALLS = ("bottom", "right", "top", "left")
@@ -34,7 +36,8 @@ class SegmentMesh:
     Args:
         points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
         triangles: (num_triangles, 3) point numbers.
-        walls: (num_triangles,) position of each triangle's wall in ``WALLS``.
+        walls: (num_triangles,) position of each triangle's wall in ``WALLS``; ``len(WALLS)`` + k
+            on the diaphragm k.
         lines: name of a cross-section line → (num_edges, 2) point numbers.
     """
 
@@ -42,6 +45,11 @@ class SegmentMesh:
     triangles: npt.NDArray[np.int64]
     walls: npt.NDArray[np.int32]
     lines: Mapping[str, npt.NDArray[np.int64]]
+
+    @property
+    def on_walls(self) -> npt.NDArray[np.bool_]:
+        """(num_triangles,) False on diaphragms."""
+        return np.asarray(self.walls < len(WALLS))
 
     def write(self, path: Path) -> None:
         """Write for ParaView (``.vtu``) with the wall of each triangle as a field."""
@@ -55,16 +63,18 @@ def mesh_segment(
     breaks: Mapping[str, float],
     size: float,
     msh: Path | None = None,
+    closed: Sequence[str] = (),
 ) -> SegmentMesh:
-    """Mesh the four walls of a box.
+    """Mesh the four walls of a box, and the plates that close it.
 
     Args:
         section: its mid-lines are meshed.
         breaks: name → x in m of each outline that must be a mesh line; the smallest and the
             largest x are the ends of the segment. Two names may share a place.
         size: target edge length in m; every patch gets the nearest whole number of edges.
-        msh: where to write gmsh's own file, with a physical group for each wall, and for
-            each break and wall the line ``NAME:WALL``.
+        msh: where to write gmsh's own file, with a physical group for each wall and diaphragm,
+            and for each break and wall the line ``NAME:WALL``.
+        closed: names of the breaks at which a diaphragm stands, in their order.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
@@ -75,25 +85,68 @@ def mesh_segment(
     if len(outlines) < 2:
         raise ValueError("a segment needs breaks at two places at least, its ends")
     corners, walls = _ring(section)
+    at = {name: int(np.abs(np.array(outlines) - x).argmin()) for name, x in breaks.items()}
     with _gmsh_model():
-        wall_surfaces, ring_curves = _build_patches(outlines, corners, walls, size)
-        for wall, surfaces in wall_surfaces.items():
-            gmsh.model.addPhysicalGroup(2, surfaces, name=wall)
-        for name, x in breaks.items():
-            at = int(np.argmin([abs(x - outline) for outline in outlines]))
+        plates, rings = _build_patches(outlines, corners, walls, size)
+        plates |= {
+            name: _close(outlines[at[name]], rings[at[name]], section, size) for name in closed
+        }
+        gmsh.model.geo.synchronize()
+        for plate, surfaces in plates.items():
+            gmsh.model.addPhysicalGroup(2, surfaces, name=plate)
+        for name in breaks:
+            ring = rings[at[name]].curves
             for wall in WALLS:
-                curves = [c for c, w in zip(ring_curves[at], walls, strict=True) if w == wall]
+                curves = [c for c, w in zip(ring, walls, strict=True) if w == wall]
                 gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{wall}")
         gmsh.model.mesh.generate(2)
         if msh is not None:
             gmsh.write(str(msh))
-        return _extract(wall_surfaces)
+        return _extract(plates)
+
+
+def collar_breaks(segment: Segment) -> dict[str, float]:
+    """Name → x in m of the ends of a segment's collars."""
+    breaks: dict[str, float] = {}
+    for k, collar in enumerate(segment.collars, start=1):
+        breaks |= {f"collar-{k}-start": collar.start, f"collar-{k}-end": collar.end}
+    return breaks
+
+
+def diaphragm_breaks(segment: Segment) -> dict[str, float]:
+    """Name → x in m of a segment's diaphragms, in their order."""
+    return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
+
+
+def plain_thickness(section: BoxSection, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+    """(num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
+    of_wall = [section.flange if wall in ("bottom", "top") else section.web for wall in WALLS]
+    return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(WALLS))])
+
+
+def plate_thickness(segment: Segment, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+    """(num_triangles,) thickness in m of all plates of a segment with a box section.
+
+    Args:
+        segment: its diaphragms are those of the mesh, in the same order.
+        mesh: with lines at the ends of the collars.
+    """
+    assert segment.section is not None
+    thickness = plain_thickness(segment.section, mesh)
+    x = mesh.points[mesh.triangles, 0].mean(axis=1)
+    for collar in segment.collars:
+        thickness[mesh.on_walls & (x > collar.start) & (x < collar.end)] += collar.thickness
+    for number, diaphragm in enumerate(segment.diaphragms, start=len(WALLS)):
+        thickness[mesh.walls == number] = diaphragm.thickness
+    return thickness
 
 
 def _merge_places(values: Iterable[float]) -> list[float]:
+    ordered = sorted(values)
+    near = SAME_PLACE * max((abs(x) for x in ordered), default=0.0)
     places: list[float] = []
-    for x in sorted(values):
-        if not places or x - places[-1] > SAME_PLACE:
+    for x in ordered:
+        if not places or x - places[-1] > near:
             places.append(x)
     return places
 
@@ -116,13 +169,20 @@ def _gmsh_model() -> Iterator[None]:
         gmsh.finalize()
 
 
+class _Ring(NamedTuple):
+    """gmsh's points and curves once around the box; a curve begins at the point of its number."""
+
+    points: Sequence[int]
+    curves: Sequence[int]
+
+
 def _build_patches(
     outlines: Sequence[float],
     corners: Sequence[tuple[float, float]],
     walls: Sequence[str],
     size: float,
-) -> tuple[dict[str, list[int]], list[list[int]]]:
-    """Transfinite patches; gives surfaces by wall, and ring curves by outline."""
+) -> tuple[dict[str, list[int]], list[_Ring]]:
+    """Transfinite patches; gives surfaces by wall, and the ring of each outline."""
     geo = gmsh.model.geo
     n = len(corners)
     points = [[geo.addPoint(x, y, z) for y, z in corners] for x in outlines]
@@ -147,8 +207,26 @@ def _build_patches(
                 _divide(ring, float(np.hypot(y1 - y0, z1 - z0)), size)
             for rail in (rails[i][j], rails[i][k]):
                 _divide(rail, x1 - x0, size)
-    geo.synchronize()
-    return surfaces, rings
+    return surfaces, [_Ring(p, curves) for p, curves in zip(points, rings, strict=True)]
+
+
+def _close(x: float, ring: _Ring, section: BoxSection, size: float) -> list[int]:
+    """Transfinite patches of a diaphragm, one in each corner; gives their surfaces."""
+    geo = gmsh.model.geo
+    middle = geo.addPoint(x, 0.0, 0.0)
+    spokes = {}
+    for j in range(1, 8, 2):
+        spokes[j] = geo.addLine(ring.points[j], middle)
+        _divide(spokes[j], 0.5 * (section.height if j % 4 == 1 else section.width), size)
+    surfaces = []
+    for j in range(0, 8, 2):
+        before, after = (j - 1) % 8, j + 1
+        sides = [ring.curves[before], ring.curves[j], spokes[after], -spokes[before]]
+        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop(sides)]))
+        # Every diagonal runs from the middle towards a corner, for the mirrors' sake.
+        ends = [ring.points[before], ring.points[j], ring.points[after], middle]
+        geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", ends)
+    return surfaces
 
 
 def _divide(curve: int, length: float, size: float) -> None:
@@ -156,17 +234,17 @@ def _divide(curve: int, length: float, size: float) -> None:
     gmsh.model.geo.mesh.setTransfiniteCurve(curve, edges + 1)
 
 
-def _extract(wall_surfaces: Mapping[str, Sequence[int]]) -> SegmentMesh:
+def _extract(plates: Mapping[str, Sequence[int]]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)
     triangles, walls = [], []
-    for wall, surfaces in wall_surfaces.items():
+    for number_of_plate, surfaces in enumerate(plates.values()):
         for surface in surfaces:
             _, nodes = mesh.getElementsByType(2, surface)
             triangles.append(number[nodes].reshape(-1, 3))
-            walls.append(np.full(len(triangles[-1]), WALLS.index(wall), dtype=np.int32))
+            walls.append(np.full(len(triangles[-1]), number_of_plate, dtype=np.int32))
     lines = {}
     for dim, group in gmsh.model.getPhysicalGroups(1):
         curves = gmsh.model.getEntitiesForPhysicalGroup(dim, group)

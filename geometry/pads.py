@@ -3,7 +3,8 @@
 
 In a flat boom a joint touches on the axis of its segments, above and below in one place. In
 space it touches in the corners of its boxes, where slide pads sit because a box is stiff there:
-on each flange above the two webs, on each web beside the two flanges.
+on each flange above the two webs, on each web beside the two flanges. Pads of a given size are
+patches that reach from the corners inwards.
 """
 
 from __future__ import annotations
@@ -16,6 +17,21 @@ from geometry.boom import Boom, Direction, Joint
 
 Side = Literal[-1, 0, 1]
 Offset = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """Where a pad of a given size lies on a wall of the inner segment.
+
+    Args:
+        start, end: x in m.
+        near, far: distances in m from the middle of the wall, of its edge and of the wall's.
+    """
+
+    start: float
+    end: float
+    near: float
+    far: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,3 +122,19 @@ def _points(
             if direction == "y":
                 within, around = within[::-1], around[::-1]
             yield side, within, around, 0.5
+
+
+def patch(boom: Boom, pad: Pad) -> Patch | None:
+    """The wall that a pad covers; None for a joint whose pads are points.
+
+    It is centred at its station, but moved inwards where the overlap ends, and reaches from the
+    corner of the inner box inwards.
+    """
+    size, section = pad.joint.pad, boom.segments[pad.joint.inner].section
+    if size is None:
+        return None
+    assert section is not None
+    first, last = boom.overlap(pad.joint)
+    start = min(max(pad.x - 0.5 * size.length, first), last - size.length)
+    half = 0.5 * (section.width if pad.direction == "z" else section.height)
+    return Patch(start, start + size.length, half - size.width, half)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from scipy.optimize import brentq
 
-# No plate is thinner (m).
+# No inner box is lower than this part of the outer one.
 SMALLEST = 1.0e-6
 
 
@@ -139,7 +139,7 @@ def infer_outer_section(
             lambda h: box(h).second_moment_of_area - second_moment_of_area,
             0.7 * estimate,
             1.3 * estimate,
-            xtol=1e-15,
+            xtol=1e-15 * estimate,
             rtol=1e-14,
         )
     except ValueError:
@@ -177,7 +177,7 @@ def infer_inner_section(
 
     # With height = H − t and width = A/2t − height, the wall is thickest where the width is
     # down to the wall itself, and thinnest where width + t fills the outer section.
-    thickest = area / (2.0 * max(outside_height, SMALLEST))
+    thickest = area / (2.0 * max(outside_height, SMALLEST * outer.height))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))
     walls = np.linspace(thinnest, thickest, 401)[:-1]
@@ -194,5 +194,7 @@ def infer_inner_section(
             "take up the difference to the stated clearance"
         )
     first = crossing[0]
-    wall = brentq(defect, walls[first], walls[first + 1], xtol=1e-15, rtol=1e-14)
+    wall = brentq(
+        defect, walls[first], walls[first + 1], xtol=1e-15 * walls[first], rtol=1e-14
+    )
     return box(float(wall))

@@ -12,8 +12,9 @@ from typing import Literal
 
 from geometry.section import BoxSection
 
-# Two lengths closer than this (m) are the same place: far below any plate, far above round-off.
-SAME_PLACE = 1.0e-9
+# Two places closer than this part of a segment's length are one: far below any plate, far above
+# round-off, in whatever unit.
+SAME_PLACE = 1.0e-10
 
 
 class BoomError(ValueError):
@@ -64,6 +65,33 @@ class PointMass:
 
 
 @dataclass(frozen=True, slots=True)
+class Collar:
+    """A doubler around the box, on all four walls; the walls' mid-surfaces stay where they are.
+
+    Args:
+        start, end: x of its ends in m.
+        thickness: what it adds to each wall in m.
+    """
+
+    start: float
+    end: float
+    thickness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Diaphragm:
+    """A plate that closes the box at x, welded to its four walls.
+
+    Args:
+        x: of its mid-surface in m.
+        thickness: m.
+    """
+
+    x: float
+    thickness: float
+
+
+@dataclass(frozen=True, slots=True)
 class Lateral:
     """What a beam in space has beyond one in the plane x-z.
 
@@ -99,6 +127,8 @@ class Segment:
         viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
         masses: what it carries.
         lateral: what a boom in space needs.
+        collars, diaphragms: what stiffens the plates; beams do not know of them, and the numbers
+            above are those of the plain box.
     """
 
     name: str
@@ -114,6 +144,8 @@ class Segment:
     viscous_damping: float = 0.0
     masses: tuple[PointMass, ...] = ()
     lateral: Lateral | None = None
+    collars: tuple[Collar, ...] = ()
+    diaphragms: tuple[Diaphragm, ...] = ()
 
     @property
     def length(self) -> float:
@@ -138,7 +170,8 @@ class Segment:
 
     def holds(self, x: float) -> bool:
         """Whether x lies on the segment, its ends included."""
-        return self.start - SAME_PLACE <= x <= self.end + SAME_PLACE
+        near = SAME_PLACE * self.length
+        return self.start - near <= x <= self.end + near
 
     def turned(self) -> Segment:
         """The segment with its two planes exchanged: what it does along y, this one does along z.
@@ -169,7 +202,8 @@ class Segment:
             where: its key, ``segment[2]`` say.
 
         Raises:
-            BoomError: an empty span, a support or a mass off the segment or impossible.
+            BoomError: an empty span; a support, a mass, a collar or a diaphragm off the segment
+                or impossible.
         """
         if not self.start < self.end:
             raise BoomError(
@@ -180,7 +214,7 @@ class Segment:
             self._check_place(f"{where}.supports", support.x)
             _check_stiffness(f"{where}.supports", support)
         places = sorted(support.x for support in self.supports)
-        if any(right - left <= SAME_PLACE for left, right in pairwise(places)):
+        if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
             raise BoomError(f"{where}.supports", "a place is given twice; give each once")
         for mass in self.masses:
             self._check_place(f"{where}.masses", mass.x)
@@ -188,6 +222,38 @@ class Segment:
                 raise BoomError(
                     f"{where}.masses", f"must be positive numbers of kg, got {mass.mass:g}"
                 )
+        self._check_collars(where)
+        self._check_diaphragms(where)
+
+    def _check_collars(self, where: str) -> None:
+        for number, collar in enumerate(self.collars, start=1):
+            key = f"{where}.collars[{number}]"
+            _check_thickness(key, collar.thickness)
+            if not collar.end - collar.start > SAME_PLACE * self.length:
+                raise BoomError(
+                    f"{key}.span",
+                    "must run from a smaller to a larger x, got "
+                    f"[{collar.start:g}, {collar.end:g}] m",
+                )
+            for x in (collar.start, collar.end):
+                self._check_place(f"{key}.span", x)
+        rising = sorted(self.collars, key=lambda collar: collar.start)
+        for left, right in pairwise(rising):
+            if left.end - right.start > SAME_PLACE * self.length:
+                raise BoomError(
+                    f"{where}.collars",
+                    f"two lie on one another from {right.start:g} m on; give one of the thickness "
+                    "of both there",
+                )
+
+    def _check_diaphragms(self, where: str) -> None:
+        for number, diaphragm in enumerate(self.diaphragms, start=1):
+            key = f"{where}.diaphragms[{number}]"
+            _check_thickness(key, diaphragm.thickness)
+            self._check_place(f"{key}.x", diaphragm.x)
+        places = sorted(diaphragm.x for diaphragm in self.diaphragms)
+        if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
+            raise BoomError(f"{where}.diaphragms", "a place is given twice; give each once")
 
     def _check_place(self, where: str, x: float) -> None:
         if not self.holds(x):
@@ -196,6 +262,11 @@ class Segment:
                 f"{x:g} m lies outside the segment; it must be between {self.start:g} and "
                 f"{self.end:g} m",
             )
+
+
+def _check_thickness(where: str, thickness: float) -> None:
+    if not 0.0 < thickness < float("inf"):
+        raise BoomError(f"{where}.thickness", f"must be a positive number of m, got {thickness:g}")
 
 
 def _check_stiffness(where: str, support: Support) -> None:

@@ -55,9 +55,8 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         history = _history(f"base[{number}]", base)
         for index, segment in enumerate(segments):
             felt = -base.acceleration
-            during.append(
-                Load(index, base.direction, felt * segment.mass_per_length, None, history)
-            )
+            inertia = felt * segment.mass_per_length
+            during.append(Load(index, base.direction, inertia, None, history, inertial=True))
             during += [
                 Load(index, base.direction, felt * point.mass, point.x, history)
                 for point in segment.masses
@@ -129,7 +128,8 @@ def _throws(case: Case, segments: Sequence[Segment]) -> list[Load]:
     for name, speed in case.start.velocity.items():
         index = _segment("start.velocity", name, segments)
         segment = segments[index]
-        throws.append(Load(index, "z", speed * segment.mass_per_length, None, Step()))
+        momentum = speed * segment.mass_per_length
+        throws.append(Load(index, "z", momentum, None, Step(), inertial=True))
         throws += [
             Load(index, "z", speed * point.mass, point.x, Step()) for point in segment.masses
         ]

@@ -21,6 +21,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "masses": schema.MassTable,
     "segment": schema.SegmentTable,
     "restitution": schema.RestitutionTable,
+    "pad": schema.PadTable,
     "joint": schema.JointTable,
     "contact": schema.ContactTable,
     "stop": schema.StopTable,
@@ -95,6 +96,8 @@ def _explain(
         what = f"must be a number less than {limits['lt']:g}"
     elif fault == "less_than_equal":
         what = f"must be a number not greater than {limits['le']:g}"
+    elif fault == "modes":
+        what = "must be a whole number above 0, or 'auto'"
     elif fault == "literal_error":
         what = f"must be {limits['expected']}"
     elif fault == "too_short":

@@ -6,7 +6,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.contact import PowerContact, restitution_damping
-from geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment, Support
+from geometry.boom import (
+    Boom,
+    BoomError,
+    Collar,
+    Diaphragm,
+    Joint,
+    Lateral,
+    Material,
+    PadSize,
+    PointMass,
+    Segment,
+    Support,
+)
 from geometry.section import BoxSection, SectionError, infer_inner_section, infer_outer_section
 from runs import actions
 from runs.bad_input import choices
@@ -128,6 +140,7 @@ def _joint(case: Case, index: int) -> Joint:
         friction=table.friction,
         normal_forces=table.normal_forces,
         tied=table.tied,
+        pad=None if table.pad is None else PadSize(table.pad.length, table.pad.width),
     )
 
 
@@ -150,6 +163,8 @@ def _segment(case: Case, index: int, section: BoxSection | None) -> Segment:
         viscous_damping=table.viscous_damping,
         masses=_masses(case, index),
         lateral=_lateral(table, material, section) if _in_space(case) else None,
+        collars=tuple(Collar(*collar.span, collar.thickness) for collar in table.collars),
+        diaphragms=tuple(Diaphragm(**plate.model_dump()) for plate in table.diaphragms),
     )
 
 

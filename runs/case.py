@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -22,9 +22,11 @@ from runs.schema import (
     FiniteElementTable,
     HistoryTable,
     KantorovichTable,
+    Model,
     ShellTable,
     TimeTable,
 )
+from runs.shell_contact import check_contact
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
 MOST_OUTPUTS = 10_000_000
@@ -76,8 +78,9 @@ def select(
     models: Sequence[str] | None = None,
     mesh_size: float | None = None,
     members: int | None = None,
+    modes: str | None = None,
 ) -> Case:
-    """The case with the named models alone, another mesh for its shells, other ensembles.
+    """The case with the named models alone, other shells, other ensembles.
 
     Args:
         case: a checked one.
@@ -85,10 +88,11 @@ def select(
         models: names; all unless given.
         mesh_size: in m.
         members: of each ensemble; 0 for none.
+        modes: of the shells: a number, or ``auto``.
 
     Raises:
-        BadInput: a name that the case does not know, a mesh size that is not positive, or one
-            that nothing would use, a single member.
+        BadInput: a name that the case does not know, a mesh size or modes that cannot be or that
+            nothing would use, a single member.
     """
     chosen = case.models
     if models is not None:
@@ -104,18 +108,16 @@ def select(
             raise BadInput(
                 path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
             )
-        if not any(isinstance(model, ShellTable) for model in chosen):
-            raise BadInput(path, "--mesh-size", "no shell is to be run; leave it out")
         try:
             _check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         except BoomError as error:
             raise BadInput(path, error.where, error.what) from None
-        chosen = tuple(
-            model.model_copy(update={"mesh_size": mesh_size})
-            if isinstance(model, ShellTable)
-            else model
-            for model in chosen
-        )
+        chosen = _with_shells(chosen, path, "--mesh-size", {"mesh_size": mesh_size})
+    if modes is not None:
+        if modes != "auto" and not (modes.isdecimal() and int(modes) > 0):
+            raise BadInput(path, "--modes", f"must be a number above 0, or auto, got {modes!r}")
+        number = "auto" if modes == "auto" else int(modes)
+        chosen = _with_shells(chosen, path, "--modes", {"modes": number})
     ensemble = case.ensemble
     if members is not None:
         if members == 1 or not 0 <= members <= MOST_MEMBERS:
@@ -127,6 +129,18 @@ def select(
         given = {} if ensemble is None else ensemble.model_dump()
         ensemble = EnsembleTable.model_validate({**given, "members": members}) if members else None
     return case.model_copy(update={"models": chosen, "ensemble": ensemble})
+
+
+def _with_shells(
+    models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
+) -> tuple[Model, ...]:
+    """The models with the shells changed as an option says."""
+    if not any(isinstance(model, ShellTable) for model in models):
+        raise BadInput(path, option, "no shell is to be run; leave it out")
+    return tuple(
+        model.model_copy(update=update) if isinstance(model, ShellTable) else model
+        for model in models
+    )
 
 
 def _read(path: str) -> dict[str, object]:
@@ -251,11 +265,7 @@ def _check_models(case: Case, boom: Boom) -> None:
                     )
         if isinstance(model, ShellTable):
             _check_mesh_size(f"{where}.mesh_size", model.mesh_size, boom)
-            if boom.spatial and model.contact_line == "across":
-                raise BoomError(
-                    f"{where}.contact_line",
-                    "'across' is for a flat boom; in space the segments touch 'near webs'",
-                )
+            check_contact(where, case, boom, model)
             for i, segment in enumerate(boom.segments, start=1):
                 if segment.viscous_damping > 0.0:
                     raise BoomError(

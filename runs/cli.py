@@ -23,6 +23,7 @@ from runs import case as case_file
 from runs import output, ranks, sweep_output, sweep_points
 from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
+from runs.cache import Cache, default_folder
 from runs.inferred import print_inferred
 from runs.pipeline import Progress as Tell
 from runs.pipeline import run_case
@@ -45,6 +46,17 @@ ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run th
 MeshSize = Annotated[
     float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
 ]
+Modes = Annotated[
+    str | None,
+    typer.Option(
+        metavar="N|auto",
+        help="Coordinates of each shell segment, at most; auto for what its tolerance asks.",
+    ),
+]
+NoCache = Annotated[
+    bool,
+    typer.Option("--no-cache", help="Reduce shells afresh, and leave the user's cache alone."),
+]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
@@ -56,23 +68,28 @@ def run(
     ] = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
+    modes: Modes = None,
     members: Annotated[
         int | None, typer.Option(metavar="N", help="Runs in each model's ensemble, 0 for none.")
     ] = None,
+    no_cache: NoCache = False,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
-    effective = case_file.select(case_file.load(case), case, _names(models), mesh_size, members)
+    effective = case_file.select(
+        case_file.load(case), case, _names(models), mesh_size, members, modes
+    )
+    cache = None if no_cache else Cache(default_folder())
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
         comm = sweep_runs.launched_world(case)
     with _all_ranks_end_together(comm), TemporaryDirectory(prefix="protractile-") as scratch:
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                run_case(effective, case, comm, Path(scratch), _silence)
+                run_case(effective, case, comm, Path(scratch), _silence, cache)
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with _progress_bars() as tell:
-            finished = run_case(effective, case, comm, Path(scratch), tell)
+            finished = run_case(effective, case, comm, Path(scratch), tell, cache)
         assert finished is not None
         output.write(finished, folder, Path(scratch))
         print(f"{folder / output.REPORT}")
@@ -132,6 +149,7 @@ def sweep(
     ] = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
+    no_cache: NoCache = False,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -149,7 +167,9 @@ def sweep(
             if pool is None:
                 return 0
             with _progress_bars() as tell:
-                outcomes = sweep_runs.run_points(plan.points, folder, pool, tell)
+                outcomes = sweep_runs.run_points(
+                    plan.points, folder, pool, tell, None if no_cache else Cache(default_folder())
+                )
         data = sweep_output.write(plan, outcomes, folder)
         print(folder / sweep_output.CSV)
         sweep_output.show(data, Console())

@@ -29,7 +29,7 @@ OUT = Path("runs/out/convergence")
 TITLE = "What proves the models"
 
 # Modules of runs.studies in the order of the report.
-STUDIES = ("mesh", "refinement", "walk")
+STUDIES = ("benchmarks", "mesh", "stress", "stiffeners", "refinement", "walk")
 
 
 def run(name: str) -> tuple[Study, float]:

@@ -15,6 +15,7 @@ from runs.energy_figures import energies, residuals
 from runs.horizon_figures import horizons, slow_peaks
 from runs.pen import Figure, Pen
 from runs.results import Results
+from runs.stress_figures import stress_history
 
 FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
     tip,
@@ -26,6 +27,7 @@ FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
     first_contacts,
     contact_peaks,
     friction,
+    stress_history,
     energies,
     residuals,
 )

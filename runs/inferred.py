@@ -17,6 +17,9 @@ def print_inferred(case: Case, console: Console) -> None:
     boom = build_boom(case)
     console.print(case.title, markup=False)
     console.print(_segments(case, boom))
+    stiffeners = _stiffeners(boom)
+    if stiffeners.rows:
+        console.print(stiffeners)
     if boom.joints:
         console.print(_joints(boom))
     console.print(_models(case))
@@ -35,6 +38,28 @@ def _segments(case: Case, boom: Boom) -> Table:
             box if given.section is not None or segment.section is None else f"{box}, inferred",
         )
     return table
+
+
+def _stiffeners(boom: Boom) -> Table:
+    """Those of segments with known plates; without, there is no shell either."""
+    table = Table("on shells alone", "of", "x (m)", "t (mm)", "mass (kg)")
+    for segment in boom.segments:
+        box, density = segment.section, segment.material.density
+        if box is None:
+            continue
+        for one in segment.collars:
+            area = 2.0 * (box.height + box.width) * (one.end - one.start)
+            place = f"{one.start:g}–{one.end:g}"
+            table.add_row("collar", segment.name, place, *_plate(one.thickness, density * area))
+        for plate in segment.diaphragms:
+            per_thickness = density * box.height * box.width
+            row = _plate(plate.thickness, per_thickness)
+            table.add_row("diaphragm", segment.name, f"{plate.x:g}", *row)
+    return table
+
+
+def _plate(thickness: float, mass_per_thickness: float) -> tuple[str, str]:
+    return f"{1e3 * thickness:g}", f"{mass_per_thickness * thickness:.3g}"
 
 
 def _plates(section: BoxSection | None) -> str:

@@ -31,10 +31,17 @@ from runs.results import (
     Results,
     read_netcdf,
 )
+from shell_model.field_series import write_field_series
 from shell_model.rendering import RenderingUnavailable, render_snapshots
 
 REPORT = "report.html"
 SNAPSHOTS = "snapshots"
+STRESSES = "stress.nc"
+SERIES = "fields"
+
+# The time series of fields has so many frames at most, and fewer of a fine mesh: all triangles of
+# all frames, of about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
+FRAMES, TRIANGLES = 51, 1_000_000
 
 
 def prepare(out: str, file: str) -> Path:
@@ -77,8 +84,9 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
     """
     results = run.results
     (folder / REPORT).unlink(missing_ok=True)
-    for path in folder.glob(f"*{FIELDS}"):
-        path.unlink()
+    for kind in (FIELDS, STRESSES):
+        for path in folder.glob(f"*{kind}"):
+            path.unlink()
     (folder / ENSEMBLES).unlink(missing_ok=True)
     (folder / readings.FILE).unlink(missing_ok=True)
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
@@ -91,11 +99,14 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
     with whole(folder / "trajectories.csv") as path:
         _write_csv(results.trajectories, path)
     _write_text(folder / CASE, toml.dumps(results.case))
-    with whole_folder(folder / "mesh") as meshes:
+    with whole_folder(folder / "mesh") as meshes, whole_folder(folder / SERIES) as series:
         for name, shell in run.shells.items():
             prefix = f"{name}-" if len(run.shells) > 1 else ""
             with whole(folder / f"{prefix}{FIELDS}") as path:
                 shell.fields.to_netcdf(path, engine="scipy")
+            with whole(folder / f"{prefix}{STRESSES}") as path:
+                shell.stresses.to_netcdf(path, engine="scipy")
+            write_field_series(shell.fields, series, _series_times(shell.fields))
             for segment, mesh in shell.meshes.items():
                 mesh.write(meshes / f"{prefix}{segment}.vtu")
                 gmsh_file = mesh_folder / name / f"{segment}.msh"
@@ -106,6 +117,13 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
         with whole_folder(folder / SNAPSHOTS):
             results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
     write_report(results, folder)
+
+
+def _series_times(fields: xr.Dataset) -> list[float]:
+    """Evenly spread over the run, its ends included, in s."""
+    times = fields["time"].values
+    frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
+    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_snapshots(results: Results, folder: Path, times: Sequence[float] | None = None) -> None:

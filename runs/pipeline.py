@@ -19,12 +19,14 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs import members, toml
 from runs.build import build_boom
+from runs.cache import Cache
 from runs.comparisons import compare_models
 from runs.economy import steps_for_peaks
 from runs.known import known
 from runs.motion import Motion
 from runs.results import Results, label
 from runs.schema import Case, Model, ShellTable
+from runs.shell_output import ShellOutput
 from runs.systems import beam_system, reduce_shell
 from runs.verdicts import judge
 from runs.versions import versions
@@ -32,24 +34,8 @@ from runs.versions import versions
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from geometry.mesh import SegmentMesh
-    from shell_model.boom_shell import ReducedShell
-
 # Called with the model's name, the stage, and the part of it that is done.
 Progress = Callable[[str, str, float], None]
-
-
-@dataclass(frozen=True, slots=True)
-class ShellOutput:
-    """What a shell leaves besides its trajectory.
-
-    Args:
-        fields: points, triangles, segment and modes of the mesh, and ``state`` (time, mode).
-        meshes: name of the segment → its mesh.
-    """
-
-    fields: xr.Dataset
-    meshes: dict[str, SegmentMesh]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +57,12 @@ class Run:
 
 
 def run_case(
-    case: Case, file: str, comm: MPI.Intracomm | None, mesh_folder: Path, progress: Progress
+    case: Case,
+    file: str,
+    comm: MPI.Intracomm | None,
+    mesh_folder: Path,
+    progress: Progress,
+    cache: Cache | None = None,
 ) -> Run | None:
     """Run all models of a case. Collective; None but on rank 0.
 
@@ -82,6 +73,7 @@ def run_case(
             without.
         mesh_folder: where gmsh's files go, ``MODEL/SEGMENT.msh``.
         progress: told about every stage.
+        cache: of reduced shells.
 
     Raises:
         NumericsError: a model cannot be computed.
@@ -95,7 +87,7 @@ def run_case(
             # What overflows is found where it matters, and said there.
             with np.errstate(all="ignore"):
                 outcome = _run_model(
-                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress
+                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache
                 )
         except NumericsError as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
@@ -137,6 +129,7 @@ def _run_model(
     comm: MPI.Intracomm | None,
     mesh_folder: Path,
     progress: Progress,
+    cache: Cache | None,
 ) -> Outcome | None:
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
@@ -155,7 +148,7 @@ def _run_model(
     reduced = None
     if isinstance(model, ShellTable):
         assert comm is not None
-        reduced = reduce_shell(case, boom, model, comm, mesh_folder, tell)
+        reduced = reduce_shell(case, boom, model, comm, mesh_folder, tell, cache)
         system, num_dofs = reduced.system, reduced.num_dofs
         seconds |= reduced.seconds
     elif first_rank:
@@ -190,7 +183,9 @@ def _run_model(
     if reduced is None:
         return Outcome(trajectory, summary, ensemble, None)
     summary["reduction_errors"] = reduced.errors
-    shell = _shell_output(boom, model.name, reduced, trajectory)
+    with stage("stress"):
+        shell = ShellOutput.of(boom, model.name, reduced, trajectory)
+    summary["stress"] = shell.summary
     return Outcome(trajectory, summary, ensemble, shell)
 
 
@@ -221,15 +216,3 @@ def _summary(
         },
         "peak_contact_force": float(peaks.max()) if peaks.size else None,
     }
-
-
-def _shell_output(
-    boom: Boom, name: str, reduced: ReducedShell, trajectory: Trajectory
-) -> ShellOutput:
-    assert reduced.fields is not None
-    fields = reduced.fields.assign(
-        state=(("time", "mode"), trajectory.states.astype(np.float32)),
-        time=("time", trajectory.time, {"units": "s"}),
-    ).assign_attrs(model=name)
-    names = [segment.name for segment in boom.segments]
-    return ShellOutput(fields, dict(zip(names, reduced.meshes, strict=True)))

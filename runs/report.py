@@ -14,6 +14,7 @@ from runs.pen import Figure
 from runs.questions import tied
 from runs.results import Results
 from runs.statements import Verdict
+from runs.stress_tables import wall_table
 from runs.tables import TextTable
 from runs.theme import NONE, number
 
@@ -35,7 +36,7 @@ def render(
         readings: tables of a survey of the case's readings.
     """
     models = [model_table(results), step_table(results)]
-    more = (law_table(results), space_table(results))
+    more = (law_table(results), space_table(results), wall_table(results))
     models += [table for table in more if table is not None]
     motion, knowledge = (
         [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")

@@ -9,12 +9,14 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Exponent = Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(strict=True, ge=1)]
+Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0)]
 Flag = Annotated[bool, Field(strict=True)]
 # A name becomes a file name and an element of a comma-separated list.
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$")]
@@ -48,7 +50,7 @@ class EnsembleTable(Table):
     members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)] = Field(
         description="the number of runs of each model, the unchanged one among them"
     )
-    relative: Annotated[float, Field(strict=True, gt=0.0, lt=1.0)] = Field(
+    relative: Part = Field(
         1.0e-9, description="the largest relative change"
     )
     seed: Annotated[int, Field(strict=True, ge=0)] = Field(
@@ -95,6 +97,20 @@ class MassTable(Table):
 
     x: Number = Field(description="the x in m")
     mass: Positive = Field(description="the mass in kg")
+
+
+class CollarTable(Table):
+    """A doubler around a segment; the walls' mid-surfaces stay where they are."""
+
+    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    thickness: Positive = Field(description="the thickness in m that it adds to all four walls")
+
+
+class DiaphragmTable(Table):
+    """A plate that closes a segment's box, welded to its four walls."""
+
+    x: Number = Field(description="the x in m")
+    thickness: Positive = Field(description="the thickness in m")
 
 
 def _support(given: Any) -> Any:
@@ -154,6 +170,12 @@ class SegmentTable(Table):
         description="the mass moment of inertia about the axis per length in kg m; follows from "
         "the section unless given",
     )
+    collars: tuple[CollarTable, ...] = Field(
+        (), description="the doublers around the box, which only shells have, mass and all"
+    )
+    diaphragms: tuple[DiaphragmTable, ...] = Field(
+        (), description="the plates that close the box, which only shells have, mass and all"
+    )
 
 
 class RestitutionTable(Table):
@@ -163,6 +185,13 @@ class RestitutionTable(Table):
         description="the coefficient of restitution"
     )
     speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
+
+
+class PadTable(Table):
+    """A slide pad in a corner: a patch of the inner segment's wall."""
+
+    length: Positive = Field(description="the length along x in m")
+    width: Positive = Field(description="the width from the corner inwards in m")
 
 
 class JointTable(Table):
@@ -205,6 +234,11 @@ class JointTable(Table):
     )
     tied: Flag = Field(
         False, description="whether the two deflect alike at the stations, without play"
+    )
+    pad: PadTable | None = Field(
+        None,
+        description="the table of the slide pads' size, which shells alone heed; points in the "
+        "corners unless given",
     )
 
 
@@ -343,13 +377,45 @@ class FiniteElementTable(ModelTable):
     )
 
 
+def _modes(given: Any) -> Any:
+    """A number of modes or a word; a union's own complaints would name its branches."""
+    if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
+        return given
+    raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
+
+
+Modes = Annotated[int | Literal["auto"], BeforeValidator(_modes)]
+
+
 class ShellTable(ModelTable):
     """Flat facet shells on the folded box, reduced to the contact's inputs."""
 
     kind: Literal["shell"] = Field(description="the kind of model")
     mesh_size: Positive = Field(0.1, description="the edge length of the triangles in m")
-    contact_line: Literal["near webs", "across"] = Field(
-        "near webs", description="where on the flanges the segments touch"
+    modes: Modes | None = Field(
+        None,
+        description="the number of coordinates of each segment, at most, or 'auto' for as many as "
+        "the tolerance asks; what makes the reduction's error about 1e-8 unless given",
+    )
+    tolerance: Part = Field(
+        1.0e-6,
+        description="with modes = 'auto', the largest relative error with which the reduced shell "
+        "answers the forces of contacts and loads",
+    )
+    contact_line: Literal["near webs", "across", "surface"] = Field(
+        "near webs",
+        description="where the walls of the segments touch: at the stations near the webs or "
+        "across the flanges, or over the surface of the whole overlap",
+    )
+    surface_stiffness: Positive | None = Field(
+        None,
+        description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
+        "side; that of all the joint's stations over the area unless given",
+    )
+    surface_points: tuple[Count, Count] | None = Field(
+        None,
+        description="the number of contact points along the overlap, and across each half of a "
+        "wall; 8 and 4 unless given",
     )
 
 

@@ -15,7 +15,9 @@ from shell_model.rendering import ANIMATED, ANIMATION, SHOWN, TITLES, telling_in
 
 # A time in s that a user has asked for.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
-_NAME = re.compile(r"(?P<view>boom|overlap)(-(?P<joint>\d+))?-(?P<when>.+)")
+_NAME = re.compile(
+    r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
+)
 
 
 def describe(results: Results, path: Path) -> Figure:
@@ -37,19 +39,30 @@ def describe(results: Results, path: Path) -> Figure:
     assert seen is not None, f"{path.name} is not a snapshot's name"
     when, tip = _instant(seen["when"], motion)
     state = f"{when}{tip}"
+    above = ", seen from above" if seen["above"] else ""
     if seen["view"] == "boom":
+        coloured = "deflection sideways" if above else "deflection"
+        supports = "" if above else "; black: supports"
         caption = (
-            f"The boom of {model!r}: {state}. Colour: deflection; grey: at rest; black: supports. "
+            f"The boom of {model!r}{above}: {state}. Colour: {coloured}; grey: at rest{supports}. "
             "Displacements and play are magnified by the factor above the picture."
         )
-        return Figure(path, f"Boom: {when}", caption)
+        return Figure(path, f"Boom{above}: {when}", caption)
     which = f" of joint {seen['joint']}" if seen["joint"] else ""
+    if seen["view"] == "stress":
+        caption = (
+            f"Von Mises stresses of {model!r}{above}: {state}. Above: the whole boom; below: the "
+            f"overlap{which}, cut open. Each triangle has the larger value of its two faces; the "
+            "few beyond the end of the scale have its darkest colour. Displacements and play are "
+            "magnified by the factors above the picture."
+        )
+        return Figure(path, f"Stress at the overlap{which}{above}: {when}", caption)
     caption = (
-        f"The overlap{which} of {model!r}, cut open: {state}. Blue: outer segment; orange: inner "
-        "one; arrows: forces of the inner one on the outer one. Displacements and play are "
+        f"The overlap{which} of {model!r}{above}, cut open: {state}. Blue: outer segment; orange: "
+        "inner one; arrows: forces of the inner one on the outer one. Displacements and play are "
         "magnified by the factor above the picture."
     )
-    return Figure(path, f"Overlap{which}: {when}", caption)
+    return Figure(path, f"Overlap{which}{above}: {when}", caption)
 
 
 def _animation(path: Path, model: str, motion: xr.Dataset) -> Figure:

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 from dynamics.failure import NumericsError
 from runs import members, ranks, toml
 from runs.bad_input import BadInput
+from runs.cache import Cache
 from runs.files import whole
 from runs.pipeline import Progress, run_case
 from runs.quantities import QUANTITIES, Measured, measure
@@ -126,7 +127,11 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 
 
 def run_points(
-    points: Sequence[Point], folder: Path, pool: Executor, progress: Progress
+    points: Sequence[Point],
+    folder: Path,
+    pool: Executor,
+    progress: Progress,
+    cache: Cache | None = None,
 ) -> list[Outcome]:
     """Run the points that are not done yet, write each when it is, and give those of all.
 
@@ -135,6 +140,7 @@ def run_points(
         folder: made by :func:`prepare`.
         pool: of :func:`workers`.
         progress: told about every finished point.
+        cache: of reduced shells.
 
     Raises:
         MemoryError: the system has killed a process.
@@ -143,7 +149,7 @@ def run_points(
     outcomes = [_load(path) for path in files]
     stage = f"{len(points)} points"
     futures = {
-        pool.submit(run_point, point.case): i
+        pool.submit(run_point, point.case, cache): i
         for i, point in enumerate(points)
         if outcomes[i] is None
     }
@@ -164,7 +170,7 @@ def run_points(
     return [outcome for outcome in outcomes if outcome is not None]
 
 
-def run_point(case: Case) -> Outcome:
+def run_point(case: Case, cache: Cache | None = None) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
     outcome = Outcome({}, {})
     for model in case.models:
@@ -176,7 +182,7 @@ def run_point(case: Case) -> Outcome:
         alone = case.model_copy(update={"models": (model,)})
         with TemporaryDirectory(prefix="protractile-") as scratch:
             try:
-                finished = run_case(alone, "", comm, Path(scratch), _silence)
+                finished = run_case(alone, "", comm, Path(scratch), _silence, cache)
             except NumericsError as error:
                 # The file, the point and the model's name stand before it where it is shown.
                 outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")

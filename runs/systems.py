@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,9 @@ from beam_model.segment_model import gap_system, tied_system
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from runs.build import contact_laws, lateral_laws
+from runs.cache import Cache
 from runs.schema import Case, DampingTable, FiniteElementTable, KantorovichTable, ShellTable
+from runs.shell_cache import remembered
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -64,6 +67,7 @@ def reduce_shell(
     comm: MPI.Comm,
     mesh_folder: Path,
     tell: Callable[[str, float], None],
+    cache: Cache | None = None,
 ) -> ReducedShell:
     """The shell, reduced. Collective.
 
@@ -72,16 +76,25 @@ def reduce_shell(
         comm: the ranks that share the work.
         mesh_folder: where gmsh's files go, ``SEGMENT.msh``.
         tell: told the stage and the part of it that is done.
+        cache: where the same shell may be already, and is kept; computed unless given.
     """
     from shell_model.boom_shell import ShellOptions, reduce_boom
+    from shell_model.surface_contact import POINTS, SurfaceOptions
 
     if comm.rank == 0:
         mesh_folder.mkdir(parents=True)
     options = ShellOptions(
-        mesh_size=model.mesh_size, contact_line=model.contact_line, mesh_folder=mesh_folder
+        mesh_size=model.mesh_size,
+        contact_line=model.contact_line,
+        surface=SurfaceOptions(model.surface_points or POINTS, model.surface_stiffness),
+        mesh_folder=mesh_folder,
     )
     laws, lateral = contact_laws(case, model), lateral_laws(case, model)
-    return reduce_boom(boom, laws, options, comm, tell, lateral)
+    compute = partial(reduce_boom, boom, laws, options, comm, tell, lateral)
+    if cache is None:
+        return compute()
+    content = (boom, laws, lateral, replace(options, mesh_folder=None))
+    return remembered(cache, content, comm, mesh_folder, compute)
 
 
 def damped(system: GapSystem, table: DampingTable) -> GapSystem:

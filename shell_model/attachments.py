@@ -7,6 +7,9 @@ reads, and every other motion of the section stays as free as it was.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
@@ -15,15 +18,29 @@ from petsc4py import PETSc
 Array = npt.NDArray[np.float64]
 
 
-def add_outer_product(comm: MPI.Comm, matrix: PETSc.Mat, local: Array, factor: float) -> None:
-    """Add factor · r rᵀ to a matrix that is distributed by rows. Collective.
+class Attached(NamedTuple):
+    """Springs, or masses, and what they act on.
 
     Args:
-        comm: the ranks that share the matrix.
-        matrix: (num_dofs, num_dofs).
-        local: (num_owned,) this rank's part of r.
-        factor: the spring's stiffness or the mass.
+        rows: (num_owned, num_attached) this rank's part of what each reads.
+        factors: (num_attached,) stiffness in N/m or N·m, or mass in kg.
     """
+
+    rows: Array
+    factors: Array
+
+    @classmethod
+    def of(cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int) -> Attached:
+        """One column for each of the rows (num_owned,)."""
+        return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
+
+    def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
+        """Add factor · r rᵀ of each to a matrix that is distributed by rows. Collective."""
+        for row, factor in zip(self.rows.T, self.factors, strict=True):
+            _add_outer_product(comm, matrix, row, float(factor))
+
+
+def _add_outer_product(comm: MPI.Comm, matrix: PETSc.Mat, local: Array, factor: float) -> None:
     first, _ = matrix.getOwnershipRange()
     mine = np.flatnonzero(local)
     columns = np.concatenate(comm.allgather(mine + first))

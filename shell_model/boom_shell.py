@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -18,18 +18,15 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
 from geometry.boom import Boom, BoomError, Load
-from geometry.mesh import SegmentMesh, mesh_segment
+from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from shell_model.coordinates import BoomCoordinates
 from shell_model.fields import gather_fields
-from shell_model.joint_rows import (
-    ContactLine,
-    Reading,
-    contacts_and_frictions,
-    ties,
-)
-from shell_model.outline import Outline, Row
+from shell_model.joint_rows import contacts_and_frictions, ties
+from shell_model.outline import Outline, Reading, Row
 from shell_model.reduction import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.surface_contact import SurfaceOptions, without_stiff_modes
+from shell_model.touches import ContactLine
 
 Array = npt.NDArray[np.float64]
 
@@ -42,13 +39,16 @@ class ShellOptions:
         mesh_size: target edge length in m.
         contact_line: ``near webs`` passes the force from the inner segment's webs to the outer
             one's, as pads in the corners do; ``across`` spreads it over the width of the
-            inner segment's flanges, which then bow, in a flat boom.
+            inner segment's flanges, which then bow, in a flat boom; ``surface`` touches over the
+            whole overlap of facing walls.
+        surface: its points and penalty, and its own shifts and moments of the reduction.
         krylov: the reduction.
         mesh_folder: where gmsh's files ``SEGMENT.msh`` go, if anywhere.
     """
 
     mesh_size: float = 0.1
     contact_line: ContactLine = "near webs"
+    surface: SurfaceOptions = field(default_factory=SurfaceOptions)
     krylov: KrylovOptions = field(default_factory=KrylovOptions)
     mesh_folder: Path | None = None
 
@@ -61,9 +61,11 @@ class ReducedShell:
         system: of all segments.
         num_dofs: of the shells before the reduction.
         fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
-        errors: measured reduction errors, the worst over the segments: ``contact_compliance``
-            relative, and ``frequency_limit_in_hz`` up to which each mode is right in itself.
-        seconds: wall time of each stage.
+        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` and
+            ``readings`` relative, and ``frequency_limit_in_hz`` up to which each mode is right in
+            itself.
+        seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
+            values for each coordinate), reduction, fields (of displacement and stress).
         meshes: of the segments, on rank 0.
     """
 
@@ -102,7 +104,7 @@ def reduce_boom(
     tell = progress or (lambda stage, part: None)
     for number in range(len(boom.segments)):
         start = perf_counter()
-        mesh = _mesh(boom, number, options) if comm.rank == 0 else None
+        mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
         if mesh is not None:
             meshes.append(mesh)
         seconds["mesh"] += perf_counter() - start
@@ -114,22 +116,33 @@ def reduce_boom(
 
     start = perf_counter()
     contacts, frictions = contacts_and_frictions(
-        boom, shells, {"z": laws, "y": lateral_laws}, options.contact_line
+        boom, shells, {"z": laws, "y": lateral_laws}, options.contact_line, options.surface
     )
     tied = ties(boom, shells)
-    own_loads = [_own_load(boom, number, shell) for number, shell in enumerate(shells)]
+    own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
     timed_loads = [(load, _timed_load(load, shells[load.segment])) for load in boom.loads]
     readings = [c.reading for c in contacts] + [f.reading for f in frictions] + tied
+    krylov = options.krylov
+    if options.contact_line == "surface":
+        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
+    observed = _observed(boom, shells)
+    seconds["rows"] = perf_counter() - start
+    start = perf_counter()
     reduced = []
     for number, shell in enumerate(shells):
-        inputs = [shell.row(reading[number]) for reading in readings if number in reading]
-        inputs += [own_loads[number]]
+        joined = [shell.row(reading[number]) for reading in readings if number in reading]
+        inputs = [*joined, own_loads[number]]
         inputs += [push for load, push in timed_loads if load.segment == number]
+        read = [shell.row(reading[number]) for reading, _ in observed.values() if number in reading]
+        read_rows = np.array(read).reshape(-1, shell.free.size).T
         report = partial(_report_part, tell, number, len(shells))
-        reduced.append(reduce_segment(shell, np.column_stack(inputs), options.krylov, report))
-    coordinates = BoomCoordinates(comm, shells, reduced, tied)
-    fields = gather_fields(comm, shells, reduced, meshes)
+        own = reduce_segment(shell, np.column_stack(inputs), krylov, report, readings=read_rows)
+        if options.contact_line == "surface" and joined:
+            own = without_stiff_modes(comm, own, np.column_stack(joined))
+        reduced.append(own)
     seconds["reduction"] = perf_counter() - start
+    start = perf_counter()
+    coordinates = BoomCoordinates(comm, shells, reduced, tied)
     system = GapSystem(
         omega2=coordinates.omega2,
         load=np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
@@ -137,7 +150,10 @@ def reduce_boom(
         laws=[contact.law for contact in contacts],
         station_of_row=np.array([contact.station for contact in contacts], dtype=np.int64),
         stations=[x for x, _ in boom.stations],
-        observers=_observers(boom, shells, coordinates),
+        observers={
+            name: Observer(coordinates.row(reading), unit)
+            for name, (reading, unit) in observed.items()
+        },
         friction_rows=_stacked(coordinates, [friction.reading for friction in frictions]),
         frictions=[friction.law for friction in frictions],
         excitations=[
@@ -146,12 +162,19 @@ def reduce_boom(
         ],
         station_directions=[direction for _, direction in boom.stations],
     )
+    seconds["rows"] += perf_counter() - start
+    start = perf_counter()
+    fields = gather_fields(comm, shells, reduced, meshes, boom.segments)
+    if fields is not None:
+        fields = coordinates.of_fields(fields)
+    seconds["fields"] = perf_counter() - start
     return ReducedShell(
         system=system,
         num_dofs=sum(shell.num_dofs for shell in shells),
-        fields=None if fields is None else coordinates.of_fields(fields),
+        fields=fields,
         errors={
             "contact_compliance": max(r.compliance_error for r in reduced),
+            "readings": max(r.reading_error for r in reduced),
             "frequency_limit_in_hz": min(r.frequency_limit for r in reduced),
         },
         seconds=seconds,
@@ -163,7 +186,8 @@ def _report_part(tell: Callable[[str, float], None], number: int, count: int, pa
     tell("reduction", (number + part) / count)
 
 
-def _mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
+def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
+    """Mesh the walls of one segment, with mesh lines wherever something acts."""
     segment = boom.segments[number]
     if segment.section is None:
         raise BoomError(
@@ -175,16 +199,18 @@ def _mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     supports = sorted(support.x for support in segment.supports)
     breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
+    breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     folder = options.mesh_folder
     return mesh_segment(
         segment.section,
         breaks,
         options.mesh_size,
         msh=None if folder is None else folder / f"{segment.name}.msh",
+        closed=tuple(diaphragm_breaks(segment)),
     )
 
 
-def _own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
+def own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
     """(num_owned,) the uniform loads of a segment that are applied at t = 0 and kept, in N."""
     segment = boom.segments[number]
     load = segment.load * shell.unit_loads["z"]
@@ -199,7 +225,11 @@ def _timed_load(load: Load, shell: SegmentShell) -> Array:
     At one place it is spread over the walls that carry it in their own plane.
     """
     if load.x is None:
-        return load.magnitude * shell.unit_loads[load.direction]
+        force = load.magnitude * shell.unit_loads[load.direction]
+        if load.inertial:
+            acceleration = load.magnitude / shell.segment.mass_per_length
+            force += acceleration * shell.stiffener_loads[load.direction]
+        return force
     row = shell.outline(load.x).wall_deflection(load.direction)
     return load.magnitude * shell.row(row)
 
@@ -210,16 +240,15 @@ def _stacked(coordinates: BoomCoordinates, readings: Sequence[Reading]) -> Array
     return np.array(rows).reshape(-1, coordinates.omega2.size)
 
 
-def _observers(
-    boom: Boom, shells: Sequence[SegmentShell], coordinates: BoomCoordinates
-) -> dict[str, Observer]:
+def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Reading, str]]:
+    """What is reported of the boom's ends, with its unit. Collective."""
     readings = _IN_SPACE if boom.spatial else _IN_PLANE
-    observers = {}
+    observed: dict[str, tuple[Reading, str]] = {}
     for name, (number, x) in boom.observed().items():
         outline = shells[number].outline(x)
         for suffix, (row, unit) in readings.items():
-            observers[name + suffix] = Observer(coordinates.row({number: row(outline)}), unit)
-    return observers
+            observed[name + suffix] = ({number: row(outline)}, unit)
+    return observed
 
 
 _SectionReadings = Mapping[str, tuple[Callable[[Outline], Row], str]]

@@ -13,7 +13,7 @@ import dolfinx.fem.petsc as fem_petsc
 import numpy as np
 import numpy.typing as npt
 import ufl
-from dolfinx import fem, mesh
+from dolfinx import cpp, fem, mesh
 from mpi4py import MPI
 from petsc4py import PETSc
 
@@ -24,6 +24,10 @@ try:
 except ImportError:
     _HAS_BASIX_UFL = False
 
+# Two walls and a diaphragm meet on an edge.
+_CELLS_OF_AN_EDGE = 3
+_CREATE_MESH = inspect.signature(mesh.create_mesh).parameters
+
 _ASSEMBLE_DIAGONAL = (
     "diag" if "diag" in inspect.signature(fem_petsc.assemble_matrix).parameters else "diagonal"
 )
@@ -32,7 +36,7 @@ _ASSEMBLE_DIAGONAL = (
 def create_triangle_mesh(
     comm: MPI.Comm, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
 ) -> Any:
-    """A distributed mesh of flat triangles in space.
+    """A distributed mesh of flat triangles in space, up to three on an edge.
 
     Args:
         comm: the ranks that share the mesh.
@@ -41,10 +45,82 @@ def create_triangle_mesh(
     """
     if _HAS_BASIX_UFL:
         element = basix.ufl.element("Lagrange", "triangle", 1, shape=(3,))
-        return mesh.create_mesh(comm, cells=triangles, x=points, e=ufl.Mesh(element))
+        return mesh.create_mesh(
+            comm, cells=triangles, x=points, e=ufl.Mesh(element), **_apart(comm, points, triangles)
+        )
     cell = ufl.Cell("triangle", geometric_dimension=3)
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", cell, 1))
+    # Version 0.5 gives each rank the cells across its edges, however many they are.
     return mesh.create_mesh(comm, triangles, points, domain)
+
+
+def _apart(
+    comm: MPI.Comm, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
+) -> dict[str, Any]:
+    """Arguments of ``create_mesh`` with which three cells on an edge stay joined on any ranks."""
+    if "max_facet_to_cell_links" in _CREATE_MESH:
+        joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
+        if comm.size > 1:
+            joined["partitioner"] = mesh.create_cell_partitioner(
+                mesh.GhostMode.none, _CELLS_OF_AN_EDGE
+            )
+        return joined
+    if comm.size == 1:
+        return {}
+    together = _joined_cells(triangles)
+    if not comm.bcast(together.size):
+        return {}
+    # Without that argument an edge with two cells on one rank counts as known to no other rank
+    # (FEniCS/dolfinx issue 3063): its cells must stay together.
+    ranks = _slices(comm.size, points, triangles)
+    ranks[together] = ranks[together[:, :1]]
+    destinations = cpp.graph.AdjacencyList_int32(ranks[:, None])
+    return {"partitioner": lambda *_: destinations}
+
+
+def _joined_cells(triangles: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """(num_edges, 3) the cells on each edge that has three."""
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges = sides[:, 0] * (triangles.max(initial=0) + 1) + sides[:, 1]
+    by_edge = np.argsort(edges, kind="stable")
+    _, first, count = np.unique(edges[by_edge], return_index=True, return_counts=True)
+    begins = first[count == _CELLS_OF_AN_EDGE]
+    return np.asarray(by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3)
+
+
+def _slices(
+    ranks: int, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
+) -> npt.NDArray[np.int32]:
+    """(num_triangles,) the rank of each cell: equal numbers, one after another along x."""
+    middles = points[triangles].mean(axis=1)
+    place = np.empty(len(triangles), dtype=np.int64)
+    place[np.lexsort(middles.T[::-1])] = np.arange(len(triangles))
+    return (ranks * place // max(1, len(triangles))).astype(np.int32)
+
+
+def create_hexahedron_mesh(
+    comm: MPI.Comm, points: npt.NDArray[np.float64], hexahedra: npt.NDArray[np.int64]
+) -> Any:
+    """A distributed mesh of hexahedra with straight edges.
+
+    Args:
+        comm: the ranks that share the mesh.
+        points: (num_points, 3) on rank 0, (0, 3) elsewhere, in m.
+        hexahedra: (num_hexahedra, 8) on rank 0, (0, 8) elsewhere; the points of a cell run along
+            its first axis first, then along its second, then along its third.
+    """
+    if _HAS_BASIX_UFL:
+        element = basix.ufl.element("Lagrange", "hexahedron", 1, shape=(3,))
+        return mesh.create_mesh(comm, cells=hexahedra, x=points, e=ufl.Mesh(element))
+    cell = ufl.Cell("hexahedron", geometric_dimension=3)
+    return mesh.create_mesh(comm, hexahedra, points, ufl.Mesh(ufl.VectorElement("Q", cell, 1)))
+
+
+def solid_space(domain: Any) -> Any:
+    """Quadratic displacements with three components."""
+    if _HAS_BASIX_UFL:
+        return fem.functionspace(domain, ("Lagrange", 2, (3,)))
+    return fem.VectorFunctionSpace(domain, ("Lagrange", 2))
 
 
 def shell_space(domain: Any) -> Any:
@@ -59,6 +135,11 @@ def shell_space(domain: Any) -> Any:
     return fem.FunctionSpace(domain, ufl.MixedElement([displacement, rotation]))
 
 
+def cellwise_space(domain: Any) -> Any:
+    """Functions that are constant on each cell."""
+    return getattr(fem, "functionspace", fem.FunctionSpace)(domain, ("DG", 0))
+
+
 def cellwise_function(domain: Any, values: npt.NDArray[np.float64]) -> Any:
     """A function that is constant on each cell.
 
@@ -67,8 +148,7 @@ def cellwise_function(domain: Any, values: npt.NDArray[np.float64]) -> Any:
         values: (num_cells,) in the order in which the cells were given to
             :func:`create_triangle_mesh`, the same on every rank.
     """
-    space = getattr(fem, "functionspace", fem.FunctionSpace)(domain, ("DG", 0))
-    function = fem.Function(space)
+    function = fem.Function(cellwise_space(domain))
     function.x.array[:] = values[domain.topology.original_cell_index]
     return function
 
@@ -87,3 +167,28 @@ def assemble_vector(form: Any) -> npt.NDArray[np.float64]:
     rows = vector.array.copy()
     vector.destroy()
     return np.asarray(rows)
+
+
+def cell_nodes(space: Any) -> npt.NDArray[np.int64]:
+    """(num_cells, num_nodes) this rank's nodes of each cell."""
+    nodes = space.dofmap.list
+    return np.asarray(getattr(nodes, "array", nodes), dtype=np.int64).reshape(
+        -1, space.dofmap.dof_layout.num_dofs
+    )
+
+
+def node_places(space: Any) -> npt.NDArray[np.float64]:
+    """(num_nodes, 3) this rank's nodes of a quadratic or Crouzeix-Raviart space, in m.
+
+    Corners are as they were given and middles of edges half their sum, so that a node has the
+    same place to the last bit on whatever rank; DOLFINx takes it from any of its cells.
+    """
+    geometry = space.mesh.geometry
+    corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
+    corners = np.asarray(getattr(corners, "array", corners)).reshape(-1, 3)
+    ends = geometry.x[corners]
+    middles = 0.5 * (ends[:, [1, 0, 0]] + ends[:, [2, 2, 1]])
+    nodes, index_map = cell_nodes(space), space.dofmap.index_map
+    places = np.empty((index_map.size_local + index_map.num_ghosts, 3))
+    places[nodes] = middles if nodes.shape[1] == 3 else np.concatenate([ends, middles], axis=1)
+    return places

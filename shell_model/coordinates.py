@@ -11,7 +11,8 @@ import xarray as xr
 from mpi4py import MPI
 from scipy.linalg import eigh, null_space
 
-from shell_model.joint_rows import Reading
+from shell_model.outline import Reading
+from shell_model.products import exact_product
 from shell_model.reduction import ReducedSegment
 from shell_model.segment_shell import SegmentShell
 
@@ -57,7 +58,7 @@ class BoomCoordinates:
             force: (num_owned,) this rank's rows of it.
         """
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
-        parts[number] = self._comm.allreduce(force @ self._reduced[number].shapes)
+        parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         apart = np.concatenate(parts)
         return apart if self._combination is None else apart @ self._combination
 
@@ -65,8 +66,14 @@ class BoomCoordinates:
         """Fields of the segments' own modes as fields of these coordinates."""
         if self._combination is None:
             return fields
-        modes = np.tensordot(self._combination.T.astype(np.float32), fields["modes"].values, axes=1)
-        return fields.assign(modes=(fields["modes"].dims, modes))
+        combined = {}
+        for name, variable in fields.data_vars.items():
+            if "mode" in variable.dims:
+                axis = variable.dims.index("mode")
+                combination = self._combination.astype(variable.dtype)
+                values = np.tensordot(variable.values, combination, axes=([axis], [0]))
+                combined[name] = (variable.dims, np.moveaxis(values, -1, axis))
+        return fields.assign(combined)
 
 
 def _tied_modes(omega2: Array, rows: Array) -> tuple[Array, Array]:

@@ -2,28 +2,28 @@
 """The four families of motions of a box that mirrors itself in y and in z.
 
 Mirrored motions stay mirrored: bending along z, bending along y, twisting, and breathing with
-stretching do not know of each other within a segment. A computation that drifts from one family
-into another by round-off grows the drift: the other family's low modes are what a solve enlarges
-most. Held within its family, it gives the same numbers on any number of ranks.
+stretching do not know of each other within a segment. A family's motion is known from the quarter
+of the box where y and z are positive: it is that of the quarter with what the family does not do
+held on its cut edges, and its mirrors.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from petsc4py import PETSc
 from scipy.spatial import cKDTree
 
 from dynamics.failure import NumericsError
-from shell_model.products import times
-from shell_model.segment_shell import ON_LINE, SegmentShell
+from geometry.mesh import SegmentMesh
 
 Array = npt.NDArray[np.float64]
 
-# What the stiffness may carry from one family into another, over its own size.
-_DRIFT = 1.0e-9
+# Nodes closer than this part of a mesh's extent to a place lie on it; meshes are exact to
+# round-off.
+_ON_PLACE = 1.0e-8
 
 
 class Family(NamedTuple):
@@ -32,6 +32,28 @@ class Family(NamedTuple):
     y: int
     z: int
 
+    @property
+    def signs(self) -> Array:
+        """(4, 6) what a component of the quarter is times elsewhere.
+
+        Rows are the quarters (see :func:`quarter_of`), columns the components of the displacement,
+        which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
+        """
+        signs = np.ones((4, 6))
+        for axis, parity in ((1, self.y), (2, self.z)):
+            image = np.ones(6)
+            image[axis] = image[3:][np.arange(3) != axis] = -1.0
+            signs[_BEYOND[axis]] *= parity * image
+        return signs
+
+    def held(self, axis: int) -> list[tuple[int, int]]:
+        """What stays at zero in a mirror: (0, i) of the displacement, (1, i) of the rotation."""
+        signs = self.signs[1 if axis == 1 else 2]
+        return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
+
+
+# Quarters at negative y, and at negative z.
+_BEYOND: Final = {1: [1, 3], 2: [2, 3]}
 
 BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
     Family(1, 1),
@@ -42,53 +64,66 @@ BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
 FAMILIES: Final = (BREATHING, ALONG_Z, ALONG_Y, TWISTING)
 
 
-class Mirrors:
-    """The images of a shell's motions in the planes y = 0 and z = 0. Collective.
+def quarter_of(places: Array) -> npt.NDArray[np.int64]:
+    """(num_places,) 1 at negative y, 2 at negative z, 3 at both, 0 at neither."""
+    near = _near(places)
+    return np.asarray(1 * (places[:, 1] < -near) + 2 * (places[:, 2] < -near), dtype=np.int64)
+
+
+def on_plane(places: Array, axis: int) -> npt.NDArray[np.bool_]:
+    """(num_places,) which places (num_places, 3) lie in the mirror of an axis."""
+    return np.asarray(np.abs(places[:, axis]) <= _near(places))
+
+
+def matches(places: Array, among: Array) -> npt.NDArray[np.int64] | None:
+    """(num_places,) numbers of the same places in a list; None where one has no match."""
+    distance, number = cKDTree(among).query(places)
+    if distance.max(initial=0.0) > _near(among):
+        return None
+    return np.asarray(number, dtype=np.int64)
+
+
+def quarter_mesh(mesh: SegmentMesh, thickness: Array) -> SegmentMesh:
+    """The part of a mesh at positive y and z.
+
+    Args:
+        mesh: of a segment.
+        thickness: (num_triangles,) in m.
 
     Raises:
-        NumericsError: the shell is not its own image.
+        NumericsError: the mesh or its thickness is not its own image.
     """
-
-    def __init__(self, shell: SegmentShell) -> None:
-        self._images = [_image(shell, axis) for axis in (1, 2)]
-        trial = np.sin(np.arange(*shell.owned, dtype=np.float64))[:, None] * shell.free[:, None]
-        push = times(shell.stiffness, self.part(trial, TWISTING)) * shell.free[:, None]
-        drift = push - self.part(push, TWISTING)
-        squares = shell.comm.allreduce(np.array([(drift**2).sum(), (push**2).sum()]))
-        if squares[0] > _DRIFT**2 * squares[1]:
-            raise NumericsError("a segment's shell is not its own mirror image in y and in z")
-
-    def part(self, block: Array, family: Family) -> Array:
-        """(num_owned, num_columns) the part of each column that belongs to a family."""
-        for image, sign in zip(self._images, family, strict=True):
-            block = 0.5 * (block + sign * times(image, block))
-        return block
-
-    def destroy(self) -> None:
-        for image in self._images:
-            image.destroy()
-
-
-def _image(shell: SegmentShell, axis: int) -> PETSc.Mat:
-    """The matrix that takes a motion to its image: displacements as arrows, rotations as axes."""
-    mirror = np.ones(3)
-    mirror[axis] = -1.0
-    first, _ = shell.owned
-    partners = np.empty(shell.free.size, dtype=PETSc.IntType)
-    signs = np.empty(shell.free.size)
-    for nodes, dofs, sign in (
-        (shell.nodes, shell.node_dofs, mirror),
-        (shell.rotation_nodes, shell.rotation_dofs, -mirror),
-    ):
-        all_nodes = np.concatenate(shell.comm.allgather(nodes))
-        all_dofs = np.concatenate(shell.comm.allgather(dofs))
-        distance, partner = cKDTree(all_nodes).query(nodes * mirror)
-        if distance.max(initial=0.0) > ON_LINE:
+    ours = _sorted(mesh.triangles, thickness)
+    for axis in (1, 2):
+        mirror = np.ones(3)
+        mirror[axis] = -1.0
+        partner = matches(mesh.points * mirror, mesh.points)
+        if partner is None:
             raise NumericsError("a segment's mesh is not its own mirror image in y and in z")
-        partners[dofs - first] = all_dofs[partner]
-        signs[dofs - first] = sign
-    return PETSc.Mat().createAIJ(
-        shell.stiffness.getSizes(),
-        csr=(np.arange(shell.free.size + 1, dtype=PETSc.IntType), partners, signs),
-        comm=shell.comm,
+        images = _sorted(partner[mesh.triangles], thickness)
+        if not all(np.array_equal(own, image) for own, image in zip(ours, images, strict=True)):
+            raise NumericsError("a segment's shell is not its own mirror image in y and in z")
+    mine = (quarter_of(mesh.points) == 0)[mesh.triangles].all(axis=1)
+    if 4 * mine.sum() != mine.size:
+        raise NumericsError("a segment's mesh has triangles that cross the planes y = 0 or z = 0")
+    points, triangles = np.unique(mesh.triangles[mine], return_inverse=True)
+    return replace(
+        mesh,
+        points=mesh.points[points],
+        triangles=triangles.reshape(-1, 3).astype(np.int64),
+        walls=mesh.walls[mine],
+        lines={},
     )
+
+
+def _sorted(
+    triangles: npt.NDArray[np.int64], thickness: Array
+) -> tuple[npt.NDArray[np.int64], Array]:
+    """Triangles and their thickness in an order that does not depend on how they were given."""
+    corners = np.sort(triangles, axis=1)
+    order = np.lexsort(corners.T)
+    return corners[order], thickness[order]
+
+
+def _near(places: Array) -> float:
+    return _ON_PLACE * float(np.abs(places).max(initial=0.0))

@@ -8,7 +8,7 @@ way round is a force that is spread over the section.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,12 @@ from geometry.section import BoxSection
 Array = npt.NDArray[np.float64]
 Row = Mapping[int, float]
 
-_ON_WALL = 1.0e-7
+# Number of a segment → what is read of it, with its sign.
+Reading = Mapping[int, Row]
+
+# Nodes closer than this part of the section's height to a place lie on it; meshes are exact to
+# round-off.
+ON_WALL = 1.0e-7
 _X = 0
 COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
@@ -32,6 +37,20 @@ def combine(*terms: tuple[float, Row]) -> Row:
         for dof, weight in row.items():
             total[dof] = total.get(dof, 0.0) + factor * weight
     return total
+
+
+def relative(inner: tuple[int, Row], outer: tuple[int, Row]) -> Reading:
+    """u − w of two places, each with the number of its segment."""
+    return {inner[0]: inner[1], outer[0]: combine((-1.0, outer[1]))}
+
+
+def combine_readings(terms: Sequence[tuple[float, Reading]]) -> Reading:
+    """Readings of the same segments, each with its factor."""
+    numbers = terms[0][1]
+    return {
+        number: combine(*((factor, reading[number]) for factor, reading in terms))
+        for number in numbers
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +157,7 @@ class Outline:
         normal: Direction = "z" if axis == "y" else "y"
         size = self.section.height if axis == "y" else self.section.width
         distance = self.places[:, COMPONENT[normal]] - 0.5 * size * side
-        on_wall = np.flatnonzero(np.abs(distance) < _ON_WALL)
+        on_wall = np.flatnonzero(np.abs(distance) < ON_WALL * self.section.height)
         return on_wall[np.argsort(self.places[on_wall, COMPONENT[axis]])]
 
     def _simpson(self, axis: Direction, side: float) -> tuple[npt.NDArray[np.int64], Array]:

@@ -17,6 +17,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
@@ -29,8 +31,13 @@ OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
 INK, FAINT = "#202020", "#a8a8a8"
 DEFLECTION = "viridis_r"
 
+# Stresses, light where there are none; and the cut walls of the segments beside them.
+STRESS = "cividis_r"
+CUT_OUTER, CUT_INNER = "#ffffff", "#c8c8c8"
+
 # Light enough for the colour of a face to be that of the bar, dark enough to tell faces apart.
 MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0}
+COLOUR_READ = {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": INK, "line_width": 1.5}
 
 LETTERS: dict[Any, Any] = {
@@ -186,6 +193,7 @@ class Sheet:
             blank, extent=(0, pixels[0], 0, pixels[1]), interpolation="nearest"
         )
         self.picture.set_yticks([])
+        self._inset: AxesImage | None = None
         self._arrows: list[Artist] = []
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
         self._heading = self.figure.text(0.5, 0.98, "", size=26, weight="bold", **centred)
@@ -220,6 +228,15 @@ class Sheet:
         """Put what a camera saw into the picture."""
         self._image.set_data(pixels)
 
+    def inset(self, pixels: Pixels, left: int, bottom: int) -> None:
+        """Put a second, smaller picture at a place on the sheet, in pixels."""
+        if self._inset is None:
+            height, width = pixels.shape[:2]
+            axes = self.axes(left, bottom, width, height)
+            axes.set_axis_off()
+            self._inset = axes.imshow(pixels, interpolation="nearest")
+        self._inset.set_data(pixels)
+
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow and write beside it.
 
@@ -232,7 +249,13 @@ class Sheet:
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": FORCE}
         self._arrows += [
             self.picture.annotate("", (x, y + length), (x, y), arrowprops=shaft),
-            self.picture.annotate(text, (x + 22.0, y + 0.6 * length), va="center", color=FORCE),
+            self.picture.annotate(
+                text,
+                (x + 22.0, y + 0.6 * length),
+                va="center",
+                color=FORCE,
+                path_effects=[withStroke(linewidth=5, foreground="white")],
+            ),
         ]
 
     def clear_arrows(self) -> None:

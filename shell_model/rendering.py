@@ -18,8 +18,10 @@ from PIL import Image
 
 from dynamics.trajectory import Trajectory
 from shell_model.deformation import MovingShell
+from shell_model.overlap_pictures import draw_overlap
 from shell_model.picture_theme import LETTERS
-from shell_model.pictures import BoomView, Instant, draw_boom, draw_overlap
+from shell_model.pictures import BoomView, Instant, draw_boom
+from shell_model.stress_pictures import StressScale, draw_stress
 
 # The animation: seconds of the run, number of pictures, seconds on the screen, size in pixels.
 ANIMATION = "motion.gif"
@@ -59,13 +61,14 @@ def render_snapshots(
     """Draw a shell at some instants, and its first motion.
 
     Args:
-        fields: what ``shell_model.fields`` gathers, and the modal coordinates ``state`` (time,
-            mode).
-        trajectories: dims ``model``, ``time``, ``station``: ``tip`` and ``gap`` in m,
-            ``contact_force`` and ``contact_force_peak`` in N.
+        fields: what ``shell_model.fields`` gathers, the modal coordinates ``state`` (time,
+            mode), and the joints, see :meth:`MovingShell.views`.
+        trajectories: dims ``model``, ``time``, ``station``: ``tip`` in m, ``contact_force`` and
+            ``contact_force_peak`` in N.
         model: the shell's name in ``trajectories``.
-        folder: gets ``boom-WHEN.png`` and ``overlap-WHEN.png`` of each instant (from the second
-            joint on ``overlap-2-WHEN.png``), and ``motion.gif``.
+        folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
+            instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
+            seen from above too (``boom-above-WHEN.png``), and ``motion.gif``.
         times: in s; those of :func:`telling_instants` unless given.
 
     Returns:
@@ -75,7 +78,8 @@ def render_snapshots(
         RenderingUnavailable: there is no VTK, or no OpenGL that works.
         ValueError: a time lies outside the run.
     """
-    shell = MovingShell.of(fields, trajectories.sel(model=model))
+    views = MovingShell.views(fields, trajectories.sel(model=model))
+    shell = views[0]
     begin, end = (float(t) for t in shell.motion["time"].values[[0, -1]])
     when = telling_instants(shell.motion) if times is None else {f"{t:g}s": t for t in times}
     for t in when.values():
@@ -87,14 +91,23 @@ def render_snapshots(
     film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
     drawn: dict[str, Image.Image] = {}
     with rc_context(LETTERS):
-        view = BoomView.of(shell, [*instants, *film])
-        for name, picture in zip(when, draw_boom(shell, instants, view, end), strict=True):
-            drawn[f"boom-{name}.png"] = picture
-        for number, overlap in enumerate(shell.overlaps, start=1):
-            joint = "" if number == 1 else f"-{number}"
-            for name, picture in zip(when, draw_overlap(shell, instants, overlap), strict=True):
-                drawn[f"overlap{joint}-{name}.png"] = picture
-        moving = [p.resize(SMALL) for p in draw_boom(shell, film, view, film[-1].time)]
+        scale = StressScale.of(shell, instants)
+        for seen in views:
+            view = BoomView.of(seen, [*instants, *film])
+            above = "-above" if seen.from_above else ""
+            for name, picture in zip(when, draw_boom(seen, instants, view, end), strict=True):
+                drawn[f"boom{above}-{name}.png"] = picture
+            for number, overlap in enumerate(seen.overlaps, start=1):
+                joint = above if number == 1 else f"{above}-{number}"
+                pictures = {
+                    "overlap": draw_overlap(seen, instants, overlap),
+                    "stress": draw_stress(seen, instants, scale, overlap),
+                }
+                for kind, several in pictures.items():
+                    for name, picture in zip(when, several, strict=True):
+                        drawn[f"{kind}{joint}-{name}.png"] = picture
+            if not seen.from_above:
+                moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, film[-1].time)]
     for name, picture in drawn.items():
         with _whole(folder / name) as part:
             picture.save(part)

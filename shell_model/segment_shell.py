@@ -3,24 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.linalg import null_space
+from scipy.linalg import null_space, qr
 
 from geometry.boom import Direction, Segment, Support
-from geometry.mesh import WALLS, SegmentMesh
+from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
 from geometry.section import BoxSection
 from shell_model import compat
-from shell_model.attachments import add_outer_product
+from shell_model.attachments import Attached
 from shell_model.forms import ShellForms, shell_forms
-from shell_model.outline import COMPONENT, Outline, Row
+from shell_model.outline import COMPONENT, ON_WALL, Outline, Row
 
 Array = npt.NDArray[np.float64]
 
@@ -31,58 +32,105 @@ ON_LINE = 1.0e-7
 # it from a rigid hold.
 RIGID_TWIST = 1.0e5
 
+# Part of the largest value below which a value of a load is round-off.
+_ROUND_OFF = 1.0e-10
+
+
+class Plates(NamedTuple):
+    """What plates are before they are matrices: function space, thickness, forms, supports."""
+
+    space: Any
+    thickness: Any
+    forms: ShellForms
+    holds: list[Any]
+
+
+class Matrices:
+    """Matrices of plates with springs and masses, assembled when they are asked for. Collective.
+
+    Args:
+        comm: the ranks that share them.
+        plates: their forms.
+        holds: Dirichlet conditions.
+        springs, masses: what is attached.
+        copies: of the plates.
+    """
+
+    def __init__(
+        self,
+        comm: MPI.Comm,
+        plates: Plates,
+        holds: list[Any],
+        springs: Attached,
+        masses: Attached,
+        copies: float = 1.0,
+    ) -> None:
+        self._comm, self._plates, self._holds, self._copies = comm, plates, holds, copies
+        self._springs, self._masses = springs, masses
+
+    @cached_property
+    def stiffness(self) -> PETSc.Mat:
+        return self._assembled(self._plates.forms.stiffness, 1.0, self._springs)
+
+    @cached_property
+    def mass(self) -> PETSc.Mat:
+        return self._assembled(self._plates.forms.mass, 0.0, self._masses)
+
+    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+        matrix = compat.assemble_matrix(form, self._holds, diagonal)
+        matrix.scale(self._copies)
+        attached.add_to(self._comm, matrix)
+        return matrix
+
 
 @dataclass(frozen=True, slots=True)
-class SegmentShell:
-    """K u = f and M ü of one segment, distributed by rows.
+class Shell:
+    """K u = f and M ü, distributed by rows.
 
     Args:
         comm: the ranks that share it.
-        stiffness: (num_dofs, num_dofs), 1 on the diagonal of held rows.
-        mass: (num_dofs, num_dofs), 0 on the diagonal of held rows, which puts these degrees of
-            freedom at infinite frequency.
-        unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows.
+        matrices: K and M.
         free: (num_owned,) False in held rows.
-        springs: (num_owned, num_springs) what each spring of the supports reads.
+        springs: of the supports.
         nodes: (num_owned_nodes, 3) places of the displacement nodes in m.
         node_dofs: (num_owned_nodes, 3) global rows of their displacements.
         rotation_nodes: (num_owned_rotation_nodes, 3) places of the rotation nodes in m.
         rotation_dofs: (num_owned_rotation_nodes, 3) global rows of their rotations.
-        section: the plates.
         space: the function space, which owns the communicator that the matrices live on.
     """
 
     comm: MPI.Comm
-    stiffness: PETSc.Mat
-    mass: PETSc.Mat
-    unit_loads: Mapping[Direction, Array]
+    matrices: Matrices
     free: npt.NDArray[np.bool_]
-    springs: Array
+    springs: Attached
     nodes: Array
     node_dofs: npt.NDArray[np.int64]
     rotation_nodes: Array
     rotation_dofs: npt.NDArray[np.int64]
-    section: BoxSection
     space: Any
+
+    @property
+    def stiffness(self) -> PETSc.Mat:
+        """(num_dofs, num_dofs), decoupled and positive in held rows. Collective."""
+        return self.matrices.stiffness
+
+    @property
+    def mass(self) -> PETSc.Mat:
+        """(num_dofs, num_dofs), 0 on the diagonal of held rows, which puts these degrees of freedom
+        at infinite frequency. Collective.
+        """
+        return self.matrices.mass
 
     @property
     def num_dofs(self) -> int:
         """Number of degrees of freedom over all ranks."""
-        return int(self.stiffness.getSize()[0])
+        return int(self.space.dofmap.index_map.size_global)
 
     @property
     def owned(self) -> tuple[int, int]:
         """First and past-the-last global row of this rank."""
-        first, last = self.stiffness.getOwnershipRange()
+        first, last = self.space.dofmap.index_map.local_range
         return int(first), int(last)
-
-    def outline(self, x: float) -> Outline:
-        """The nodes at x, the same on every rank. Collective."""
-        return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)
-
-    def row(self, weights: Row) -> Array:
-        """(num_owned,) this rank's part of a row given as global dof → weight."""
-        return _local_row(self.owned[0], self.free, weights)
 
     def rigid_motions(self) -> Array:
         """(num_owned, num_free) rigid motions that the supports leave, six for a free segment.
@@ -100,10 +148,41 @@ class SegmentShell:
             motions[self.node_dofs - first, 3 + i] = np.cross(axis, arms)
             motions[self.rotation_dofs - first, 3 + i] = axis
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
-        held = np.concatenate([held, self.comm.allreduce(self.springs.T @ motions)])
+        held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
         # One rank decides on the basis of what is left, for all.
-        free = self.comm.bcast(null_space(held) if held.size else np.eye(6))
+        free = self.comm.bcast(null_space(qr(held, mode="r")[0][:6]) if held.size else np.eye(6))
         return np.asarray(motions @ free)
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentShell(Shell):
+    """The shell of one segment.
+
+    Args:
+        unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
+            it is spread over the plain box, collars and diaphragms have no part in it.
+        stiffener_loads: direction → (num_owned,) what collars and diaphragms alone feel of an
+            acceleration of 1 m/s² along it, in N, zero in held rows.
+        masses: what the segment carries.
+        section: the plates.
+        segment: what it is made from.
+        mesh: on rank 0.
+    """
+
+    unit_loads: Mapping[Direction, Array]
+    stiffener_loads: Mapping[Direction, Array]
+    masses: Attached
+    section: BoxSection
+    segment: Segment
+    mesh: SegmentMesh | None
+
+    def outline(self, x: float) -> Outline:
+        """The nodes at x, the same on every rank. Collective."""
+        return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)
+
+    def row(self, weights: Row) -> Array:
+        """(num_owned,) this rank's part of a row given as global dof → weight."""
+        return _local_row(self.owned[0], self.free, weights)
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> SegmentShell:
@@ -112,72 +191,81 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     A rigid support holds the section's outline against y and z, which leaves it free to tilt; a
     clamped one holds every displacement and rotation of it. An elastic support is a spring on
     the mean deflection of the walls, along z and along y, with the twist held. Point masses move
-    with the same means. Nothing holds the segment along x, and nothing pushes it there.
+    with the same means. Nothing holds the segment along x, and nothing pushes it there. A
+    diaphragm is held, pushed and read through the outline to which it is welded alone.
 
     Args:
         comm: the ranks that share it.
         segment: with a box section.
-        mesh: of its walls, on rank 0, with mesh lines at supports and masses; None elsewhere.
+        mesh: of its walls and diaphragms, on rank 0, with mesh lines at supports, masses and the
+            ends of collars; None elsewhere.
     """
     section = segment.section
     assert section is not None
-    if mesh is not None:
-        points, triangles = mesh.points, mesh.triangles
-        wall_thickness = np.array(
-            [section.flange if wall in ("bottom", "top") else section.web for wall in WALLS]
-        )[mesh.walls]
-    else:
-        points, triangles = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
-        wall_thickness = None
-    domain = compat.create_triangle_mesh(comm, points, triangles)
-    thickness = compat.cellwise_function(domain, comm.bcast(wall_thickness))
-    space = compat.shell_space(domain)
-    forms = shell_forms(space, thickness, segment.material)
-    bcs = _holds(space, segment)
-    stiffness = compat.assemble_matrix(forms.stiffness, bcs, diagonal=1.0)
-    mass = compat.assemble_matrix(forms.mass, bcs, diagonal=0.0)
+    plates = assemble_plates(comm, segment, mesh)
+    space, forms = plates.space, plates.forms
+    unit_loads = {d: _unit_load(comm, forms, d) / section.area for d in COMPONENT}
+    forms.loaded.x.array[:] = plates.thickness.x.array - forms.loaded.x.array
+    density = segment.material.density
+    stiffener_loads = {d: density * _unit_load(comm, forms, d) for d in COMPONENT}
+    free = free_rows(space, plates.holds)
+    nodes, node_dofs = owned_nodes(space, 0)
+    rotation_nodes, rotation_dofs = owned_nodes(space, 1)
 
-    first, last = stiffness.getOwnershipRange()
-    free = np.ones(last - first, dtype=bool)
-    for bc in bcs:
-        held, _ = bc.dof_indices()
-        free[held[held < free.size]] = False
-    nodes, node_dofs = _owned_nodes(space, 0)
-    rotation_nodes, rotation_dofs = _owned_nodes(space, 1)
+    def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
+        rows, factors = [], []
+        for x, row, factor in what:
+            outline = _outline(comm, nodes, node_dofs, section, x)
+            rows.append(_local_row(space.dofmap.index_map.local_range[0], free, row(outline)))
+            factors.append(factor)
+        return Attached.of(rows, factors, free.size)
 
-    def local(row: Row) -> Array:
-        return _local_row(first, free, row)
-
-    springs = []
-    for support in segment.supports:
-        if support.stiffness is None:
-            continue
-        outline = _outline(comm, nodes, node_dofs, section, support.x)
-        for row, spring in _spring_rows(outline, segment, support.stiffness):
-            springs.append(local(row))
-            add_outer_product(comm, stiffness, springs[-1], spring)
-    for point_mass in segment.masses:
-        outline = _outline(comm, nodes, node_dofs, section, point_mass.x)
-        for row in (
-            outline.mean_displacement(0),
-            outline.wall_deflection("y"),
-            outline.wall_deflection("z"),
-        ):
-            add_outer_product(comm, mass, local(row), point_mass.mass)
+    springs, masses = attached(_springs(segment)), attached(_masses(segment))
     return SegmentShell(
         comm=comm,
-        stiffness=stiffness,
-        mass=mass,
-        unit_loads={d: _unit_load(forms, d) / section.area * free for d in COMPONENT},
+        matrices=Matrices(comm, plates, plates.holds, springs, masses),
+        unit_loads={d: load * free for d, load in unit_loads.items()},
+        stiffener_loads={d: load * free for d, load in stiffener_loads.items()},
         free=free,
-        springs=np.array(springs).reshape(-1, free.size).T,
+        springs=springs,
+        masses=masses,
         nodes=nodes,
         node_dofs=node_dofs,
         rotation_nodes=rotation_nodes,
         rotation_dofs=rotation_dofs,
         section=section,
+        segment=segment,
+        mesh=mesh,
         space=space,
     )
+
+
+def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> Plates:
+    """The plates of a mesh, a segment's whole one or a part of it. Collective."""
+    section = segment.section
+    assert section is not None
+    if mesh is not None:
+        points, triangles = mesh.points, mesh.triangles
+        thicknesses = plate_thickness(segment, mesh), plain_thickness(section, mesh)
+    else:
+        points, triangles = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+        thicknesses = None
+    domain = compat.create_triangle_mesh(comm, points, triangles)
+    thickness, plain = (
+        compat.cellwise_function(domain, values) for values in comm.bcast(thicknesses)
+    )
+    space = compat.shell_space(domain)
+    forms = shell_forms(space, thickness, segment.material, loaded=plain)
+    return Plates(space, thickness, forms, _holds(space, segment, section))
+
+
+def free_rows(space: Any, holds: list[Any]) -> npt.NDArray[np.bool_]:
+    """(num_owned,) False in the rows of a space that are held."""
+    free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
+    for bc in holds:
+        held, _ = bc.dof_indices()
+        free[held[held < free.size]] = False
+    return free
 
 
 def _outline(
@@ -187,10 +275,17 @@ def _outline(
     section: BoxSection,
     x: float,
 ) -> Outline:
-    at = np.abs(nodes[:, 0] - x) < ON_LINE
+    at = _on_outline(nodes, section, x)
     places = np.concatenate(comm.allgather(nodes[at]))
     dofs = np.concatenate(comm.allgather(node_dofs[at]))
     return Outline(x, places, dofs, section)
+
+
+def _on_outline(places: Array, section: BoxSection, x: float) -> npt.NDArray[np.bool_]:
+    """(num_places,) whether places (num_places, 3) are on the walls at x."""
+    off_wall = np.abs(np.abs(places[:, 1:]) - 0.5 * np.array([section.width, section.height]))
+    near = ON_WALL * section.height
+    return np.asarray((off_wall.min(axis=1) < near) & (np.abs(places[:, 0] - x) < near))
 
 
 def _local_row(first: int, free: npt.NDArray[np.bool_], weights: Row) -> Array:
@@ -201,26 +296,46 @@ def _local_row(first: int, free: npt.NDArray[np.bool_], weights: Row) -> Array:
     return local
 
 
-def _unit_load(forms: ShellForms, direction: Direction) -> Array:
+def _unit_load(comm: MPI.Comm, forms: ShellForms, direction: Direction) -> Array:
+    """The assembled load. It has exact zeros at the vertices, where a quadratic function has no
+    mean, and at most two cells that carry it elsewhere, so that no order of summation is left in
+    that of a plain box.
+    """
     forms.load_direction.value[:] = np.eye(3)[COMPONENT[direction]]
-    return compat.assemble_vector(forms.unit_load)
+    load = compat.assemble_vector(forms.unit_load)
+    largest = comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
+    load[np.abs(load) < _ROUND_OFF * largest] = 0.0
+    return load
 
 
-def _spring_rows(
-    outline: Outline, segment: Segment, stiffness: float
-) -> Iterator[tuple[Row, float]]:
-    """What an elastic support pulls at, and how stiffly."""
-    section = outline.section
+def _springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+    """Where elastic supports pull, at what, and how stiffly."""
+    section = segment.section
+    assert section is not None
     torsion = segment.material.shear_modulus * section.torsion_constant / segment.length
-    yield outline.wall_deflection("z"), stiffness
-    yield outline.wall_deflection("y"), stiffness
-    yield outline.twist(), RIGID_TWIST * torsion
+    for support in segment.supports:
+        if support.stiffness is not None:
+            yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
+            yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
+            yield support.x, Outline.twist, RIGID_TWIST * torsion
 
 
-def _holds(space: Any, segment: Segment) -> list[Any]:
+def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+    """Where point masses are, what moves them, and how heavy they are."""
+    for mass in segment.masses:
+        yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
+        yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass
+        yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
+
+
+def _holds(space: Any, segment: Segment, section: BoxSection) -> list[Any]:
     """Dirichlet conditions of the rigid supports."""
+
+    def at(x: float) -> Callable[[Array], npt.NDArray[np.bool_]]:
+        return lambda places: _on_outline(places, section, x)
+
     return [
-        _hold(space.sub(part).sub(component), support.x)
+        hold(space, part, component, at(support.x))
         for support in segment.supports
         if support.stiffness is None
         for part, component in _held_components(support)
@@ -234,24 +349,30 @@ def _held_components(support: Support) -> list[tuple[int, int]]:
     return [(0, COMPONENT["y"]), (0, COMPONENT["z"])]
 
 
-def _hold(component: Any, x: float) -> Any:
-    """Zero on the outline at x."""
-    collapsed, _ = component.collapse()
+def hold(
+    space: Any, part: int, component: int, where: Callable[[Array], npt.NDArray[np.bool_]]
+) -> Any:
+    """Dirichlet condition: zero.
 
-    def on_outline(points: Array) -> npt.NDArray[np.bool_]:
-        return np.asarray(np.abs(points[0] - x) < ON_LINE)
-
-    dofs = fem.locate_dofs_geometrical((component, collapsed), on_outline)
+    Args:
+        space: of displacements and rotations.
+        part: 0 for the displacement, 1 for the rotation.
+        component: of it.
+        where: tells of places (num_places, 3) in m which are held.
+    """
+    held = space.sub(part).sub(component)
+    collapsed, _ = held.collapse()
+    dofs = fem.locate_dofs_geometrical((held, collapsed), lambda points: where(points.T))
     function = fem.Function(collapsed)
     function.x.array[:] = PETSc.ScalarType(0.0)
-    return fem.dirichletbc(function, dofs, component)
+    return fem.dirichletbc(function, dofs, held)
 
 
-def _owned_nodes(space: Any, part: int) -> tuple[Array, npt.NDArray[np.int64]]:
+def owned_nodes(space: Any, part: int) -> tuple[Array, npt.NDArray[np.int64]]:
     """Places of a vector part's nodes on this rank, and the global rows of their components."""
     collapsed, to_parent = space.sub(part).collapse()
     index_map = space.dofmap.index_map
     local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
-    places = collapsed.tabulate_dof_coordinates()[: len(local)]
+    places = compat.node_places(collapsed)[: len(local)]
     owned = local[:, 0] < index_map.size_local
     return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)

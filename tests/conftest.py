@@ -7,8 +7,9 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -17,11 +18,20 @@ from hypothesis import settings
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import infer_inner_section, infer_outer_section
+from runs.cache import VARIABLE
 from tests.space import in_space
 
 # The same examples every time, however slow the machine.
 settings.register_profile("protractile", deadline=None, derandomize=True)
 settings.load_profile("protractile")
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Tests neither use nor fill the user's cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 @pytest.fixture(scope="session")
@@ -86,10 +96,10 @@ def paper_law() -> PowerContact:
 
 
 @pytest.fixture
-def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Runs a Python program with its arguments on two ranks in an empty folder."""
+def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs a Python program with its arguments on a number of ranks in an empty folder."""
     if shutil.which("mpirun") is None:
-        pytest.skip("two ranks take mpirun, which is not installed")
+        pytest.skip("several ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
     environment = {
@@ -100,9 +110,10 @@ def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     }
 
-    def run(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+        launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"]
         return subprocess.run(
-            ["mpirun", "-n", "2", "--oversubscribe", sys.executable, "-c", program, *arguments],
+            [*launcher, sys.executable, "-c", program, *arguments],
             cwd=tmp_path,
             env=environment,
             capture_output=True,
@@ -112,3 +123,11 @@ def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]
         )
 
     return run
+
+
+@pytest.fixture
+def two_ranks(
+    on_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs a Python program with its arguments on two ranks in an empty folder."""
+    return partial(on_ranks, 2)

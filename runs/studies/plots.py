@@ -8,6 +8,7 @@ from pathlib import Path
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from runs import theme
 from runs.pen import Figure
@@ -44,6 +45,13 @@ def draw(plot: Plot, folder: Path) -> Figure:
         axes.set(xlabel=plot.x, ylabel=plot.y)
         if plot.logarithmic:
             axes.set(xscale="log", yscale="log")
+            # Sizes span a decade or less: their own values say more than powers of ten.
+            sizes = sorted({float(value) for x, _ in plot.curves.values() for value in x})
+            if len(sizes) <= 8:
+                axes.xaxis.set_major_locator(FixedLocator(sizes))
+                axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+            axes.yaxis.set_minor_formatter(NullFormatter())
         if len(plot.curves) > 1:
             sheet.legend(loc="outside lower left", ncols=1 if len(plot.curves) < 4 else 2)
         sheet.suptitle(plot.title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,16 +16,35 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.mesh import WALLS, SegmentMesh, mesh_segment
+from geometry.boom import Collar, Diaphragm
+from geometry.mesh import (
+    WALLS,
+    SegmentMesh,
+    collar_breaks,
+    diaphragm_breaks,
+    mesh_segment,
+    plain_thickness,
+    plate_thickness,
+)
 from geometry.section import BoxSection
+from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4945, width=0.3027, flange=0.00664, web=0.00664)
 BREAKS = {"tail": 0.0, "support-2": 2.0, "station-9": 9.0, "station-10": 10.0, "head": 10.0}
 
 
+CLOSED = ("station-9", "head")
+
+
 @pytest.fixture(scope="module")
 def mesh() -> SegmentMesh:
     return mesh_segment(BOX, BREAKS, 0.2)
+
+
+@pytest.fixture(scope="module")
+def closed_mesh() -> SegmentMesh:
+    """The same with a plate at 9 m and one at the head."""
+    return mesh_segment(BOX, BREAKS, 0.1, closed=CLOSED)
 
 
 def edge_counts(triangles: npt.NDArray[np.int64]) -> Counter[tuple[int, int]]:
@@ -85,9 +105,64 @@ def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
 
 
 @pytest.mark.quick
+def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMesh) -> None:
+    """Reference: analytic. Its area is the enclosed one; three triangles meet on its outline
+    within the segment, two at the segment's end; no two points coincide.
+    """
+    for number, x in enumerate((9.0, 10.0), start=len(WALLS)):
+        plate = closed_mesh.walls == number
+        assert areas(closed_mesh)[plate].sum() == pytest.approx(BOX.height * BOX.width, rel=1e-12)
+        assert (closed_mesh.points[closed_mesh.triangles[plate], 0] == x).all()
+    counts = edge_counts(closed_mesh.triangles)
+    for name, meeting in (("station-9", 3), ("head", 2), ("support-2", 2), ("tail", 1)):
+        edges = np.concatenate([closed_mesh.lines[f"{name}:{wall}"] for wall in WALLS])
+        assert {counts[a, b] for a, b in np.sort(edges, axis=1).tolist()} == {meeting}
+    assert sum(count == 3 for count in counts.values()) == 4 * round(0.3 / 0.1) + 4
+    assert len(np.unique(np.round(closed_mesh.points, 9), axis=0)) == len(closed_mesh.points)
+    np.testing.assert_array_equal(closed_mesh.on_walls, closed_mesh.walls < 4)
+
+
+@pytest.mark.quick
+def test_a_diaphragm_leaves_the_walls_as_they_are(closed_mesh: SegmentMesh) -> None:
+    """Reference: the mesh without it."""
+    plain = mesh_segment(BOX, BREAKS, 0.1)
+    walls = closed_mesh.triangles[closed_mesh.on_walls]
+    np.testing.assert_array_equal(
+        sorted_places(closed_mesh.points[walls].mean(axis=1)),
+        sorted_places(plain.points[plain.triangles].mean(axis=1)),
+    )
+
+
+@pytest.mark.quick
+def test_plates_have_their_thicknesses() -> None:
+    """Reference: analytic, the volume of walls, of a collar on all of them, and of two plates."""
+    box = BoxSection(height=0.5, width=0.3, flange=0.008, web=0.006)
+    segment = replace(
+        box_segment("box", 0.0, 10.0, box),
+        collars=(Collar(8.7, 9.1, 0.01),),
+        diaphragms=(Diaphragm(9.0, 0.012), Diaphragm(2.0, 0.004)),
+    )
+    plates = diaphragm_breaks(segment)
+    breaks = {"tail": 0.0, "head": 10.0} | plates | collar_breaks(segment)
+    assert breaks == {
+        "tail": 0.0, "head": 10.0, "diaphragm-1": 9.0, "diaphragm-2": 2.0,
+        "collar-1-start": 8.7, "collar-1-end": 9.1,
+    }  # fmt: skip
+    mesh = mesh_segment(box, breaks, 0.15, closed=tuple(plates))
+    walls = box.area * 10.0
+    assert plain_thickness(box, mesh) @ areas(mesh) == pytest.approx(walls, rel=1e-12)
+    collar, closing = 1.6 * 0.4 * 0.01, 0.15 * (0.012 + 0.004)
+    assert plate_thickness(segment, mesh) @ areas(mesh) == pytest.approx(
+        walls + collar + closing, rel=1e-12
+    )
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("kind", ["mesh", "closed_mesh"])
 @pytest.mark.parametrize("axis", [1, 2], ids=["y", "z"])
-def test_mesh_mirrors_itself(mesh: SegmentMesh, axis: int) -> None:
+def test_mesh_mirrors_itself(kind: str, axis: int, request: pytest.FixtureRequest) -> None:
     """The mirror image has the same triangles, diagonals included."""
+    mesh: SegmentMesh = request.getfixturevalue(kind)
     places = {tuple(p): i for i, p in enumerate(np.round(mesh.points, 9) + 0.0)}
     mirrored = np.round(mesh.points, 9)
     mirrored[:, axis] *= -1.0
@@ -97,9 +172,9 @@ def test_mesh_mirrors_itself(mesh: SegmentMesh, axis: int) -> None:
 
 
 @pytest.mark.quick
-def test_mesh_of_a_box_on_its_side_lies_on_its_side(mesh: SegmentMesh) -> None:
+def test_mesh_of_a_box_on_its_side_lies_on_its_side(closed_mesh: SegmentMesh) -> None:
     """With y and z exchanged the points are the same, and so are the triangles."""
-    lying = mesh_segment(BOX.turned(), BREAKS, 0.2)
+    mesh, lying = closed_mesh, mesh_segment(BOX.turned(), BREAKS, 0.1, closed=CLOSED)
     places = {tuple(p): i for i, p in enumerate(np.round(mesh.points, 9) + 0.0)}
     turned = np.round(lying.points[:, [0, 2, 1]], 9) + 0.0
     image = np.array([places[tuple(p)] for p in turned])
@@ -164,13 +239,14 @@ def test_lines_lie_at_the_breaks_for_awkward_lengths(
 def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
     """Reference: other code, meshio's reader of gmsh's own file."""
     breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "head": 3.5}
-    mesh = mesh_segment(BOX, breaks, 0.25, msh=tmp_path / "outer.msh")
+    mesh = mesh_segment(BOX, breaks, 0.25, msh=tmp_path / "outer.msh", closed=("station-3",))
     read = meshio.read(tmp_path / "outer.msh")
-    expected = {wall: 2 for wall in WALLS}
+    plates = (*WALLS, "station-3")
+    expected = {plate: 2 for plate in plates}
     expected |= {f"{name}:{wall}": 1 for name in breaks for wall in WALLS}
     assert {name: int(dim) for name, (_, dim) in read.field_data.items()} == expected
-    for number, wall in enumerate(WALLS):
-        corners = grouped(read, "triangle", wall)
+    for number, plate in enumerate(plates):
+        corners = grouped(read, "triangle", plate)
         assert len(corners) == (mesh.walls == number).sum()
         np.testing.assert_allclose(
             sorted_places(corners.mean(axis=1)),

@@ -67,6 +67,54 @@ BAD_EDITS = {
         "segment[1].supports: a clamped support is rigid, and the one at 2 m has a stiffness; "
         "leave it out, or make the support pinned",
     ),
+    "collar beyond the head": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 2.0]\ncollars = [{ span = [9.7, 10.3], thickness = 0.01 }]",
+        "segment[1].collars[1].span: 10.3 m lies outside the segment; it must be between 0 and 10 "
+        "m",
+    ),
+    "backward collar": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 2.0]\ncollars = [{ span = [9.9, 9.7], thickness = 0.01 }]",
+        "segment[1].collars[1].span: must run from a smaller to a larger x, got [9.9, 9.7] m",
+    ),
+    "collar on a collar": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 2.0]\ncollars = [{ span = [9.5, 10.0], thickness = 0.01 }, "
+        "{ span = [9.0, 9.7], thickness = 0.02 }]",
+        "segment[1].collars: two lie on one another from 9.5 m on; give one of the thickness of "
+        "both there",
+    ),
+    "collar without thickness": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 2.0]\ncollars = [{ span = [9.7, 10.0], thickness = 0.0 }]",
+        "segment[1].collars[1].thickness: must be a number greater than 0, got 0.0",
+    ),
+    "diaphragm beyond the tip": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, 19.0]\ndiaphragms = [{ x = 9.0, thickness = 0.008 }, "
+        "{ x = 19.5, thickness = 0.008 }]",
+        "segment[2].diaphragms[2].x: 19.5 m lies outside the segment; it must be between 9 and 19 "
+        "m",
+    ),
+    "diaphragm of negative thickness": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, 19.0]\ndiaphragms = [{ x = 9.0, thickness = -0.008 }]",
+        "segment[2].diaphragms[1].thickness: must be a number greater than 0, got -0.008",
+    ),
+    "two diaphragms at one place": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, 19.0]\ndiaphragms = [{ x = 9.0, thickness = 0.008 }, "
+        "{ x = 9.0, thickness = 0.004 }]",
+        "segment[2].diaphragms: a place is given twice; give each once",
+    ),
+    "diaphragm in the way of the inner segment": (
+        "supports = [0.0, 2.0]",
+        "supports = [0.0, 2.0]\ndiaphragms = [{ x = 0.0, thickness = 0.008 }, "
+        "{ x = 9.5, thickness = 0.008 }]",
+        "segment[1].diaphragms[2].x: 'inner' slides inside 'outer' at 9.5 m, and no plate can "
+        "close the box there; it must be below 9 m",
+    ),
     "restitution above one": (
         "exponent = 2.0\n",
         "exponent = 2.0\nrestitution = { coefficient = 1.2, speed = 0.1 }\n",
@@ -88,6 +136,70 @@ BAD_EDITS = {
         "exponent = 2.0\n",
         "exponent = 2.0\ntied = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]\n",
         "joint[1].friction: the joint is tied, and nothing slides; leave it out",
+    ),
+    "pads longer than the overlap": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 1.5, width = 0.06 }\n",
+        "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
+    ),
+    "pads wider than half a flange": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1, width = 0.2 }\n",
+        "joint[1].pad.width: must be above 0 and not above half a wall of the inner segment, "
+        "0.135298 m, got 0.2 m",
+    ),
+    "pads without a width": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1 }\n",
+        "joint[1].pad.width: missing; it is the width from the corner inwards in m",
+    ),
+    "pads of a tied joint": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\npad = { length = 0.1, width = 0.06 }\n",
+        "joint[1].pad: the joint is tied, and nothing touches; leave it out",
+    ),
+    "pads across the flanges": (
+        COARSE[COARSE.index("exponent = 2.0") :],
+        COARSE[COARSE.index("exponent = 2.0") :]
+        .replace("exponent = 2.0\n", "exponent = 2.0\npad = { length = 0.1, width = 0.06 }\n")
+        .replace('"near webs"', '"across"'),
+        "model[6].contact_line: 'across' leaves no place to the pads of joint[1]; give 'near "
+        "webs', or leave pad out",
+    ),
+    "contact across the flanges in space": (
+        COARSE[COARSE.index("exponent = 2.0") :],
+        COARSE[COARSE.index("exponent = 2.0") :]
+        .replace("exponent = 2.0\n", "exponent = 2.0\nlateral_play = 0.01\n")
+        .replace('"near webs"', '"across"'),
+        "model[6].contact_line: 'across' is for a flat boom; in space the segments touch 'near "
+        "webs' or by 'surface'",
+    ),
+    "stiffness of a surface at stations": (
+        'contact_line = "near webs"',
+        'contact_line = "near webs"\nsurface_stiffness = 1e10',
+        "model[6].surface_stiffness: the segments touch at their stations, 'near webs'; leave it "
+        "out, or give contact_line = 'surface'",
+    ),
+    "points of a surface at stations": (
+        'contact_line = "near webs"',
+        "surface_points = [8, 4]",
+        "model[6].surface_points: the segments touch at their stations, 'near webs'; leave it out, "
+        "or give contact_line = 'surface'",
+    ),
+    "too many points of a surface": (
+        'contact_line = "near webs"',
+        'contact_line = "surface"\nsurface_points = [100, 4]',
+        "model[6].surface_points: 100 times 4 points on half a wall are more than 256, which a "
+        "reduced model can bear; give fewer",
+    ),
+    "one stiffness for surfaces of two laws": (
+        COARSE[COARSE.index("exponent = 2.0") :],
+        COARSE[COARSE.index("exponent = 2.0") :]
+        .replace("exponent", "lateral_play = 0.01\nlateral_exponent = 1.5\nexponent", 1)
+        .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
+        .replace(CONTACT, "", 3),
+        "model[6].surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and "
+        "2; leave it out, or give the model its own contact",
     ),
     "load of no segment": (
         "load = 55.07\n\n[[joint]]",
@@ -236,7 +348,7 @@ BAD_EDITS = {
     "unknown option": (
         'contact_line = "near webs"',
         'contact_line = "middle"',
-        "model[6].contact_line: must be 'near webs' or 'across', got 'middle'",
+        "model[6].contact_line: must be 'near webs', 'across' or 'surface', got 'middle'",
     ),
     "unknown statement": (
         "[time]",
@@ -364,6 +476,16 @@ BAD_EDITS = {
         "element_length = 1e-9",
         "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
         "at least 0.002 m",
+    ),
+    "coordinates that are no number": (
+        "mesh_size = 0.25",
+        'mesh_size = 0.25\nmodes = "many"',
+        "model[6].modes: must be a whole number above 0, or 'auto', got 'many'",
+    ),
+    "no coordinates": (
+        "mesh_size = 0.25",
+        "mesh_size = 0.25\nmodes = 0",
+        "model[6].modes: must be a whole number above 0, or 'auto', got 0",
     ),
     "too many triangles": (
         "mesh_size = 0.25",

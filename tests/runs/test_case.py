@@ -13,7 +13,7 @@ from runs import toml
 from runs.bad_input import BadInput
 from runs.build import build_boom, contact_laws
 from runs.case import load, select
-from runs.schema import Case
+from runs.schema import Case, ShellTable
 from tests.runs.bad_edits import BAD_EDITS, CASES, COARSE
 
 pytestmark = pytest.mark.quick
@@ -263,4 +263,24 @@ def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, li
     case = load(str(CASES / "coarse.toml"))
     with pytest.raises(BadInput) as refused:
         select(case, "coarse.toml", models, mesh_size)
+    assert str(refused.value) == f"coarse.toml: {line}"
+
+
+@pytest.mark.parametrize(("modes", "chosen"), [("auto", "auto"), ("12", 12)])
+def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> None:
+    case = select(load(str(CASES / "coarse.toml")), "coarse.toml", modes=modes)
+    assert [m.modes for m in case.models if isinstance(m, ShellTable)] == [chosen]
+
+
+@pytest.mark.parametrize(
+    ("models", "modes", "line"),
+    [
+        (None, "many", "--modes: must be a number above 0, or auto, got 'many'"),
+        (None, "0", "--modes: must be a number above 0, or auto, got '0'"),
+        (["beam-fe"], "auto", "--modes: no shell is to be run; leave it out"),
+    ],
+)
+def test_refuses_coordinates_with_one_exact_line(models: Any, modes: str, line: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        select(load(str(CASES / "coarse.toml")), "coarse.toml", models, modes=modes)
     assert str(refused.value) == f"coarse.toml: {line}"

@@ -203,7 +203,7 @@ def test_a_load_along_y_pushes_along_y() -> None:
 def test_contact_across_the_flanges_is_for_flat_booms() -> None:
     message = (
         "contact_line: 'across' spreads the force over the flanges of a flat boom; in space the "
-        "pads sit in the corners: give 'near webs'"
+        "pads sit in the corners: give 'near webs' or 'surface'"
     )
     options = ShellOptions(0.5, contact_line="across")
     with pytest.raises(BoomError, match=f"^{message}$"):

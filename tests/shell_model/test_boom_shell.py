@@ -13,8 +13,8 @@ from mpi4py import MPI
 from dynamics.splitting import integrate
 from geometry.boom import BoomError
 from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
-from shell_model.joint_rows import ContactLine, contact_points
 from shell_model.reduction import KrylovOptions
+from shell_model.touches import ContactLine, contact_points
 from tests.shell_model.booms import LAW, flat_boom
 
 

@@ -20,8 +20,8 @@ from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom, Load, Stop
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.joint_rows import ContactLine
 from shell_model.reduction import KrylovOptions
+from shell_model.touches import ContactLine
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
 
 Array = npt.NDArray[np.float64]

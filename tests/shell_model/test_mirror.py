@@ -11,8 +11,15 @@ import pytest
 from mpi4py import MPI
 
 from dynamics.failure import NumericsError
-from geometry.mesh import SegmentMesh, mesh_segment
-from shell_model.mirror import ALONG_Y, ALONG_Z, BREATHING, FAMILIES, TWISTING, Mirrors
+from geometry.boom import Collar, Diaphragm, PointMass, Support
+from geometry.mesh import (
+    SegmentMesh,
+    collar_breaks,
+    diaphragm_breaks,
+    mesh_segment,
+)
+from shell_model.families import Folding, Job
+from shell_model.mirror import ALONG_Y, ALONG_Z, BREATHING, FAMILIES, TWISTING, Family
 from shell_model.products import times
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import HELD, box_segment
@@ -21,34 +28,102 @@ from tests.shell_model.conftest import BOX
 Shells = Callable[..., SegmentShell]
 
 
+def _laden() -> SegmentShell:
+    """A box with everything that a segment may have."""
+    segment = replace(
+        box_segment("box", 0.0, 10.0, BOX),
+        supports=(Support(0.0, stiffness=1.0e6), Support(2.0)),
+        masses=(PointMass(10.0, 70.0),),
+        collars=(Collar(4.0, 5.0, 0.004),),
+        diaphragms=(Diaphragm(6.0, 0.01),),
+    )
+    breaks = {"start": 0.0, "support": 2.0, "end": 10.0}
+    breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
+    mesh = mesh_segment(BOX, breaks, 0.5, closed=tuple(diaphragm_breaks(segment)))
+    return assemble_segment(MPI.COMM_WORLD, segment, mesh)
+
+
+def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
+    """The families that a force on every row excites."""
+    folding = Folding(shell)
+    force = np.random.default_rng(1).standard_normal((shell.num_dofs, 1)) * shell.free[:, None]
+    return folding, folding.jobs(force, force)
+
+
 @pytest.mark.quick
 def test_rigid_motions_belong_to_their_families(box_shell: Shells) -> None:
     """Reference: analytic. Slides along x, y, z, then turns about them."""
     shell = box_shell(0.5)
-    mirrors = Mirrors(shell)
     motions = shell.rigid_motions()
-    families = (BREATHING, ALONG_Y, ALONG_Z, TWISTING, ALONG_Z, ALONG_Y)
-    for motion, mine in zip(motions.T[:, :, None], families, strict=True):
-        for family in FAMILIES:
-            expected = motion if family == mine else np.zeros_like(motion)
-            assert mirrors.part(motion, family) == pytest.approx(expected, abs=1.0e-12)
-    mirrors.destroy()
+    own = {BREATHING: [0], ALONG_Z: [2, 4], ALONG_Y: [1, 5], TWISTING: [3]}
+    folding, jobs = _everything(shell)
+    assert [job.family for job in jobs] == list(FAMILIES)
+    for job in jobs:
+        found = folding.unfold(job.shell().rigid_motions(), job.family, 0)
+        expected = motions[:, own[job.family]]
+        assert found.shape == expected.shape
+        combination = np.linalg.lstsq(expected, found, rcond=None)[0]
+        assert expected @ combination == pytest.approx(found, abs=1.0e-12)
 
 
 @pytest.mark.quick
-def test_forces_stay_in_the_family_of_the_motion(box_shell: Shells) -> None:
-    """Reference: analytic. The families make up every motion, and K and M keep them apart."""
+@pytest.mark.parametrize("kind", ["held", "laden"])
+def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
+    """Reference: other code, the whole shell. The forces that it needs for a family's motion are
+    the quarter's in that family, and none in the others.
+    """
+    shell = box_shell(0.5, supports=HELD) if kind == "held" else _laden()
+    folding, jobs = _everything(shell)
+    for job in jobs:
+        quarter = job.shell()
+        motion = np.random.default_rng(2).standard_normal((quarter.num_dofs, 1))
+        motion *= quarter.free[:, None]
+        whole = folding.unfold(motion, job.family, 0)
+        assert not whole[~shell.free].any()
+        for full, part in ((shell.stiffness, quarter.stiffness), (shell.mass, quarter.mass)):
+            force = times(full, whole) * shell.free[:, None]
+            (found,) = folding.jobs(force, force)
+            assert found.family == job.family
+            expected = times(part, motion) * quarter.free[:, None]
+            off = found.forces * quarter.free[:, None] - expected
+            assert np.abs(off).max() < 1.0e-12 * np.abs(expected).max()
+
+
+@pytest.mark.quick
+def test_forces_do_the_same_work_on_the_quarters(box_shell: Shells) -> None:
+    """Reference: analytic. The families make up every force."""
     shell = box_shell(0.5, supports=HELD)
-    mirrors = Mirrors(shell)
-    motion = np.random.default_rng(1).standard_normal((shell.num_dofs, 1)) * shell.free[:, None]
-    parts = [mirrors.part(motion, family) for family in FAMILIES]
-    assert np.sum(parts, axis=0) == pytest.approx(motion, abs=1.0e-12)
-    for matrix in (shell.stiffness, shell.mass):
-        for family, part in zip(FAMILIES, parts, strict=True):
-            force = times(matrix, part)
-            left = force - mirrors.part(force, family)
-            assert np.abs(left).max() < 1.0e-12 * np.abs(force).max()
-    mirrors.destroy()
+    folding = Folding(shell)
+    force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
+    total, parts = np.zeros(2), np.zeros(2)
+    for job in folding.jobs(force, force):
+        assert np.array_equal(job.forces, job.readings)
+        motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
+        motion *= job.shell().free[:, None]
+        parts += (job.forces.T @ motion)[:, 0]
+        total += (force.T @ folding.unfold(motion, job.family, 0))[:, 0]
+    assert parts == pytest.approx(total, rel=1.0e-10)
+
+
+@pytest.mark.quick
+def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) -> None:
+    """A load along z bends along z; a push at one flange breathes as well."""
+    shell = box_shell(0.5, supports=HELD)
+    push = shell.row(shell.outline(10.0).flange_deflection(1.0, 0.1))
+    for force, expected in (
+        (shell.unit_loads["z"], [ALONG_Z]),
+        (shell.unit_loads["y"], [ALONG_Y]),
+        (push, [BREATHING, ALONG_Z]),
+    ):
+        jobs = Folding(shell).jobs(force[:, None], force[:, None])
+        assert [job.family for job in jobs] == expected
+
+
+@pytest.mark.quick
+def test_what_a_family_does_not_do_is_held_in_the_mirrors() -> None:
+    """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
+    assert Family(1, -1).held(1) == [(0, 1), (1, 0), (1, 2)]
+    assert Family(1, -1).held(2) == [(0, 0), (0, 1), (1, 2)]
 
 
 def _shifted(mesh: SegmentMesh) -> SegmentMesh:
@@ -79,4 +154,4 @@ def test_refuses_a_mesh_that_is_no_mirror_image(
     shell = assemble_segment(MPI.COMM_WORLD, box_segment("box", 0.0, 10.0, BOX), mesh)
     message = f"^a segment's {what} is not its own mirror image in y and in z$"
     with pytest.raises(NumericsError, match=message):
-        Mirrors(shell)
+        Folding(shell)

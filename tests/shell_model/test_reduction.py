@@ -6,15 +6,22 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from dynamics.failure import NumericsError
 from shell_model.eigenmodes import natural_frequencies
-from shell_model.reduction import KrylovOptions, ShiftedSolver, reduce_segment
+from shell_model.reduction import (
+    KrylovOptions,
+    ReducedSegment,
+    ShiftedSolver,
+    reduce_segment,
+)
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]
+Array = npt.NDArray[np.float64]
 
 
 def _inputs(shell: SegmentShell) -> np.ndarray:
@@ -104,3 +111,61 @@ def test_a_segment_that_nothing_acts_on_has_no_motion(box_shell: Shells) -> None
     message = "^nothing acts on a segment, and it has no motion: give it a load$"
     with pytest.raises(NumericsError, match=message):
         reduce_segment(shell, np.zeros((shell.free.size, 2)), KrylovOptions())
+
+
+FREQUENCIES = (1.0, 20.0, 120.0, 400.0, 700.0)
+TOLERANCES = (1.0e-3, 1.0e-6, 1.0e-9)
+
+
+def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows: Array) -> float:
+    """The larger relative error of compliance and readings, against full solves."""
+    gains, read = reduced.shapes.T @ inputs, reduced.shapes.T @ rows
+    worst = 0.0
+    for frequency in FREQUENCIES:
+        solve = ShiftedSolver(shell, frequency)
+        moved = solve(inputs)
+        full, of_rows = inputs.T @ moved, np.einsum("ij,ij->j", rows, solve(rows))
+        approximate = gains / (reduced.omega2 + solve.sigma)[:, None]
+        solve.destroy()
+        of_inputs = np.diag(full)
+        off = (gains.T @ approximate - full) / np.sqrt(np.outer(of_inputs, of_inputs))
+        off_read = (read.T @ approximate - rows.T @ moved) / np.sqrt(np.outer(of_rows, of_inputs))
+        worst = max(worst, np.abs(off).max(), np.abs(off_read).max())
+    return float(worst)
+
+
+def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
+    """Reference: full solves at frequencies that the reduction has not seen. The error there is
+    below twice the tolerance, for contacts and for what the end of the segment gets of them.
+    """
+    shell = box_shell(0.25, supports=HELD)
+    inputs, end = _inputs(shell), shell.outline(10.0)
+    rows = np.column_stack([shell.row(end.mean_deflection()), shell.row(end.rotation())])
+    sizes = []
+    for tolerance in TOLERANCES:
+        reduced = reduce_segment(shell, inputs, KrylovOptions(tolerance=tolerance), readings=rows)
+        sizes.append(reduced.omega2.size)
+        assert max(reduced.compliance_error, reduced.reading_error) <= tolerance
+        assert _measured(shell, reduced, inputs, rows) < 2.0 * tolerance
+    assert sizes[0] < sizes[1] < sizes[2]
+
+
+@pytest.mark.quick
+def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
+    """And what these leave is told: fewer err more."""
+    shell = box_shell(0.5, supports=HELD)
+    inputs = _inputs(shell)
+    few, more = (reduce_segment(shell, inputs, KrylovOptions(most=n)) for n in (12, 24))
+    assert few.omega2.size <= 12 < more.omega2.size <= 24
+    assert few.compliance_error > 10.0 * more.compliance_error
+
+
+@pytest.mark.quick
+def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
+    shell = box_shell(0.5, supports=HELD)
+    message = (
+        r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates of one kind of motion, "
+        r"and 1\.0e-09 is asked for; allow more modes, or a larger tolerance$"
+    )
+    with pytest.raises(NumericsError, match=message):
+        reduce_segment(shell, _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20))

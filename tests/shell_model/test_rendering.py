@@ -11,14 +11,17 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import xarray as xr
+from matplotlib import rc_context
 from PIL import Image
 
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from shell_model import rendering
 from shell_model.deformation import MovingShell, round_scale
-from shell_model.picture_theme import Camera, Scene
+from shell_model.picture_theme import LETTERS, Camera, Scene
+from shell_model.pictures import Instant
 from shell_model.rendering import RenderingUnavailable, render_snapshots, telling_instants
+from shell_model.still_pictures import draw_mesh, draw_sections
 
 Array = npt.NDArray[np.float64]
 
@@ -47,8 +50,24 @@ def fields() -> xr.Dataset:
     swing = np.sin(np.pi * TIME) ** 2
     state = np.stack([0.02 * swing, 0.02 * swing - CLEARANCE, 0.15 * swing], axis=1)
     triangles = [outer.triangles, inner.triangles + len(outer.points)]
+    # What the outer segment's bending makes; the inner one is rigid but for a dark end.
+    bent = np.zeros((1, len(outer.triangles), 6), dtype=np.float32)
+    bent[0, :, 0] = -2.1e11 / 40.0 * outer.points[outer.triangles, 2].mean(axis=1)
+    pressed = np.zeros((2, len(inner.triangles), 6), dtype=np.float32)
+    pressed[1, :, 0] = 1.0e9 * (inner.points[inner.triangles, 0].mean(axis=1) < 9.4)
     return xr.Dataset(
         {
+            "wall": ("triangle", np.concatenate([outer.walls, inner.walls])),
+            "thickness": ("triangle", np.full(sum(len(t) for t in triangles), 0.0065)),
+            "coordinates_1": (("own_1", "mode"), np.eye(3)[:1]),
+            "coordinates_2": (("own_2", "mode"), np.eye(3)[1:]),
+            "stress_1": (("own_1", "triangle_1", "stress"), bent),
+            "stress_2": (("own_2", "triangle_2", "stress"), pressed),
+            "joint_outer": ("joint", np.int32([0])),
+            "joint_inner": ("joint", np.int32([1])),
+            "clearance": ("joint", [CLEARANCE]),
+            "lateral_clearance": ("joint", [np.nan]),
+            "station_joint": ("station", np.int32([0, 0])),
             "points": (("point", "component"), np.concatenate([outer.points, inner.points])),
             "triangles": (("triangle", "corner"), np.concatenate(triangles).astype(np.int32)),
             "segment": ("triangle", np.repeat(np.int32([0, 1]), [len(t) for t in triangles])),
@@ -73,7 +92,6 @@ def trajectories() -> xr.Dataset:
     return xr.Dataset(
         {
             "tip": (("model", "time"), (0.17 * swing - CLEARANCE)[None]),
-            "gap": (per_station, np.tile([-CLEARANCE, CLEARANCE], (1, TIME.size, 1))),
             "contact_force": (per_station, force[None]),
             "contact_force_peak": (per_station, peak[None]),
         },
@@ -97,7 +115,7 @@ def _opengl() -> None:
 @pytest.mark.quick
 def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     """Reference: analytic. The shapes of the fixture, evaluated point by point."""
-    shell = MovingShell.of(fields, trajectories.sel(model="shell"))
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
     moved = shell.displacement(0.5)
     x, _, z = shell.points.T
     is_inner = np.arange(x.size) >= shell.members(1).min()
@@ -111,9 +129,26 @@ def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: 
 
 @pytest.mark.quick
 def test_supports_are_where_nothing_moves(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
-    held = MovingShell.of(fields, trajectories.sel(model="shell")).supports()
+    held = MovingShell.views(fields, trajectories.sel(model="shell"))[0].supports()
     assert [float(outline[0, 0]) for outline in held] == [0.0, 2.0]
     assert all(np.ptp(outline[:, 2]) == pytest.approx(OUTER.height) for outline in held)
+
+
+@pytest.mark.quick
+def test_the_change_of_a_sections_shape_leaves_out_what_moves_it(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """Reference: analytic. A section that widens by c y while it moves and turns by φ."""
+    shell = MovingShell.views(fields, trajectories.sel(model="shell"))[0]
+    _, y, z = shell.points.T
+    moved = np.stack([0.0 * y, 0.03 - 0.02 * z + 0.01 * y, -0.05 + 0.02 * y], axis=1)
+    places, change = shell.change_of_shape(moved, 1, 10.0)
+    assert places[0] == pytest.approx(places[-1])
+    assert np.ptp(places, axis=0) == pytest.approx([INNER.width, INNER.height])
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert steps.sum() == pytest.approx(2.0 * (INNER.width + INNER.height))
+    assert change[:, 0] == pytest.approx(0.01 * places[:, 0], abs=1e-9)
+    assert np.abs(change[:, 1]).max() < 1e-9
 
 
 @pytest.mark.quick
@@ -123,7 +158,7 @@ def test_what_touches_in_the_run_touches_in_the_picture(
 ) -> None:
     """Reference: analytic. A relative displacement by the clearance leaves one wall between the
     middles of two walls, and one by its opposite leaves twice the clearance besides."""
-    shell = MovingShell.of(fields, trajectories.sel(model="shell"))
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
     (overlap,) = shell.overlaps
     assert (overlap.outer, overlap.inner, overlap.stations) == (0, 1, [0, 1])
     assert overlap.clearance == pytest.approx(CLEARANCE)
@@ -138,39 +173,53 @@ def test_what_touches_in_the_run_touches_in_the_picture(
 
 @pytest.mark.quick
 def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
-    """A third segment from 17.5 m on touches the second at 17.5 and 19 m, at 10 m the first two
-    touch to the sides as well, and at 5 m there is a rest on the ground."""
-    motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1, 0, 1])
+    """Two joints along z, the first along y too, and a stop inside the first overlap, which is no
+    contact of the segments.
+    """
+    motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1, 0, 1, 0])
     motion = motion.assign_coords(
-        station=[9.0, 10.0, 17.5, 19.0, 10.0, 5.0],
-        direction=("station", ["z", "z", "z", "z", "y", "z"]),
+        station=[9.0, 10.0, 17.5, 19.0, 9.0, 10.0, 9.5],
+        direction=("station", ["z", "z", "z", "z", "y", "y", "z"]),
+    ).assign(tip_lateral=0.5 * motion["tip"])
+    longer = fields.drop_dims(["joint", "station"]).assign(
+        joint_outer=("joint", np.int32([0, 1])),
+        joint_inner=("joint", np.int32([1, 2])),
+        clearance=("joint", [CLEARANCE, 0.5 * CLEARANCE]),
+        lateral_clearance=("joint", [3.0e-3, np.nan]),
+        station_joint=("station", np.int32([0, 0, 1, 1, 0, 0, -1])),
+        stop_segment=("stop", np.int32([1])),
+        stop_x=("stop", [9.5]),
+        stop_side=("stop", [-1.0]),
+        stop_clearance=("stop", [0.02]),
     )
-    third = mesh_segment(
-        BoxSection(height=0.44, width=0.22, flange=0.004, web=0.004),
-        {"start": 17.5, "end": 25.0},
-        0.3,
+    side, above = MovingShell.views(longer, motion)
+    assert [tuple(overlap) for overlap in side.overlaps] == [
+        (0, 1, [0, 1], CLEARANCE),
+        (1, 2, [2, 3], 0.5 * CLEARANCE),
+    ]
+    assert [tuple(overlap) for overlap in above.overlaps] == [(0, 1, [4, 5], 3.0e-3)]
+    assert [tuple(stop) for stop in side.stops] == [(1, 9.5, -1.0, 0.02)]
+    assert not above.stops
+
+
+@pytest.mark.quick
+def test_from_above_y_points_up(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """Reference: analytic. A boom in space, turned so that its width is its height; what moves
+    up comes towards the eye.
+    """
+    motion = trajectories.sel(model="shell")
+    motion = motion.assign_coords(direction=("station", ["z", "y"])).assign(
+        tip_lateral=-2.0 * motion["tip"]
     )
-    count = fields.sizes["point"]
-    longer = xr.Dataset(
-        {
-            "points": (
-                ("point", "component"),
-                np.concatenate([fields["points"].values, third.points]),
-            ),
-            "triangles": (
-                ("triangle", "corner"),
-                np.concatenate([fields["triangles"].values, third.triangles + count]),
-            ),
-            "segment": (
-                "triangle",
-                np.append(fields["segment"].values, np.full(len(third.triangles), 2)),
-            ),
-            "modes": fields["modes"].pad(point=(0, len(third.points)), constant_values=0.0),
-            "state": fields["state"],
-        }
-    )
-    overlaps = MovingShell.of(longer, motion).overlaps
-    assert [(o.outer, o.inner, o.stations) for o in overlaps] == [(0, 1, [0, 1]), (1, 2, [2, 3])]
+    in_space = fields.assign(lateral_clearance=("joint", [5.0e-3]))
+    side, above = MovingShell.views(in_space, motion)
+    assert above.from_above
+    assert not side.from_above
+    assert above.half_height(0) == pytest.approx(0.5 * OUTER.width)
+    moved = side.displacement(0.5), above.displacement(0.5)
+    assert moved[1][:, 1] == pytest.approx(-moved[0][:, 2])
+    assert not moved[1][:, 2].any()
+    assert above.motion["tip"].values == pytest.approx(-2.0 * side.motion["tip"].values)
 
 
 @pytest.mark.quick
@@ -281,7 +330,7 @@ def picture_of(files: list[Path], name: str) -> Array:
 
 def test_pictures_have_the_names_of_what_they_show(pictures: list[Path]) -> None:
     when = ("first-peak", "largest-force", "first-contact")
-    expected = [f"{what}-{w}.png" for what in ("boom", "overlap") for w in when]
+    expected = [f"{what}-{w}.png" for what in ("boom", "overlap", "stress") for w in when]
     assert [path.name for path in pictures] == [*expected, "motion.gif"]
 
 
@@ -314,6 +363,35 @@ def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> Non
     assert rows[0] + 200.0 < rows[1]
 
 
+def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
+    """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else; at
+    the end of the light scale red is above blue, at its dark end below.
+    """
+    overlap = picture_of(pictures, "stress-first-peak.png")[390:800]
+    red, blue = overlap[..., 0], overlap[..., 2]
+    dark, light = blue > red + 30.0, red > blue + 60.0
+    assert dark.mean() > 0.02
+    assert light.mean() > 0.1
+    columns = np.flatnonzero(dark.any(axis=0))
+    # The picture shows 3.3 m round x = 9.5 m.
+    assert 0.25 * 1600 < columns.min() < columns.max() < 0.6 * 1600
+
+
+@pytest.mark.usefixtures("_opengl")
+def test_mesh_and_sections_are_drawn(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """Both segments are seen in their colours: two walls of the outer one do not hide the inner."""
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
+    (overlap,) = shell.overlaps
+    with rc_context(LETTERS):
+        mesh = draw_mesh(shell, overlap)
+        sections = draw_sections(shell, Instant(0.5), overlap)
+    for picture, share in ((mesh, 0.05), (sections, 0.001)):
+        pixels = np.asarray(picture, dtype=float)[190:800]
+        red, _, blue = np.moveaxis(pixels, 2, 0)
+        assert (blue > red + 60.0).mean() > share
+        assert (red > blue + 100.0).mean() > share
+
+
 def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
     assert pictures[-1].stat().st_size < 4.0e6
     with Image.open(pictures[-1]) as animation:
@@ -334,6 +412,7 @@ def test_given_times_name_the_files(
 ) -> None:
     monkeypatch.setattr(rendering, "FRAMES", 2)
     written = render_snapshots(fields, trajectories, "shell", tmp_path, [0.05])
-    assert [path.name for path in written] == ["boom-0.05s.png", "overlap-0.05s.png", "motion.gif"]
+    names = [f"{kind}-0.05s.png" for kind in ("boom", "overlap", "stress")]
+    assert [path.name for path in written] == [*names, "motion.gif"]
     overlap = picture_of(written, "overlap-0.05s.png")[190:800]
     assert not ((overlap[..., 0] > 120.0) & (overlap[..., 1:].max(axis=2) < 70.0)).any()

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
+from xml.etree import ElementTree
 
 import meshio
 import numpy as np
@@ -13,7 +14,10 @@ import pytest
 import xarray as xr
 from PIL import Image
 
+from runs.build import build_boom
+from runs.results import Results
 from shell_model.rendering import RenderingUnavailable, require_opengl
+from shell_model.stress import ShellStress, wall_forces
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -47,12 +51,50 @@ def test_every_file_of_a_whole_run_opens(whole: Path) -> None:
     snapshots = summary["snapshots"]
     if can_draw():
         kinds = {picture.split("-")[0] for picture in snapshots["written"]}
-        assert {"boom", "overlap", "motion.gif"} <= kinds
+        assert {"boom", "overlap", "stress", "motion.gif"} <= kinds
     else:
         assert snapshots["skipped"]
     for picture in snapshots["written"]:
         with Image.open(whole / "snapshots" / picture) as image:
             image.verify()
+
+
+def test_stresses_beside_a_support_are_those_of_a_beam(whole: Path) -> None:
+    """Reference: analytic. A patch of a flange beside the support at 2 m has σ = M z / J, with
+    the moment that the walls carry to both sides of it, within 5 %, though the mesh is coarse.
+    """
+    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    stress = summary["models"]["shell"]["stress"]
+    with xr.open_dataset(whole / "stress.nc", engine="scipy") as data:
+        assert data["segment"].values.tolist() == ["outer", "inner"]
+        assert data["place"].values.tolist() == [0.0, 2.0, 9.0, 10.0]
+        near, patch = (data[name].load() for name in ("von_mises", "von_mises_patch"))
+    assert near.sel(segment="inner", place=2.0).isnull().all()
+    assert stress["von_mises"] >= float(near.max()) * (1.0 - 1e-6)
+    assert stress["patch"]["von_mises"] == pytest.approx(float(patch.max()))
+    beside = patch.sel(segment="outer", place=2.0)
+    worst = float(beside["time"][int(beside.argmax("time"))])
+    with xr.open_dataset(whole / "fields.nc", engine="scipy") as fields:
+        shell = ShellStress.of(fields.load())
+    moments = [
+        sum(forces.moment for forces in wall_forces(shell, worst, 0, x).values())
+        for x in (1.9, 2.1)
+    ]
+    section = build_boom(Results.load(whole).case).segments[0].section
+    assert section is not None
+    expected = abs(np.mean(moments)) * 0.5 * section.height / section.second_moment_of_area
+    assert float(beside.max()) == pytest.approx(expected, rel=0.05)
+
+
+def test_the_time_series_opens(whole: Path) -> None:
+    entries = ElementTree.parse(whole / "fields" / "shell.pvd").getroot().iter("DataSet")
+    times = {float(entry.attrib["timestep"]): entry.attrib["file"] for entry in entries}
+    assert len(times) == 51
+    assert (min(times), max(times)) == pytest.approx((0.0, 0.6))
+    last = meshio.read(whole / "fields" / times[max(times)])
+    at_tip = np.abs(last.points[:, 0] - 19.0) < 1e-6
+    tip = float(trajectories(whole)["tip"].sel(model="shell")[-1])
+    assert last.point_data["displacement (m)"][at_tip, 2].mean() == pytest.approx(tip, rel=1e-3)
 
 
 def can_draw() -> bool:
@@ -165,3 +207,4 @@ def test_two_shells_of_a_case_keep_their_files_apart(
     for model in ("shell", "across"):
         assert {f"{model}-fields.nc", f"snapshots/{model}-boom-end.png"} <= found
         assert {f"mesh/{model}-outer.msh", f"mesh/{model}-inner.vtu"} <= found
+        assert {f"{model}-stress.nc", f"fields/{model}.pvd", f"fields/{model}-00.vtu"} <= found

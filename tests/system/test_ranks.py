@@ -59,8 +59,9 @@ def test_two_ranks_run_a_shell_as_one_does(
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
     monkeypatch.setattr("runs.output.render_snapshots", lambda *arguments: [])
-    assert protractile("run", case, "--models", models, "--out", tmp_path / "one") == 0
-    answer = two_ranks(COMMAND, "run", "case.toml", "--models", models, "--out", "two")
+    options = ("--models", models, "--no-cache", "--out")
+    assert protractile("run", case, *options, tmp_path / "one") == 0
+    answer = two_ranks(COMMAND, "run", "case.toml", *options, "two")
     assert (answer.returncode, complaints(answer)) == (0, [])
     assert answer.stdout.count("two/report.html") == 1
     one, two = trajectories(tmp_path / "one"), trajectories(tmp_path / "two")

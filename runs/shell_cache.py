@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Reduced shells from the cache: a second run of the same boom neither meshes nor reduces it."""
+
+from __future__ import annotations
+
+import pickle
+import shutil
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from runs.cache import Cache, key, sources
+from runs.versions import versions
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from shell_model.boom_shell import ReducedShell
+
+_FILE = "reduced.pickle"
+# What decides a reduction beside its data.
+_ROOMS = ("geometry", "dynamics", "shell_model")
+
+
+def remembered(
+    cache: Cache,
+    content: Sequence[Any],
+    comm: MPI.Comm,
+    mesh_folder: Path,
+    compute: Callable[[], ReducedShell],
+) -> ReducedShell:
+    """A shell as ``compute`` gives it, from the cache if it is there. Collective.
+
+    A cache that cannot be read or written costs time and nothing else.
+
+    Args:
+        cache: of the user.
+        content: all that the shell depends on.
+        comm: the ranks that share the work; the first one reads and writes.
+        mesh_folder: where ``compute`` leaves gmsh's files ``SEGMENT.msh``.
+        compute: the shell. Collective.
+    """
+    start = perf_counter()
+    top = Path(__file__).parents[1]
+    name = key(list(content), sources(*(top / room for room in _ROOMS)), versions())
+    found = _load(cache, name, mesh_folder) if comm.rank == 0 else None
+    # Fields and meshes are the first rank's alone.
+    shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
+    if shared is not None:
+        return replace(found or shared, seconds={"cache": perf_counter() - start})
+    reduced = compute()
+    if comm.rank == 0:
+        with suppress(OSError):
+            _keep(cache, name, mesh_folder, reduced)
+    return reduced
+
+
+def _load(cache: Cache, name: str, mesh_folder: Path) -> ReducedShell | None:
+    entry = cache.find(name)
+    if entry is None:
+        return None
+    try:
+        with (entry / _FILE).open("rb") as file:
+            reduced: ReducedShell = pickle.load(file)
+        for path in entry.glob("*.msh"):
+            shutil.copyfile(path, mesh_folder / path.name)
+    except Exception:
+        # Whatever has become of an entry on the disk: it is made again.
+        cache.drop(name)
+        return None
+    return reduced
+
+
+def _keep(cache: Cache, name: str, mesh_folder: Path, reduced: ReducedShell) -> None:
+    with cache.fill(name) as folder:
+        with (folder / _FILE).open("wb") as file:
+            pickle.dump(reduced, file, protocol=pickle.HIGHEST_PROTOCOL)
+        for path in mesh_folder.glob("*.msh"):
+            shutil.copyfile(path, folder / path.name)

@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A short pair of boxes, one in the other, as shells and as solids.
+
+Both are taken by families of mirrored motions, on a quarter, and read the same way, so that
+whatever is measured of one can be measured of the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.splitting import integrate
+from geometry.boom import Material, Segment, Support
+from geometry.mesh import mesh_segment
+from geometry.section import BoxSection
+from geometry.solid_mesh import mesh_quarter
+from runs.studies.motions import SLOW
+from shell_model.eigenmodes import natural_modes
+from shell_model.families import Folding
+from shell_model.krylov import KrylovOptions, reduce_family
+from shell_model.mirror import ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.outline import Outline, Row
+from shell_model.products import times
+from shell_model.segment_shell import Shell, assemble_segment
+from shell_model.shifted_solver import ShiftedSolver
+from shell_model.solid import assemble_solid
+
+Array = npt.NDArray[np.float64]
+
+STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+
+# Distances in m of the mid-lines, which stay where they are as walls become thicker.
+OUTER = (0.40, 0.30)
+INNER = (0.31, 0.21)
+# Where the outer box ends, which the inner one hits, in m.
+HEAD = 2.0
+TAIL, TIP = 1.5, 3.5
+
+# The blow: the inner box moves up as a whole and meets the head's webs across the play.
+SPEED = 1.0  # m/s
+CLEARANCE = 2.0e-3  # m
+# Of the contact, over the thickness of the walls, in N/m²: as stiff as the boxes are themselves.
+CONTACT = 2.5e10
+AFTER = 1.0e-2  # s
+OUTPUT_STEP = 1.0e-5  # s
+
+# Up to the frequencies of a blow of some milliseconds.
+KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=3)
+
+
+class Probe(NamedTuple):
+    """What is read of a segment, and pushed.
+
+    Args:
+        what: its name.
+        family: of the motions that it belongs to.
+        x: m.
+        read: of the section there.
+    """
+
+    what: str
+    family: Family
+    x: float
+    read: Callable[[Outline], Row]
+
+
+PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
+    (
+        Probe("head", ALONG_Z, HEAD, partial(Outline.wall_deflection, direction="z")),
+        Probe("head twist", TWISTING, HEAD, Outline.twist),
+    ),
+    (
+        Probe("struck", ALONG_Z, HEAD, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip", ALONG_Z, TIP, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip twist", TWISTING, TIP, Outline.twist),
+        Probe("tail squeeze", BREATHING, TAIL, Outline.distortion),
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A family of a segment's motions.
+
+    Args:
+        model: a quarter of a shell or of a solid, with the energies of the whole segment.
+        rows: name of a probe → (num_dofs,).
+    """
+
+    model: Shell
+    rows: Mapping[str, Array]
+
+    def lowest_frequency(self) -> float:
+        """Of the elastic modes, in Hz."""
+        rigid = self.model.rigid_motions().shape[1]
+        return float(natural_modes(self.model, rigid + 1).frequencies[-1])
+
+    def compliance(self, what: str) -> float:
+        """What a unit force on a probe moves it by, at ``SLOW``, in m/N, or rad/(N·m)."""
+        row = self.rows[what][:, None]
+        solve = ShiftedSolver(self.model, SLOW)
+        moved = float((row.T @ solve(row))[0, 0])
+        solve.destroy()
+        return moved
+
+
+@dataclass(frozen=True, slots=True)
+class Blow:
+    """How the inner box hits the outer one.
+
+    Args:
+        time: (num_times,) in s.
+        force: (num_times,) at the contact in N.
+        tip: (num_times,) rise of the inner box's tip in m.
+        compliance_error: of the reduction, the worst of both boxes.
+    """
+
+    time: Array
+    force: Array
+    tip: Array
+    compliance_error: float
+
+    @property
+    def peak(self) -> float:
+        """Largest force in N."""
+        return float(self.force.max())
+
+    @property
+    def impulse(self) -> float:
+        """Of all touches, in N·s."""
+        return float(self.force.sum() * OUTPUT_STEP)
+
+    @property
+    def duration(self) -> float:
+        """Of all touches, in s."""
+        return float(np.count_nonzero(self.force) * OUTPUT_STEP)
+
+    @property
+    def left(self) -> float:
+        """Where the tip is at the end, in m."""
+        return float(self.tip[-1])
+
+
+def pair(wall: float) -> tuple[Segment, Segment]:
+    """The outer box on two supports, and the free inner one.
+
+    Args:
+        wall: thickness of all walls in m.
+    """
+    held = (Support(0.0), Support(0.5))
+    return box("outer", 0.0, HEAD, OUTER, wall, held), box("inner", TAIL, TIP, INNER, wall)
+
+
+def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Part]:
+    """A segment's families as shells, with triangles of a size in m."""
+    assert segment.section is not None
+    breaks = {str(x): x for x in _places(segment, probes)}
+    mesh = mesh_segment(segment.section, breaks, size)
+    whole = assemble_segment(MPI.COMM_SELF, segment, mesh)
+    rows = np.column_stack([whole.row(probe.read(whole.outline(probe.x))) for probe in probes])
+    jobs = Folding(whole).jobs(rows, np.zeros((len(rows), 0)))
+    return {
+        job.family: Part(
+            job.shell(),
+            {
+                probe.what: force
+                for probe, force in zip(probes, job.forces.T, strict=True)
+                if probe.family == job.family
+            },
+        )
+        for job in jobs
+    }
+
+
+def solid_parts(
+    segment: Segment,
+    probes: Sequence[Probe],
+    along: tuple[float, float],
+    edges: int,
+    layers: int = 2,
+) -> dict[Family, Part]:
+    """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
+    assert segment.section is not None
+    mesh = mesh_quarter(segment.section, _places(segment, probes), along, edges, layers)
+    parts = {}
+    for family in dict.fromkeys(probe.family for probe in probes):
+        model = assemble_solid(segment, mesh, family)
+        parts[family] = Part(
+            model,
+            {
+                probe.what: model.row(probe.read(model.outline(probe.x)))
+                for probe in probes
+                if probe.family == family
+            },
+        )
+    return parts
+
+
+def blow(outer: Part, inner: Part, wall: float) -> Blow:
+    """The inner box thrown up against the head of the outer one.
+
+    Args:
+        outer, inner: their families along z.
+        wall: thickness in m, which tells the contact's stiffness.
+    """
+    coordinates = []
+    for part in (outer, inner):
+        inputs = np.column_stack(list(part.rows.values()))
+        none = np.zeros((len(inputs), 0))
+        coordinates.append(reduce_family(part.model, inputs, none, KRYLOV, lambda done: None))
+    head, struck = coordinates[0].shapes, coordinates[1].shapes
+    up = np.zeros((len(struck), 1))
+    up[inner.model.node_dofs[:, 2]] = SPEED
+    velocity = np.concatenate(
+        [np.zeros(head.shape[1]), struck.T @ times(inner.model.mass, up)[:, 0]]
+    )
+    still = np.zeros(head.shape[1])
+    system = GapSystem(
+        omega2=np.concatenate([part.omega2 for part in coordinates]),
+        load=np.zeros(velocity.size),
+        rows=np.concatenate([-outer.rows["head"] @ head, inner.rows["struck"] @ struck])[None],
+        laws=[PowerContact(CONTACT * wall, 1.0, CLEARANCE).upper()],
+        station_of_row=np.array([0]),
+        stations=[HEAD],
+        observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},
+    )
+    motion = integrate(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity)
+    return Blow(
+        motion.time,
+        np.asarray(motion.data["contact_force"].values[:, 0]),
+        np.asarray(motion.data["tip"].values),
+        max(part.compliance_error for part in coordinates),
+    )
+
+
+def _places(segment: Segment, probes: Sequence[Probe]) -> list[float]:
+    """x in m at which both meshes have outlines."""
+    supports = [support.x for support in segment.supports]
+    return sorted({segment.start, segment.end, *supports, *(probe.x for probe in probes)})
+
+
+def box(
+    name: str,
+    start: float,
+    end: float,
+    middles: tuple[float, float],
+    wall: float,
+    supports: tuple[Support, ...] = (),
+) -> Segment:
+    section = BoxSection(*middles, wall, wall)
+    return Segment(
+        name=name,
+        start=start,
+        end=end,
+        material=STEEL,
+        mass_per_length=section.mass_per_length(STEEL.density),
+        second_moment_of_area=section.second_moment_of_area,
+        rotary_inertia=STEEL.density * section.second_moment_of_area,
+        section=section,
+        supports=supports,
+    )

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the size of a slide pad does to the flexibility of the stations."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+from geometry.pads import Patch, pads, patch
+from runs.build import build_boom
+from runs.schema import Case, PadTable
+from runs.studies.motions import SLOW, compliance, gap_system, model_of
+from runs.studies.study import Proof
+from runs.tables import TextTable
+
+Array = npt.NDArray[np.float64]
+
+
+def with_pads(case: Case, length: float, width: float) -> Case:
+    """The case with pads of a size, in m, at all its joints."""
+    pad = PadTable(length=length, width=width)
+    joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
+    return case.model_copy(update={"joints": joints})
+
+
+def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> TextTable:
+    """How much more stations give way than those of Timoshenko's beam.
+
+    Args:
+        contacts: names, cases (with the model ``timoshenko``, in the plane and with friction), and
+            shells that touch at the stations.
+    """
+    rows = []
+    for name, case, system in contacts:
+        beam = gap_system(case, _middles(build_boom(case)), model_of(case, "timoshenko"))
+        rigid = compliance(beam, beam.rows)
+        together = compliance(system, system.friction_rows) - rigid
+        alone = compliance(system, upper_rows(system)) - rigid
+        rows.append((name, *(f"{value:.2e}" for value in (*together, *(alone - together)))))
+    stations = [f"{x:g} m" for x in contacts[0][2].stations]
+    return TextTable(
+        "Flexibility of the stations beyond Timoshenko's beam",
+        (
+            "contact",
+            *(f"both flanges together\nat {x} (m/N)" for x in stations),
+            *(f"one flange more\nat {x} (m/N)" for x in stations),
+        ),
+        rows,
+        (
+            f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",
+            "A pad at the end of the overlap has its middle half its length inside, and there the "
+            "beam is read too.",
+        ),
+        name="pad-flexibility",
+    )
+
+
+def _middles(boom: Boom) -> Boom:
+    """The boom with its stations in the middles of their pads."""
+    places = {pad.x: patch(boom, pad) for pad in pads(boom)}
+    joints = tuple(
+        replace(joint, stations=tuple(_middle(x, places[x]) for x in joint.stations))
+        for joint in boom.joints
+    )
+    return replace(boom, joints=joints)
+
+
+def _middle(x: float, covered: Patch | None) -> float:
+    return x if covered is None else 0.5 * (covered.start + covered.end)
+
+
+def upper_rows(system: GapSystem) -> Array:
+    """(num_stations, num_modes) the mean approach above each station, by the points' shares."""
+    above = np.array([law.stiffness for law in system.laws])
+    at = np.equal.outer(np.arange(len(system.stations)), system.station_of_row) * above
+    return np.asarray(at @ system.rows / at.sum(axis=1, keepdims=True))
+
+
+def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> list[Proof]:
+    """A pressed pad's resultant: how large, and where.
+
+    Args:
+        case: with the pads.
+        size: their length and width in m.
+        system: the shell with them.
+    """
+    boom = build_boom(case)
+    (joint,) = boom.joints
+    start, _ = boom.overlap(joint)
+    free = np.flatnonzero(system.omega2 == 0.0)
+    ends = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
+    row = upper_rows(system)[0, free]
+
+    def reads(tail: float, tip: float) -> float:
+        """What the row reads of a rigid motion; the work of its force, read the other way."""
+        return float(row @ np.linalg.lstsq(ends, np.array([tail, tip]), rcond=None)[0])
+
+    return [
+        Proof(
+            "force of a uniformly pressed pad, over its law's",
+            reads(1.0, 1.0),
+            1.0,
+            "",
+            "analytic",
+            "pressure times area",
+            1.0e-6,
+        ),
+        Proof(
+            "its place along the boom, pad at the overlap's start",
+            reads(start, boom.tip),
+            start + 0.5 * size[0],
+            "m",
+            "analytic",
+            "middle of the pad",
+            1.0e-6,
+        ),
+    ]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The solid held against formulas, before anything is held against it."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from petsc4py import PETSc
+
+from geometry.solid_mesh import mesh_quarter
+from runs.studies.box_pair import box
+from runs.studies.study import Proof
+from shell_model.eigenmodes import natural_modes
+from shell_model.mirror import ALONG_Z, BREATHING, Family
+from shell_model.products import times
+from shell_model.solid import SolidFamily, assemble_solid
+
+Array = npt.NDArray[np.float64]
+
+# Thick and slender: as a rod in its length, its section cannot breathe.
+BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)
+ROUND_OFF = 1.0e-9
+
+
+def solid_proofs() -> list[Proof]:
+    """Stretch, pure bending and a rod's lowest frequency."""
+    section, steel = BAR.section, BAR.material
+    assert section is not None
+    stretched, bent = _solid(BREATHING), _solid(ALONG_Z)
+    nu, young = steel.poissons_ratio, steel.youngs_modulus
+    x, y, z = stretched.nodes.T
+    stretch = np.column_stack([x, -nu * y, -nu * z])
+    x, y, z = bent.nodes.T
+    bend = np.column_stack([x * z, -nu * y * z, -0.5 * (x**2 + nu * (z**2 - y**2))])
+    slide = np.column_stack([np.ones_like(x), 0.0 * x, 0.0 * x])
+    # A lateral inertia slows a rod's waves (Rayleigh 1877, section 157; Love 1927, section 278).
+    polar = section.polar_second_moment_of_area / section.area
+    wave = np.pi / BAR.length
+    rod = 0.5 * np.sqrt(young / steel.density) / BAR.length / np.sqrt(1.0 + nu**2 * polar * wave**2)
+    return [
+        Proof(
+            "solid box: mass",
+            _square(stretched, slide, stretched.mass),
+            steel.density * section.area * BAR.length,
+            "kg",
+            "analytic",
+            "ρ A L with the corners filled",
+            ROUND_OFF,
+        ),
+        Proof(
+            "solid box: stiffness against stretching",
+            _square(stretched, stretch, stretched.stiffness) / BAR.length,
+            young * section.area,
+            "N",
+            "analytic",
+            "E A",
+            ROUND_OFF,
+        ),
+        Proof(
+            "solid box: stiffness against pure bending",
+            _square(bent, bend, bent.stiffness) / BAR.length,
+            young * section.second_moment_of_area,
+            "N·m²",
+            "analytic",
+            "E J of the hollow rectangle (Saint-Venant 1856)",
+            ROUND_OFF,
+        ),
+        Proof(
+            "solid box: lowest frequency as a rod",
+            float(natural_modes(stretched, 2).frequencies[1]),
+            float(rod),
+            "Hz",
+            "analytic",
+            "c / 2L with lateral inertia (Love 1927)",
+            1.0e-4,
+        ),
+    ]
+
+
+def _solid(family: Family) -> SolidFamily:
+    assert BAR.section is not None
+    mesh = mesh_quarter(BAR.section, (BAR.start, BAR.end), (0.1, 0.1), 1)
+    return assemble_solid(BAR, mesh, family)
+
+
+def _square(solid: SolidFamily, field: Array, matrix: PETSc.Mat) -> float:
+    """uᵀ A u of a displacement (num_nodes, 3) and one of the solid's matrices."""
+    u = field.ravel()
+    return float(u @ times(matrix, u[:, None])[:, 0])

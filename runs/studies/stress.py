@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How right the recovered stresses are: away from contacts a beam's, near them as the mesh refines.
+
+The inner segment of the paper's boom rests on the forces that its contacts need under its
+load: a static state with known moments, and known forces where it touches.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from dynamics.contact import PowerContact
+from geometry.boom import Boom
+from geometry.mesh import WALLS, mesh_segment, plate_thickness
+from runs.build import build_boom, contact_laws
+from runs.studies.grid_convergence import GridConvergence
+from runs.studies.motions import friction_case, model_of
+from runs.studies.study import Plot, Proof, Study
+from runs.tables import TextTable
+from runs.theme import fixed, number
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.recovery import gather_stress_modes
+from shell_model.segment_shell import assemble_segment
+from shell_model.shifted_solver import ShiftedSolver
+from shell_model.stress import ShellStress, wall_forces
+from shell_model.stress_history import near_places
+
+INNER = 1
+RATIO = 2.0
+
+# Hz, in place of zero, since nothing holds the segment along x: nothing elastic is so slow.
+STATIC = 0.01
+
+# Relative errors with which a stress counts as proven: away from contacts, over a patch, and of
+# the reduction.
+BEAM, PATCH, REDUCED = 0.01, 0.05, 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured.
+
+    Args:
+        meshes: edge lengths in m, each half the one before, three at least.
+        default: the one that a run takes unless told otherwise.
+        places: x in m away from contacts.
+    """
+
+    meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
+    default: float = 0.1
+    places: Sequence[float] = (12.0, 14.0, 16.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """The inner segment at rest between its contacts.
+
+    Args:
+        boom: the paper's.
+        stress: of the segment alone, whose number there is 0.
+    """
+
+    boom: Boom
+    stress: ShellStress
+
+    @classmethod
+    def on_mesh(cls, boom: Boom, size: float) -> Pressed:
+        """From a static solution of the full shell.
+
+        Args:
+            boom: with two stations.
+            size: of the mesh in m.
+        """
+        segment = boom.segments[INNER]
+        assert segment.section is not None
+        breaks = {"start": segment.start, "end": segment.end}
+        breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(INNER), start=1)}
+        mesh = mesh_segment(segment.section, breaks, size)
+        shell = assemble_segment(MPI.COMM_SELF, segment, mesh)
+        force = segment.load * shell.unit_loads["z"]
+        for x, (side, strength) in contact_forces(boom).items():
+            row = shell.outline(x).flange_deflection(side, 0.5 * segment.section.width)
+            force -= side * strength * shell.row(row)
+        solve = ShiftedSolver(shell, STATIC)
+        moved = solve(force[:, None])
+        solve.destroy()
+        modes = gather_stress_modes(shell, segment, mesh, moved)
+        assert modes is not None
+        return cls(boom, ShellStress.still(mesh, plate_thickness(segment, mesh), modes))
+
+    @classmethod
+    def reduced(cls, boom: Boom, laws: Sequence[PowerContact], size: float) -> Pressed:
+        """The same state from the coordinates that a run moves in.
+
+        Args:
+            boom: with two stations.
+            laws: of its joint.
+            size: of the mesh in m.
+        """
+        shell = reduce_boom(boom, laws, ShellOptions(size), MPI.COMM_SELF)
+        system, fields = shell.system, shell.fields
+        assert fields is not None
+        needed = contact_forces(boom)
+        force = system.load.copy()
+        for row, law, station in zip(system.rows, system.laws, system.station_of_row, strict=True):
+            side, strength = needed[system.stations[station]]
+            if side == (1 if law.below == 0.0 else -1):
+                force -= side * strength * row
+        elastic = system.omega2 > 0.0
+        state = np.divide(force, system.omega2, out=np.zeros_like(force), where=elastic)
+        own = fields[f"coordinates_{INNER + 1}"].values @ state
+        modes = np.tensordot(own, fields[f"stress_{INNER + 1}"].values, axes=1)[None]
+        mesh = shell.meshes[INNER]
+        thickness = plate_thickness(boom.segments[INNER], mesh)
+        return cls(boom, ShellStress.still(mesh, thickness, modes.astype(np.float32)))
+
+    def top(self, x: float) -> tuple[float, float]:
+        """Mean σ_x over the width of the top in Pa, and what a beam has there.
+
+        σ = M z / J, with the mean of M over the row of elements that holds x.
+        """
+        segment = self.boom.segments[INNER]
+        assert segment.section is not None
+        row = self.stress.row(0, x)
+        row = row[self.stress.wall[row] == WALLS.index("top")]
+        found = np.average(self.stress.at(0.0).membrane[row, 0], weights=self.stress.areas[row])
+        begin, end = self.stress.spans[row, 0].min(), self.stress.spans[row, 1].max()
+        arms = segment.end - np.array([begin, end])
+        moment = -segment.load * (arms**3).dot([1.0, -1.0]) / (6.0 * (end - begin))
+        section = segment.section
+        return float(found), moment * 0.5 * section.height / section.second_moment_of_area
+
+    def shear(self, x: float) -> tuple[float, float]:
+        """Force that the webs carry in N, and what equilibrium asks for."""
+        segment = self.boom.segments[INNER]
+        forces = wall_forces(self.stress, 0.0, 0, x)
+        row = self.stress.row(0, x)
+        middle = 0.5 * (self.stress.spans[row, 0].min() + self.stress.spans[row, 1].max())
+        found = forces["left"].shear + forces["right"].shear
+        return found, segment.load * (segment.end - middle)
+
+    def near(self, x: float) -> tuple[float, float]:
+        """The largest von Mises stress in the band round x, and that of a patch, in Pa."""
+        found = near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
+        return float(found["von_mises"].item()), float(found["von_mises_patch"].item())
+
+
+def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
+    """x → side and strength in N of what presses on the inner segment, from its equilibrium.
+
+    Its load lifts it: it presses up at the outer segment's end, and down at its own tail.
+    """
+    segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
+    lift = segment.load * segment.length
+    lever = 0.5 * (segment.start + segment.end) - tail
+    at_head = lift * lever / (head - tail)
+    return {tail: (-1, at_head - lift), head: (1, at_head)}
+
+
+def proofs(pressed: Sequence[Pressed], reduced: Pressed, sizes: Sizes) -> list[Proof]:
+    """The default mesh against a beam, equilibrium, and the limit of the refinement; and the
+    reduced shell against the full one.
+    """
+    default = pressed[sizes.meshes.index(sizes.default)]
+    mesh = f"mesh of {sizes.default:g} m"
+    found = []
+    for x in sizes.places:
+        value, reference = default.top(x)
+        found.append(
+            Proof(
+                what=f"stress of the top at {x:g} m, {mesh}",
+                value=value / 1.0e6,
+                reference=reference / 1.0e6,
+                unit="MPa",
+                kind="analytic",
+                source="σ = M z / J",
+                allowed=BEAM,
+            )
+        )
+    value, reference = default.shear(sizes.places[0])
+    found.append(
+        Proof(
+            what=f"shear force of the webs at {sizes.places[0]:g} m, {mesh}",
+            value=value,
+            reference=reference,
+            unit="N",
+            kind="analytic",
+            source="equilibrium",
+            allowed=BEAM,
+        )
+    )
+    for x in default.boom.joints[0].stations:
+        patches = GridConvergence.of([one.near(x)[1] for one in pressed], RATIO)
+        settles = math.isfinite(patches.limit)
+        found.append(
+            Proof(
+                what=f"von Mises stress of a patch at the contact at {x:g} m, {mesh}",
+                value=default.near(x)[1] / 1.0e6,
+                reference=(patches.limit if settles else patches.fine) / 1.0e6,
+                unit="MPa",
+                kind="other code",
+                source="limit of its refinement (Richardson 1911)"
+                if settles
+                else f"mesh of {sizes.meshes[-1]:g} m",
+                allowed=PATCH,
+                order=patches.order if settles else None,
+            )
+        )
+        found.append(
+            Proof(
+                what=f"largest von Mises stress of a triangle at the contact at {x:g} m, reduced",
+                value=reduced.near(x)[0] / 1.0e6,
+                reference=default.near(x)[0] / 1.0e6,
+                unit="MPa",
+                kind="other code",
+                source="the unreduced shell, of the same mesh",
+                allowed=REDUCED,
+            )
+        )
+    return found
+
+
+def table(pressed: Sequence[Pressed], sizes: Sizes) -> TextTable:
+    """What the meshes make of the stress at the contacts."""
+    rows = []
+    for x in pressed[0].boom.joints[0].stations:
+        for what, place in (("largest triangle", 0), ("largest patch", 1)):
+            values = [one.near(x)[place] / 1.0e6 for one in pressed]
+            grids = GridConvergence.of(values, RATIO)
+            rows.append(
+                (
+                    f"{what} at {x:g} m",
+                    *(number(value, 4) for value in values),
+                    fixed(values[-1] / values[-2], 2),
+                    fixed(grids.order, 2),
+                    number(grids.limit, 4),
+                )
+            )
+    return TextTable(
+        "Von Mises stress (MPa) where the inner segment is pressed",
+        ("near the contact", *(f"{m:g} m" for m in sizes.meshes), "finest ratio", "order", "limit"),
+        rows,
+        (
+            "The force enters at a line through the corner of a flange and a web. There the "
+            "stress has no limit: that of the nearest triangle grows as the mesh refines, towards "
+            "double for half the mesh size, and is no design stress. The mean over a patch of "
+            "half a wall and 0.5 m settles.",
+        ),
+        name="stress",
+    )
+
+
+def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+    """Stresses of the inner segment of the paper's boom, on ever finer meshes."""
+    sizes = sizes or Sizes()
+    case = friction_case()
+    boom = build_boom(case)
+    pressed = []
+    for size in sizes.meshes:
+        tell(f"mesh of {size:g} m")
+        pressed.append(Pressed.on_mesh(boom, size))
+    tell(f"mesh of {sizes.default:g} m, reduced")
+    laws = contact_laws(case, model_of(case, "shell"))
+    reduced = Pressed.reduced(boom, laws, sizes.default)
+    stations = boom.joints[0].stations
+    curves = {}
+    data: dict[str, Any] = {"meshes": list(sizes.meshes), "near": []}
+    for x in stations:
+        for what, place in (("triangle", 0), ("patch", 1)):
+            values = [one.near(x)[place] / 1.0e6 for one in pressed]
+            curves[f"largest {what} at {x:g} m"] = (list(sizes.meshes), values)
+            data["near"].append({"x": x, "what": what, "von_mises": values})
+    return Study(
+        name="stress",
+        title="Stresses of the inner segment between its contacts",
+        tables=[table(pressed, sizes)],
+        proofs=proofs(pressed, reduced, sizes),
+        plots=[
+            Plot(
+                "stress",
+                "At a line of contact the mesh makes the stress; over a patch it settles",
+                "mesh size (m)",
+                "von Mises stress (MPa)",
+                curves,
+                "The inner segment of the paper's boom rests on its contacts. Largest von Mises "
+                "stress of a triangle within 0.25 m of each, and of the mean over half a wall.",
+            )
+        ],
+        data=data,
+    )

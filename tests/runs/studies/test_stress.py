@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The study of stresses on three coarse meshes."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.build import build_boom
+from runs.studies.motions import friction_case
+from runs.studies.stress import Sizes, contact_forces, study
+
+TINY = Sizes(meshes=(0.2, 0.1, 0.05), default=0.1, places=(14.0,))
+
+
+@pytest.mark.quick
+def test_contact_forces_hold_the_segment() -> None:
+    """Reference: analytic. 550.7 N of lift at 14 m on levers of 4 and 5 m."""
+    forces = contact_forces(build_boom(friction_case()))
+    assert {x: side for x, (side, _) in forces.items()} == {9.0: -1, 10.0: 1}
+    assert forces[10.0][1] == pytest.approx(5.0 * 550.7)
+    assert forces[9.0][1] == pytest.approx(4.0 * 550.7)
+
+
+def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
+    """Reference: analytic away from contacts; near them the refinement itself. Half the mesh
+    doubles the stress of the nearest triangle beside a force at a point.
+    """
+    found = study(lambda what: None, TINY)
+    assert all(proof.holds for proof in found.proofs)
+    beam = next(proof for proof in found.proofs if "top at 14 m" in proof.what)
+    assert beam.error < 2.0e-3
+    near = {(one["x"], one["what"]): one["von_mises"] for one in found.data["near"]}
+    for x in (9.0, 10.0):
+        triangle, patch = near[x, "triangle"], near[x, "patch"]
+        assert triangle[2] / triangle[1] == pytest.approx(2.0, abs=0.3)
+        assert patch[2] == pytest.approx(patch[1], rel=0.03)

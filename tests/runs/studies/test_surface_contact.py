@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Surface contact of the paper's boom on a coarse mesh."""
+
+from __future__ import annotations
+
+import pytest
+
+from runs.studies.surface_contact import Sizes, study
+
+TINY = Sizes(
+    mesh=0.5,
+    duration=0.3,
+    peak=0.9,
+    penalties=(1.0, 10.0),
+    points=((8, 4),),
+    pads=((0.1, 0.06),),
+)
+
+
+def test_a_surface_is_softer_than_webs_on_webs() -> None:
+    """Reference: sense, and what is proven by hand.
+
+    The outer flange gives way beside its web, so the tip goes higher than near webs; a stiffer
+    penalty lowers it. Forces of known approaches are their integrals.
+    """
+    told: list[str] = []
+    found = study(told.append, TINY)
+    assert "contact surface, 8 x 4 points" in told
+    assert all(proof.holds for proof in found.proofs)
+    assert len(found.proofs) == 6
+    peaks = {name: both[1] for name, both in found.data["first_peaks"].items()}
+    assert peaks["near webs"] == pytest.approx(0.1775, rel=0.01)
+    assert 1.05 * peaks["near webs"] < peaks["surface, 8 x 4 points"]
+    assert 1.15 * peaks["near webs"] < peaks["pads of 0.1 m x 0.06 m"]
+    softer, stiffer = (found.data["penalties"][part][1] for part in ("1", "10"))
+    assert softer == pytest.approx(peaks["surface, 8 x 4 points"], rel=1.0e-9)
+    assert peaks["near webs"] < stiffer < softer
+    (flexibility,) = (table for table in found.tables if table.name == "pad-flexibility")
+    near, across, pad = (float(row[1]) for row in flexibility.rows)
+    assert near < pad < across

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The gallery shows the pictures that its script makes, each with where it comes from."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from runs import gallery
+
+pytestmark = pytest.mark.quick
+
+DOCS = Path(__file__).parents[2] / "docs"
+MADE = {*gallery.COPIED, "mesh", "sections-largest-force"}
+
+
+def test_the_page_shows_what_the_script_makes() -> None:
+    page = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    shown = re.findall(r"!\[[^]]+\]\(gallery/([a-z-]+)\.png\)\n\n`([^`]+)`", page)
+    assert {name for name, _ in shown} >= MADE
+    origins = dict(shown)
+    for name, (run, picture) in gallery.COPIED.items():
+        assert origins[name] == f"runs/out/{run}/{picture}"
+    for name, _ in shown:
+        path = DOCS / "gallery" / f"{name}.png"
+        assert path.stat().st_size < 320_000
+        with Image.open(path) as image:
+            image.verify()
+
+
+def test_a_run_that_is_missing_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(gallery, "RUNS", tmp_path / "out")
+    monkeypatch.setattr(gallery, "GALLERY", tmp_path / "gallery")
+    assert gallery.main() == 2
+    missing = tmp_path / "out" / "paper" / "snapshots" / "boom-first-peak.png"
+    assert capsys.readouterr().err == (
+        f"gallery: {missing}: file: missing; run the case with its shell, or make verify\n"
+    )

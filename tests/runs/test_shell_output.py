@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a shell leaves says which stations are whose, so that pictures need not guess."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
+
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom, Stop
+from runs.shell_output import ShellOutput
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
+
+
+def output(boom: Boom) -> ShellOutput:
+    """Of a shell that rests for one second."""
+    shell = reduce_boom(boom, [LAW], ShellOptions(0.5), MPI.COMM_SELF, lateral_laws=[LATERAL_LAW])
+    time = np.array([0.0, 1.0])
+    data = xr.Dataset(coords={"time": time})
+    still = Trajectory(data, np.zeros((time.size, shell.system.omega2.size)))
+    return ShellOutput.of(boom, "shell", shell, still)
+
+
+def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
+    """Reference: the boom. Stations along z, then along y, then the stop inside the overlap,
+    which is above the inner segment alone.
+    """
+    stop = Stop(1, 9.5, 0.02, 1.0e9, 0.0, 1.0)
+    left = output(replace(boom_in_space(), stops=(stop,)))
+    fields = left.fields
+    assert fields["station_joint"].values.tolist() == [0, 0, 0, 0, -1]
+    expected = {
+        "joint_outer": [0],
+        "joint_inner": [1],
+        "clearance": [LAW.clearance],
+        "lateral_clearance": [LATERAL_LAW.clearance],
+        "stop_side": [1.0],
+        "stop_clearance": [0.02],
+    }
+    assert {name: fields[name].values.tolist() for name in expected} == expected
+    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 9.0, 9.5, 10.0]
+    assert left.summary["von_mises"] == 0.0
+    assert set(left.meshes) == {"outer", "inner"}

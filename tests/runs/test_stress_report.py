@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The report shows the stresses of a summary: a figure over time, and what the walls carry."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+from runs import case as case_file
+from runs import theme
+from runs.pen import Pen
+from runs.results import Results
+from runs.stress_figures import stress_history
+from runs.stress_tables import wall_table
+
+pytestmark = pytest.mark.quick
+
+COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+STRESS: dict[str, Any] = {
+    "von_mises": 9.16e7,
+    "time": 0.5,
+    "segment": "inner",
+    "wall": "right",
+    "face": "outer",
+    "x": 9.03,
+    "y": 0.1,
+    "z": 0.0,
+    "band": 0.25,
+    "patch": {"von_mises": 3.1e7, "time": 0.4, "segment": "inner", "x": 9.0},
+    "walls": [
+        {
+            "segment": "outer",
+            "x": 2.0,
+            "forces": {"top": {"axial": -12500.0, "shear": 3.0, "moment": 3060.0}},
+        }
+    ],
+    "history": {
+        "time": [0.15, 0.45],
+        "places": [
+            {"segment": s, "x": 9.0, "von_mises": [1e7, 9e7], "von_mises_patch": [5e6, 3.1e7]}
+            for s in ("outer", "inner")
+        ],
+    },
+}
+
+
+def results(stress: dict[str, Any] | None) -> Results:
+    """A run of the coarse case's shell, with or without stresses."""
+    case = case_file.select(case_file.load(str(COARSE)), "", ["shell"], None)
+    data = xr.Dataset(
+        {"tip": (("model", "time"), np.zeros((1, 601)))},
+        coords={"model": ["shell"], "time": np.arange(601) / 1000},
+    )
+    summary = {"models": {"shell": {} if stress is None else {"stress": stress}}}
+    return Results(case, data, summary, [])
+
+
+def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
+    with matplotlib.rc_context(theme.RC):
+        (figure,) = stress_history(Pen(results(STRESS), tmp_path))
+    assert figure.title == "shell: von Mises stress up to 91.6 MPa, over a patch up to 31 MPa"
+    assert "grows as the mesh refines" in figure.caption
+    with Image.open(figure.path) as image:
+        image.verify()
+
+
+def test_the_table_says_what_each_wall_carries() -> None:
+    table = wall_table(results(STRESS))
+    assert table is not None
+    assert list(table.rows) == [("shell, outer, 2 m, top", "−12.50", "0.00", "3.06")]
+    assert "91.6 MPa, at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
+
+
+def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
+    assert wall_table(results(None)) is None
+    assert stress_history(Pen(results(None), tmp_path)) == []

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The same boom in SI and in millimetres, tonnes and seconds moves the same way.
+
+Forces are newtons in both. Nothing in the models may compare a length, a mass or a stiffness with
+a number of its own. Friction makes the motion regular, so that round-off stays round-off while
+the step resolves the contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from beam_model.finite_element import finite_element_segment
+from beam_model.kantorovich import kantorovich_segment
+from beam_model.segment_model import gap_system
+from dynamics.contact import PowerContact
+from dynamics.event_driven import integrate_events
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
+from geometry.section import BoxSection
+from tests.shell_model.booms import flat_boom
+
+Array = npt.NDArray[np.float64]
+
+# Millimetres of a metre, tonnes of a kilogram.
+MM, T = 1.0e3, 1.0e-3
+
+# n = 1, so that the shell's contacts are no stiffer than a run's.
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
+QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
+
+
+def law_in_mm(law: PowerContact) -> PowerContact:
+    """k in N/mmⁿ, Δ in mm, d in s/mm."""
+    return replace(
+        law,
+        stiffness=law.stiffness / MM**law.exponent,
+        stiffness_below=law.below / MM**law.exponent,
+        clearance=law.clearance * MM,
+        damping=law.damping / MM,
+    )
+
+
+def boom_in_mm(boom: Boom) -> Boom:
+    """The boom in mm, t, s, N and MPa."""
+    return Boom(
+        tuple(_segment(segment) for segment in boom.segments),
+        tuple(_joint(joint) for joint in boom.joints),
+    )
+
+
+def _segment(segment: Segment) -> Segment:
+    material, section, lateral = segment.material, segment.section, segment.lateral
+    return replace(
+        segment,
+        start=segment.start * MM,
+        end=segment.end * MM,
+        material=Material(
+            material.youngs_modulus / MM**2, material.poissons_ratio, material.density * T / MM**3
+        ),
+        mass_per_length=segment.mass_per_length * T / MM,
+        second_moment_of_area=segment.second_moment_of_area * MM**4,
+        rotary_inertia=segment.rotary_inertia * T * MM,
+        section=section
+        and BoxSection(
+            *(MM * d for d in (section.height, section.width, section.flange, section.web))
+        ),
+        load=segment.load / MM,
+        supports=tuple(
+            Support(s.x * MM, s.kind, s.stiffness and s.stiffness / MM) for s in segment.supports
+        ),
+        masses=tuple(PointMass(mass.x * MM, mass.mass * T) for mass in segment.masses),
+        lateral=lateral
+        and Lateral(
+            lateral.second_moment_of_area * MM**4,
+            lateral.rotary_inertia * T * MM,
+            lateral.torsion_constant * MM**4,
+            lateral.polar_inertia * T * MM,
+            lateral.load / MM,
+        ),
+    )
+
+
+def _joint(joint: Joint) -> Joint:
+    per_length = MM**-joint.exponent
+    return replace(
+        joint,
+        stations=tuple(x * MM for x in joint.stations),
+        clearance=joint.clearance * MM,
+        stiffness=joint.stiffness * per_length,
+        stiffness_below=joint.stiffness_below * per_length,
+        lateral_clearance=joint.lateral_clearance and joint.lateral_clearance * MM,
+        pad=joint.pad and PadSize(joint.pad.length * MM, joint.pad.width * MM),
+    )
+
+
+def series(boom: Boom, law: PowerContact) -> GapSystem:
+    models = [kantorovich_segment(s, 3, "complete", rotary_inertia=True) for s in boom.segments]
+    return gap_system(boom, models, [law])
+
+
+def elements(boom: Boom, law: PowerContact) -> GapSystem:
+    longest = 0.05 * max(segment.length for segment in boom.segments)
+    models = [
+        finite_element_segment(s, longest, boom.stations_of(k), "timoshenko", rotary_inertia=True)
+        for k, s in enumerate(boom.segments)
+    ]
+    return gap_system(boom, models, [law])
+
+
+def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
+    def shell(boom: Boom, law: PowerContact) -> GapSystem:
+        pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+        from mpi4py import MPI
+
+        from shell_model.boom_shell import ShellOptions, reduce_boom
+        from shell_model.surface_contact import SurfaceOptions
+
+        options = ShellOptions(
+            mesh_size=0.05 * boom.segments[0].length,
+            contact_line="surface" if line == "surface" else "near webs",
+            surface=SurfaceOptions(points=(4, 2)),
+        )
+        return reduce_boom(boom, [law], options, MPI.COMM_SELF).system
+
+    return shell
+
+
+def agree(si: Trajectory, mm: Trajectory) -> None:
+    """The motions are the same: the tip within 1e-9 of its range, gaps and energies within 1e-8."""
+    assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
+    assert mm.first_contact < 0.5
+    assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)
+    for name, unit in (("tip", MM), ("tail", MM), ("gap", MM), ("work", MM), ("friction_loss", MM)):
+        expected = si.data[name].values
+        apart = np.abs(mm.data[name].values / unit - expected).max()
+        within = 1.0e-9 if name == "tip" else 1.0e-8
+        assert apart <= within * np.ptp(expected), name
+
+
+@pytest.mark.parametrize("model", [series, elements], ids=["series", "elements"])
+@pytest.mark.parametrize("law", [LINEAR, QUADRATIC], ids=["linear", "quadratic"])
+def test_beams_do_not_know_the_units(
+    model: Callable[[Boom, PowerContact], GapSystem], law: PowerContact
+) -> None:
+    """Reference: this model in SI, to 1e-9 of the range, with friction and through presses."""
+    boom = flat_boom(friction=0.2)
+    runs = [
+        integrate(model(*data), duration=1.0, step=5.0e-6)
+        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
+    ]
+    agree(*runs)
+
+
+def test_jumps_from_contact_to_contact_do_not_know_the_units() -> None:
+    """Reference: this model in SI, without play and without friction, until chaos takes over."""
+    boom = flat_boom()
+    law = replace(LINEAR, clearance=0.0)
+    runs = [
+        integrate_events(series(*data), duration=0.3)
+        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
+    ]
+    agree(*runs)
+
+
+@pytest.mark.parametrize("line", ["near webs", "pads", "surface"])
+def test_shells_do_not_know_the_units(line: str) -> None:
+    """Reference: this model in SI, to 1e-9 of the range, on a coarse mesh with friction."""
+    boom = flat_boom(friction=0.2)
+    if line == "pads":
+        boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
+    runs = [
+        integrate(_shell(line)(*data), duration=0.6, step=1.0e-6)
+        for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
+    ]
+    agree(*runs)

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The unreduced shell moves as its own matrices say, and as the reduced one does."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import scipy.sparse
+from mpi4py import MPI
+from scipy.linalg import eigh
+
+from dynamics.energy import energy_residual
+from dynamics.splitting import integrate
+from geometry.boom import Boom, BoomError, Stop
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.direct import FullShell, assemble_boom, integrate_directly
+from shell_model.generalised_alpha import GeneralisedAlpha
+from shell_model.reduction import KrylovOptions
+from shell_model.segment_shell import SegmentShell
+from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
+
+Array = npt.NDArray[np.float64]
+
+_SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)
+
+_SHORT_MOTION = """
+import json
+from dataclasses import replace
+from mpi4py import MPI
+from shell_model.boom_shell import ShellOptions
+from shell_model.direct import assemble_boom, integrate_directly
+from tests.shell_model.booms import LAW, flat_boom
+comm = MPI.COMM_WORLD
+law = replace(LAW, stiffness=1.0e9, exponent=1.0)
+full = assemble_boom(flat_boom(friction=0.2), [law], ShellOptions(1.0), comm)
+motion = integrate_directly(full, 0.1, 5.0e-4)
+if comm.rank == 0:
+    print(json.dumps([comm.size, motion.observed["tip"].tolist(), motion.energy_residual]))
+"""
+
+
+def _dense(matrix: object) -> Array:
+    indptr, indices, values = matrix.getValuesCSR()  # type: ignore[attr-defined]
+    return scipy.sparse.csr_matrix((values, indices, indptr)).toarray()
+
+
+class _Loaded:
+    """A short box on its supports, under a load that excites a few of its natural modes or all."""
+
+    def __init__(self, shell: SegmentShell) -> None:
+        load = 80.0 * shell.unit_loads["z"]
+        tip = shell.outline(3.0).mean_deflection()
+        free = np.ix_(shell.free, shell.free)
+        mass = _dense(shell.mass)[free]
+        omega2, shapes = eigh(_dense(shell.stiffness)[free], mass)
+        # Without the slide along x, which nothing pushes.
+        omega2, shapes = omega2[1:], shapes[:, 1:]
+        pushes = load[shell.free] @ shapes
+        gains = (shell.row(tip)[shell.free] @ shapes) * pushes / omega2
+        few = np.argsort(-np.abs(gains))[:4]
+        narrow = np.zeros(shell.free.size)
+        narrow[shell.free] = mass @ shapes[:, few] @ pushes[few]
+        self._omega, self._gains = np.sqrt(omega2[few]), gains[few]
+        self.rest = float(gains.sum())
+        self.period = 2.0 * np.pi / float(self._omega.max())
+        observers = {"tip": {0: tip}}
+        self.few, self.all = (
+            FullShell(MPI.COMM_WORLD, [shell], [push], [], [], observers) for push in (narrow, load)
+        )
+
+    def tip(self, time: Array) -> Array:
+        """(num_times,) of the few modes in m."""
+        return np.asarray((1.0 - np.cos(np.outer(time, self._omega))) @ self._gains)
+
+
+@pytest.fixture(scope="module")
+def loaded() -> _Loaded:
+    from tests.shell_model.conftest import box_shell
+
+    return _Loaded(box_shell(1.0, 3.0, HELD))
+
+
+@cache
+def _full(boom: Boom, size: float = 0.5) -> FullShell:
+    return assemble_boom(boom, [_SOFT] * len(boom.joints), ShellOptions(size), MPI.COMM_SELF)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
+def test_free_motion_is_of_second_order(loaded: _Loaded, radius: float) -> None:
+    """Reference: analytic, the natural modes that a step load excites, of the same matrices."""
+    errors = []
+    period = loaded.period
+    for parts in (16.0, 32.0, 64.0):
+        motion = integrate_directly(
+            loaded.few, 10.0 * period, period / parts, period / 8.0, radius, energy_bound=np.inf
+        )
+        exact = loaded.tip(motion.time)
+        errors.append(float(np.abs(motion.observed["tip"] - exact).max() / np.ptp(exact)))
+    assert errors[-1] < 4.0e-3
+    assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(2.0, abs=0.2)
+
+
+@pytest.mark.quick
+def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
+    """Reference: analytic, the static deflection; with ρ∞ = 0 a long step leaves nothing else."""
+    period = loaded.period
+    motion = integrate_directly(
+        loaded.all, 2.0e5 * period, 1.0e4 * period, 1.0e4 * period, 0.0, energy_bound=np.inf
+    )
+    assert motion.observed["tip"][-1] == pytest.approx(loaded.rest, rel=1.0e-8)
+
+
+@pytest.mark.quick
+def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
+    """Reference: analytic. At ρ∞ = 1 free motion keeps its energy; below it loses, the more the
+    smaller ρ∞ is.
+    """
+    step = loaded.period / 64.0
+
+    def missing_energy(radius: float) -> Array:
+        return energy_residual(
+            integrate_directly(
+                loaded.all, 200.0 * step, step, 10.0 * step, radius, energy_bound=np.inf
+            ).energies
+        )
+
+    assert np.abs(missing_energy(1.0)).max() < 1.0e-9
+    lost = []
+    for radius in (0.8, 0.5, 0.0):
+        missing = missing_energy(radius)
+        assert missing.max() < 1.0e-12
+        lost.append(-float(missing[-1]))
+    assert 1.0e-6 < lost[0] < lost[1] < lost[2]
+
+
+@pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
+def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: float) -> None:
+    """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
+    one has many moments and moves by the splitting with a short step.
+    """
+    stop = Stop(0, 10.0, 1.0e-3, stiffness, 0.0, exponent)
+    boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
+    krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
+    reduced = reduce_boom(boom, [], ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
+    reference = integrate(reduced.system, 0.15, step=1.0e-6)
+    motion = integrate_directly(_full(boom), 0.15, 5.0e-5)
+    tip, exact = motion.observed["tip"], reference.data["tip"].values
+    assert reference.first_contact < 0.1
+    assert np.abs(tip - exact).max() < 2.0e-3 * np.ptp(exact)
+    impulse, given = motion.contact_forces.sum(), float(reference.data["contact_force"].sum())
+    assert given > 0.0
+    assert impulse == pytest.approx(given, rel=2.0e-3)
+    assert motion.energy_residual < 1.0e-3
+
+
+def test_friction_below_its_limit_holds_exactly() -> None:
+    """Reference: analytic. A tenth of the load is held: no row moves, to round-off, and nothing
+    is lost. The whole load moves them.
+    """
+    held = flat_boom(friction=0.2)
+    light = tuple(replace(segment, load=0.1 * segment.load) for segment in held.segments)
+    motion = integrate_directly(_full(replace(held, segments=light)), 0.1, 5.0e-4)
+    largest = np.abs(motion.friction_forces).max(axis=0)
+    assert (largest < [900.0, 1000.0]).all()
+    assert (largest > 100.0).all()
+    assert np.abs(motion.slides).max() < 1.0e-15
+    assert np.ptp(motion.observed["tip"]) > 1.0e-5
+    assert np.abs(motion.energies[:, 5]).max() < 1.0e-12
+    moving = integrate_directly(_full(held), 0.1, 5.0e-4)
+    assert np.abs(moving.friction_forces[:, 1]).max() == pytest.approx(1000.0, rel=1.0e-12)
+    assert np.abs(moving.slides).max() > 1.0e-5
+    assert (np.diff(moving.energies[:, 5]) > -1.0e-12).all()
+
+
+def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
+    """Reference: other code, the splitting of the reduced shell, through the first blow.
+
+    Where a station presses and sticks at once, the sum of both forces moves the boom; which part is
+    whose hangs on how the last slip ended.
+    """
+    boom = flat_boom(friction=0.2)
+    system = reduce_boom(boom, [_SOFT], ShellOptions(0.5), MPI.COMM_SELF).system
+    reference = integrate(system, 0.4, step=2.5e-6)
+    full = _full(boom)
+    motion = integrate_directly(full, 0.4, 2.5e-4)
+    exact = reference.data["tip"].values
+    assert reference.first_contact < 0.38
+    assert np.abs(motion.observed["tip"] - exact).max() < 1.0e-3 * np.ptp(exact)
+    at = [[contact.station == station for contact in full.contacts] for station in (0, 1)]
+    pushed = motion.friction_forces - motion.contact_forces @ np.array(at).T
+    data = reference.data
+    given = (data["friction_force"] - data["contact_force"]).sum("time").values
+    assert (np.abs(motion.contact_forces).max(axis=0) > 0.0).any()
+    assert pushed.sum(axis=0) == pytest.approx(given, rel=2.0e-3)
+    assert motion.energy_residual < 1.0e-3
+
+
+def test_two_ranks_give_the_serial_motion(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    """Reference: the serial run, to 1e-9 of the range."""
+    done = two_ranks(_SHORT_MOTION)
+    assert done.returncode == 0, done.stderr
+    ranks, tip, residual = json.loads(done.stdout.strip().splitlines()[-1])
+    serial = integrate_directly(_full(flat_boom(friction=0.2), 1.0), 0.1, 5.0e-4)
+    assert ranks == 2
+    assert np.abs(tip - serial.observed["tip"]).max() < 1.0e-9 * np.ptp(tip)
+    assert residual == pytest.approx(serial.energy_residual, rel=1.0e-3)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("boom", "law", "message"),
+    [
+        (
+            boom_in_space(),
+            LAW,
+            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+        ),
+        (
+            three_segments(tied=True),
+            LAW,
+            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+        ),
+        (
+            flat_boom(),
+            replace(LAW, damping=0.5),
+            "the unreduced shell takes contacts without damping",
+        ),
+    ],
+)
+def test_what_it_does_not_take_is_refused(boom: Boom, law: object, message: str) -> None:
+    with pytest.raises(BoomError, match=message):
+        assemble_boom(boom, [law] * len(boom.joints), ShellOptions(2.0), MPI.COMM_SELF)  # type: ignore[list-item]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("step", "radius", "message"),
+    [
+        (0.0, 0.8, "^step must be finite and positive, got 0.0 s$"),
+        (1.0e-3, 1.1, "^radius must be from 0 to 1, got 1.1$"),
+    ],
+)
+def test_a_step_that_has_no_meaning_is_refused(step: float, radius: float, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        GeneralisedAlpha(step, radius)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Collars and diaphragms: three walls on an edge, with their mass and what they stiffen."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import xarray as xr
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
+
+from dynamics.excitation import Step
+from geometry.boom import Collar, Diaphragm, Load, Segment, Support
+from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.section import BoxSection
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.deformation import MovingShell
+from shell_model.eigenmodes import natural_frequencies
+from shell_model.products import times
+from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.shifted_solver import ShiftedSolver
+from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
+from tests.shell_model.conftest import BOX, compliance
+
+# At both ends, on a support, within a collar, and free.
+PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
+COLLARS = (Collar(9.0, 10.0, 0.01), Collar(4.5, 5.5, 0.004))
+
+
+def meshed(segment: Segment, size: float) -> SegmentMesh:
+    """The mesh of a segment with all the lines that it needs."""
+    assert segment.section is not None
+    plates = diaphragm_breaks(segment)
+    breaks = {"start": segment.start, "end": segment.end} | plates | collar_breaks(segment)
+    breaks |= {f"support-{one.x:g}": one.x for one in segment.supports}
+    # Where there is none, the mesh is that of the stiffened box all the same.
+    breaks |= {f"place-{one.x:g}": one.x for one in PLATES if one.x <= segment.end}
+    return mesh_segment(segment.section, breaks, size, closed=tuple(plates))
+
+
+@cache
+def shell_of(
+    collars: tuple[Collar, ...] = (),
+    diaphragms: tuple[Diaphragm, ...] = (),
+    supports: tuple[Support, ...] = (),
+    section: BoxSection = BOX,
+    size: float = 0.25,
+) -> SegmentShell:
+    """A stiffened box on [0, 10]."""
+    plain = box_segment("box", 0.0, 10.0, section, supports=supports)
+    segment = replace(plain, collars=collars, diaphragms=diaphragms)
+    return assemble_segment(MPI.COMM_WORLD, segment, meshed(segment, size))
+
+
+@pytest.mark.quick
+def test_rigid_motions_cost_no_energy() -> None:
+    """Reference: analytic, zero, with three walls on an edge."""
+    shell = shell_of(COLLARS, PLATES)
+    motions = shell.rigid_motions()
+    assert motions.shape[1] == 6
+    trial = np.abs(motions).max(axis=1, keepdims=True)
+    size = (trial.T @ times(shell.stiffness, trial)).item()
+    energies = motions.T @ times(shell.stiffness, motions)
+    assert np.abs(energies).max() < 1.0e-10 * size
+
+
+@pytest.mark.quick
+def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
+    """Reference: analytic, ρ times the volumes of box, collars and plates, and their moment
+    about the middle, which the translation along z and the pitch share.
+    """
+    shell = shell_of(COLLARS, PLATES)
+    inertia = shell.rigid_motions().T @ times(shell.mass, shell.rigid_motions())
+    perimeter, opening = 2.0 * (BOX.height + BOX.width), BOX.height * BOX.width
+    parts = [(BOX.area * 10.0, 0.0)]
+    parts += [
+        (perimeter * (one.end - one.start) * one.thickness, 0.5 * (one.start + one.end) - 5.0)
+        for one in COLLARS
+    ]
+    parts += [(opening * one.thickness, one.x - 5.0) for one in PLATES]
+    mass = STEEL.density * sum(volume for volume, _ in parts)
+    moment = STEEL.density * sum(volume * arm for volume, arm in parts)
+    assert mass > 1.1 * STEEL.density * BOX.area * 10.0  # the tolerance is smaller than the effect
+    assert inertia.diagonal()[:3] == pytest.approx([mass] * 3, rel=1.0e-11)
+    # A pitch by one radian lowers what lies beyond the middle.
+    assert inertia[2, 4] == pytest.approx(-moment, rel=1.0e-11)
+
+
+@pytest.mark.quick
+def test_uniform_load_is_that_of_the_plain_box() -> None:
+    """Reference: analytic. 1 N/m over 10 m without a moment, whatever stiffens the box."""
+    shell = shell_of(COLLARS, PLATES)
+    motions = shell.rigid_motions()
+    assert shell.unit_loads["z"] @ motions == pytest.approx([0, 0, 10.0, 0, 0, 0], abs=1.0e-9)
+    assert shell.unit_loads["y"] @ motions == pytest.approx([0, 10.0, 0, 0, 0, 0], abs=1.0e-9)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("inertial", [True, False])
+def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
+    """Reference: analytic. The momentum of 0.1 m/s moves all of a free segment at 0.1 m/s; that of
+    the plain box alone moves the heavier tail less.
+    """
+    boom = flat_boom()
+    inner = replace(
+        boom.segments[1], diaphragms=(Diaphragm(9.0, 0.016),), collars=(Collar(9.0, 9.5, 0.01),)
+    )
+    momentum = 0.1 * inner.mass_per_length
+    thrown = Load(1, "z", momentum, None, Step(), inertial)
+    stiff = replace(boom, segments=(boom.segments[0], inner), loads=(thrown,))
+    system = reduce_boom(stiff, [LAW], ShellOptions(0.5), MPI.COMM_WORLD).system
+    velocity = system.excitations[0].load
+    speeds = [system.observers[name].row @ velocity for name in ("tail", "tip")]
+    if inertial:
+        assert speeds == pytest.approx([0.1, 0.1], rel=1.0e-8)
+    else:
+        assert speeds[0] < 0.095
+
+
+@pytest.mark.quick
+def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None:
+    """Reference: the plain box on the same mesh. Supports hold as much of it, too."""
+    held = (Support(0.0), Support(2.0, "clamped"))
+    shells = shell_of(supports=held), shell_of(COLLARS, PLATES, held)
+    for x in (0.0, 2.0, 5.0, 10.0):
+        around = [set(map(tuple, shell.outline(x).places.round(9) + 0.0)) for shell in shells]
+        assert around[0] == around[1]
+    held_dofs = [int((~shell.free).sum()) for shell in shells]
+    assert held_dofs[0] == held_dofs[1]
+    assert shells[0].num_dofs < shells[1].num_dofs
+
+
+@pytest.mark.quick
+def test_a_stiffened_shell_mirrors_itself() -> None:
+    """Reference: analytic. A force along z moves nothing along y and turns nothing about x, and on
+    its side the box has the same natural frequencies.
+    """
+    shell = shell_of(COLLARS, PLATES, HELD)
+    outline = shell.outline(8.0)
+    force = shell.row(outline.wall_deflection("z"))
+    solve = ShiftedSolver(shell, 0.01)
+    moved = solve(force[:, None])[:, 0]
+    solve.destroy()
+    for row in (outline.wall_deflection("y"), outline.twist()):
+        assert abs(shell.row(row) @ moved) < 1.0e-10 * abs(force @ moved)
+    lying = shell_of(COLLARS, PLATES, HELD, section=BOX.turned())
+    # The first is the free slide along x.
+    assert natural_frequencies(lying, 9)[1:] == pytest.approx(
+        natural_frequencies(shell, 9)[1:], rel=1.0e-8
+    )
+
+
+def test_a_collar_all_along_is_a_thicker_box() -> None:
+    """Reference: the box of thicker walls on the same mid-surfaces, to round-off."""
+    thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.004, BOX.web + 0.004)
+    collared = shell_of((Collar(0.0, 10.0, 0.004),), supports=HELD)
+    frequencies = natural_frequencies(shell_of(supports=HELD, section=thick), 8)[1:]
+    assert natural_frequencies(collared, 8)[1:] == pytest.approx(frequencies, rel=1.0e-8)
+    plain = natural_frequencies(shell_of(supports=HELD), 8)[1:]
+    assert np.abs(plain / frequencies - 1.0).max() > 0.01  # the tolerance is below the effect
+
+
+@pytest.mark.parametrize("x", [0.0, 5.0])
+def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
+    """Reference: analytic. Flanges pulled apart stretch the plate between them, and the webs,
+    where there is one, and bend the walls where there is none: a hundred times less stiff.
+    """
+    rows = []
+    for plates in ((), (Diaphragm(x, 0.008),)):
+        shell = shell_of(diaphragms=plates)
+        rows.append(compliance(shell, shell.outline(x).distortion()))
+    stretched = BOX.height / (STEEL.youngs_modulus * 0.008 * BOX.width)
+    assert rows[0] > 100.0 * rows[1]
+    assert rows[1] < stretched
+
+
+_TWO_RANKS = """
+import json
+from mpi4py import MPI
+from tests.shell_model.test_stiffeners import short_box
+comm = MPI.COMM_WORLD
+counts = [short_box(comm, size).num_dofs for size in (0.3, 0.1)]
+if comm.rank == 0:
+    print(json.dumps({"ranks": comm.size, "dofs": counts}))
+"""
+
+
+def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
+    """So short that ranks part in the midst of its diaphragms."""
+    plates = tuple(Diaphragm(x, 0.008) for x in (0.0, 0.1, 0.2, 0.3))
+    segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates)
+    return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
+
+
+@pytest.mark.quick
+def test_ranks_share_an_edge_of_three_walls(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    """Reference: analytic, three displacements at vertices and edges, three rotations at edges,
+    each once, however the ranks part the triangles on an edge.
+    """
+    done = two_ranks(_TWO_RANKS)
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout.strip().splitlines()[-1])
+    assert answer["ranks"] == 2
+    serial = [short_box(MPI.COMM_WORLD, size).num_dofs for size in (0.3, 0.1)]
+    assert answer["dofs"] == serial == [780, 2220]
+
+
+def test_pictures_know_walls_from_diaphragms() -> None:
+    """Reference: the plain boom. Flanges, supports and heights are found in a stiffened one."""
+    boom = flat_boom()
+    plates = (Diaphragm(0.0, 0.008), Diaphragm(2.0, 0.008), Diaphragm(8.0, 0.008))
+    outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar(9.7, 10.0, 0.01),))
+    inner = replace(boom.segments[1], diaphragms=(Diaphragm(9.0, 0.008),))
+    stiff = replace(boom, segments=(outer, inner))
+    reduced = reduce_boom(stiff, [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
+    assert reduced.fields is not None
+    state = np.eye(2, reduced.system.num_modes)
+    fields = reduced.fields.assign(state=(("time", "mode"), state)).assign_coords(time=[0.0, 1.0])
+    motion = xr.Dataset(
+        {"tip": ("time", np.zeros(2))},
+        coords={"time": [0.0, 1.0], "direction": ("station", np.array([], dtype=str))},
+    )
+    (moving,) = MovingShell.views(fields, motion)
+    points = moving.points
+    assert [held[0, 0] for held in moving.supports()] == pytest.approx([0.0, 2.0])
+    for number, segment in enumerate(stiff.segments):
+        section = segment.section
+        assert section is not None
+        assert moving.half_height(number) == pytest.approx(0.5 * section.height)
+        for side in (1, -1):
+            line = points[moving.flange_in_plane(number, side)]
+            assert line[:, 2] == pytest.approx(0.5 * side * section.height)
+            assert (np.diff(line[:, 0]) > 0.0).all()
+            assert line[[0, -1], 0] == pytest.approx([segment.start, segment.end])
+    for name in ("modes", "stress_1", "stress_2"):
+        assert np.isfinite(fields[name].values).all()
+    # Each vertex is in the fields, those within the plates too.
+    within = (np.abs(points[:, 1:]) < 1.0e-9).all(axis=1)
+    assert sorted(points[within, 0]) == pytest.approx([0.0, 2.0, 8.0, 9.0])
+    assert (np.abs(fields["modes"].values[:, within]).max(axis=(0, 2)) > 0.0).all()

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Recovered stresses are those of plates with known strains, and of beams away from contacts."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import xarray as xr
+from mpi4py import MPI
+
+from geometry.boom import Boom, Diaphragm, Support
+from geometry.mesh import WALLS, SegmentMesh, diaphragm_breaks, mesh_segment
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.recovery import gather_stress_modes
+from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.stress import Modes, ShellStress, Stress, wall_forces
+from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
+from tests.shell_model.conftest import BOX
+
+Array = npt.NDArray[np.float64]
+
+E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
+Field = Callable[[Array], Array]
+
+
+def plates() -> tuple[SegmentShell, SegmentMesh]:
+    """A short box that a plate closes at its middle."""
+    segment = CLOSED
+    breaks = {"start": 0.0, "end": 1.0} | diaphragm_breaks(segment)
+    mesh = mesh_segment(BOX, breaks, 0.25, closed=tuple(diaphragm_breaks(segment)))
+    first = MPI.COMM_WORLD.rank == 0
+    return assemble_segment(MPI.COMM_WORLD, segment, mesh if first else None), mesh
+
+
+CLOSED = replace(box_segment("box", 0.0, 1.0, BOX), diaphragms=(Diaphragm(0.5, 0.01),))
+
+
+def stresses(u: Field, theta: Field) -> tuple[Modes, SegmentMesh]:
+    """(num_triangles, 6) of displacement and rotation fields (num_places, 3)."""
+    shell, mesh = plates()
+    first, _ = shell.owned
+    shape = np.zeros((shell.free.size, 1))
+    shape[shell.node_dofs - first, 0] = u(shell.nodes)
+    shape[shell.rotation_dofs - first, 0] = theta(shell.rotation_nodes)
+    modes = gather_stress_modes(shell, CLOSED, mesh, shape)
+    assert modes is not None
+    return modes[0], mesh
+
+
+def still(places: Array) -> Array:
+    return np.zeros_like(places)
+
+
+def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
+    """Reference: analytic. ε along x with free contraction is σ_x = E ε; the diaphragm, which
+    contracts with the walls, has -ν E ε / (1 - ν) in all directions of its plane.
+    """
+    strain = 1.0e-4
+    found, mesh = stresses(lambda p: strain * p * [1.0, -NU, -NU], still)
+    walls = found[mesh.on_walls]
+    assert walls[:, 0] == pytest.approx(E * strain, rel=1e-5)
+    assert np.abs(walls[:, 1:]).max() < 1e-5 * E * strain
+    plate = found[~mesh.on_walls]
+    assert plate[:, :2] == pytest.approx(-NU * E * strain / (1.0 - NU), rel=1e-5)
+    assert np.abs(plate[:, 2:]).max() < 1e-5 * E * strain
+
+
+def test_shear_has_the_sign_of_the_way_around() -> None:
+    """Reference: analytic. u_y = γ x is τ = G γ along y: with s on the top, against it on the
+    bottom, none in the webs.
+    """
+    shear = 1.0e-4
+    found, mesh = stresses(
+        lambda p: shear * np.stack([0.0 * p[:, 0], p[:, 0], 0.0 * p[:, 0]], axis=1), still
+    )
+    expected = {"top": 1.0, "bottom": -1.0, "right": 0.0, "left": 0.0}
+    full = shear * E / (2.0 * (1.0 + NU))
+    for wall, sign in expected.items():
+        mine = found[mesh.walls == WALLS.index(wall)]
+        assert mine[:, 2] == pytest.approx(sign * full, abs=1e-5 * full)
+        assert np.abs(np.delete(mine, 2, axis=1)).max() < 1e-5 * full
+
+
+def test_bending_is_that_of_the_outer_face() -> None:
+    """Reference: analytic. With u_x = κ x z the top has ε = κ h/2 in its middle and κ t/2 more
+    on its outer face, the bottom the opposite, which is the same on its own outer face.
+    """
+    bend = 1.0e-4
+    found, mesh = stresses(
+        lambda p: bend * np.stack([p[:, 0] * p[:, 2], 0 * p[:, 0], -0.5 * p[:, 0] ** 2], axis=1),
+        lambda p: bend * np.stack([0 * p[:, 0], p[:, 0], 0 * p[:, 0]], axis=1),
+    )
+    plane = E * bend / (1.0 - NU**2)
+    for wall, side in (("top", 1.0), ("bottom", -1.0)):
+        mine = found[mesh.walls == WALLS.index(wall)]
+        assert mine[:, 0] == pytest.approx(side * plane * 0.5 * BOX.height, rel=1e-4)
+        assert mine[:, 3] == pytest.approx(side * plane * 0.5 * BOX.flange, rel=1e-4)
+        assert mine[:, 4] == pytest.approx(side * NU * plane * 0.5 * BOX.flange, rel=1e-4)
+    web = mesh.walls == WALLS.index("right")
+    z = mesh.points[mesh.triangles[web], 2].mean(axis=1)
+    assert found[web, 0] == pytest.approx(plane * z, abs=1e-4 * plane * BOX.height)
+    assert np.abs(found[web, 3:]).max() < 1e-4 * plane * BOX.flange
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("membrane", "expected"),
+    [((3.0, 0.0, 0.0), 3.0), ((0.0, 0.0, 1.0), 3.0**0.5), ((2.0, 2.0, 0.0), 2.0)],
+)
+def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float) -> None:
+    """Reference: analytic. A pull gives itself, a shear √3 of it, an equal biaxial pull itself."""
+    stress = Stress(np.float32([membrane]), np.float32([[1.0, 0.0, 0.0]]))
+    assert stress.von_mises("middle") == pytest.approx(expected)
+    assert stress.largest() >= stress.von_mises("middle")
+
+
+@pytest.mark.quick
+def test_the_faces_differ_by_twice_the_bending() -> None:
+    stress = Stress(np.float32([[5.0, 0.0, 0.0]]), np.float32([[-2.0, 0.0, 0.0]]))
+    faces = [float(stress.von_mises(face)[0]) for face in ("outer", "middle", "inner")]
+    assert faces == pytest.approx([3.0, 5.0, 7.0])
+    assert stress.largest() == pytest.approx(7.0)
+
+
+def at_rest(boom: Boom, size: float) -> tuple[xr.Dataset, ShellStress]:
+    """The boom under its constant load; nothing touches."""
+    shell = reduce_boom(boom, [LAW] * len(boom.joints), ShellOptions(size), MPI.COMM_SELF)
+    omega2 = shell.system.omega2
+    state = np.divide(shell.system.load, omega2, out=np.zeros_like(omega2), where=omega2 > 0.0)
+    assert shell.fields is not None
+    fields = shell.fields.assign(
+        state=(("time", "mode"), state[None].astype(np.float32)), time=("time", [0.0])
+    )
+    return fields, ShellStress.of(fields)
+
+
+@pytest.fixture(scope="module")
+def cantilever() -> ShellStress:
+    """A clamped box of 10 m under 100 N/m."""
+    segment = box_segment("box", 0.0, 10.0, BOX, 100.0, (Support(0.0, kind="clamped"),))
+    return at_rest(Boom((segment,), ()), 0.1)[1]
+
+
+@pytest.mark.parametrize("x", [3.0, 5.0, 7.0])
+def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress, x: float) -> None:
+    """Reference: analytic. σ = M z / J with M = q (L - x)² / 2, in the flanges' means and up
+    the webs, within 1 % of the largest.
+    """
+    moment = -50.0 * (10.0 - x) ** 2
+    extreme = abs(moment) * 0.5 * BOX.height / BOX.second_moment_of_area
+    stress = cantilever.at(0.0)
+    near = cantilever.near(0, x, 0.1)
+    mean = {w: near[cantilever.wall[near] == i] for i, w in enumerate(WALLS)}
+    for wall, side in (("top", 1.0), ("bottom", -1.0)):
+        mine = mean[wall]
+        average = np.average(stress.membrane[mine, 0], weights=cantilever.areas[mine])
+        local = -50.0 * (10.0 - cantilever.centroids[mine, 0]) ** 2
+        expected = side * np.mean(local) * 0.5 * BOX.height / BOX.second_moment_of_area
+        assert average == pytest.approx(expected, abs=0.01 * extreme)
+    webs = np.concatenate([mean["right"], mean["left"]])
+    c = cantilever.centroids[webs]
+    expected = -50.0 * (10.0 - c[:, 0]) ** 2 * c[:, 2] / BOX.second_moment_of_area
+    assert np.abs(stress.membrane[webs, 0] - expected).max() < 0.01 * extreme
+
+
+def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
+    """Reference: analytic. M = -q (L - x)² / 2, Q = q (L - x), N = 0; the webs carry the shear."""
+    forces = wall_forces(cantilever, 0.0, 0, 4.01)
+    middle = 4.05
+    arm = 10.0 - middle
+    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
+    shear = forces["left"].shear + forces["right"].shear
+    assert shear == pytest.approx(100.0 * arm, rel=0.02)
+    top = forces["top"].axial
+    assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=1e-3 * abs(top))
+    assert top == pytest.approx(-forces["bottom"].axial, rel=1e-3)
+    assert abs(forces["top"].shear) < 1e-2 * shear
+
+
+def test_a_tied_boom_keeps_each_segments_stresses() -> None:
+    """Reference: analytic. Tied segments are one cantilever beyond the support at 2 m: what is
+    beyond 5 m weighs on it with its moment, whatever the combination of coordinates.
+    """
+    boom = three_segments(tied=True)
+    fields, shell = at_rest(boom, 0.25)
+    assert fields.sizes["mode"] < sum(fields.sizes[f"own_{k}"] for k in (1, 2, 3))
+    forces = wall_forces(shell, 0.0, 0, 5.01)
+    line = np.unique(shell.spans.round(6))
+    middle = 0.5 * (line[line < 5.01].max() + line[line > 5.01].min())
+    moment = -83.16 * (10.0 - middle) ** 2 / 2.0
+    moment -= sum(s.load * s.length * (0.5 * (s.start + s.end) - middle) for s in boom.segments[1:])
+    assert sum(f.moment for f in forces.values()) == pytest.approx(moment, rel=0.01)
+
+
+_ON_RANKS = """
+import json
+import numpy as np
+from mpi4py import MPI
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from tests.shell_model.booms import LAW, flat_boom
+shell = reduce_boom(flat_boom(), [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
+if MPI.COMM_WORLD.rank == 0:
+    system, own = shell.system, shell.fields["coordinates_1"].values
+    state = own @ system.load / (own @ system.omega2)
+    print(json.dumps(np.tensordot(state, shell.fields["stress_1"].values, axes=1).tolist()))
+"""
+
+
+def test_two_ranks_recover_the_serial_stresses(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    """Reference: the serial run."""
+    done = two_ranks(_ON_RANKS)
+    assert done.returncode == 0, done.stderr
+    found = np.array(json.loads(done.stdout.strip().splitlines()[-1]))
+    _, serial = at_rest(flat_boom(), 0.5)
+    expected = np.tensordot(serial.states[0][0], serial.modes[0], axes=1)
+    assert np.abs(expected).max() > 1.0e4
+    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()

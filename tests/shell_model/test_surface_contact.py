@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Contact over the whole overlap, pads as patches, and rows that read a wall anywhere."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from mpi4py import MPI
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from geometry.boom import Boom, BoomError, PadSize
+from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.outline import COMPONENT
+from shell_model.reduction import KrylovOptions
+from shell_model.segment_shell import SegmentShell
+from shell_model.surface_contact import SurfaceOptions
+from shell_model.touches import ContactLine
+from shell_model.wall_points import Wall, WallPoints
+from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
+from tests.shell_model.conftest import BOX
+
+Array = npt.NDArray[np.float64]
+
+PAD = PadSize(length=0.1, width=0.06)
+FEW = SurfaceOptions(points=(4, 2))
+
+
+@cache
+def _system(
+    boom: Boom,
+    line: ContactLine = "surface",
+    surface: SurfaceOptions = FEW,
+    law: PowerContact = LAW,
+) -> GapSystem:
+    options = ShellOptions(0.5, line, surface, krylov=KrylovOptions(moments=1))
+    lateral = [LATERAL_LAW] if boom.spatial else ()
+    return reduce_boom(boom, [law], options, MPI.COMM_WORLD, lateral_laws=lateral).system
+
+
+def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
+    return replace(boom, joints=(replace(boom.joints[0], pad=pad),))
+
+
+def _rigid(system: GapSystem, readings: dict[str, float]) -> Array:
+    """The rigid motion of the free inner segment with these readings."""
+    free = np.flatnonzero(system.omega2 == 0.0)
+    rows = np.array([system.observers[name].row[free] for name in readings])
+    state = np.zeros(system.num_modes)
+    state[free] = np.linalg.lstsq(rows, np.array(list(readings.values())), rcond=None)[0]
+    return state
+
+
+def _forces(system: GapSystem, state: Array) -> Array:
+    gaps = system.rows @ state
+    return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("normal", ["y", "z"])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
+    box_shell: Callable[..., SegmentShell], normal: str, side: int
+) -> None:
+    """Reference: analytic, the polynomial at places that are no nodes, at nodes, on edges."""
+    shell = box_shell(0.5)
+    wall = Wall("z" if normal == "z" else "y", side)
+    half = 0.5 * (BOX.width if normal == "z" else BOX.height)
+    places = np.array(
+        [[3.21, 0.3 * half], [0.0, -half], [10.0, half], [5.0, 0.0], [7.77, -0.9 * half]]
+    )
+    values = {}
+    for component, factor in (("y", 1.0), ("z", -2.0)):
+        for place, dofs in zip(shell.nodes, shell.node_dofs, strict=True):
+            x, s = place[0], place[wall.across]
+            on_wall = np.sign(place[COMPONENT[wall.normal]]) == side
+            field = (
+                factor * (1.0 + 2.0 * x - x * s + 3.0 * s**2 + 0.1 * x**2) if on_wall else np.nan
+            )
+            values[int(dofs[COMPONENT["y" if component == "y" else "z"]])] = field
+    for component, factor in (("y", 1.0), ("z", -2.0)):
+        rows = WallPoints(shell).rows(wall, places, "y" if component == "y" else "z")
+        for (x, s), row in zip(places, rows, strict=True):
+            expected = factor * (1.0 + 2.0 * x - x * s + 3.0 * s**2 + 0.1 * x**2)
+            assert sum(w * values[dof] for dof, w in row.items()) == pytest.approx(
+                expected, rel=1.0e-11
+            )
+
+
+@pytest.mark.quick
+def test_a_place_beside_a_wall_is_refused(box_shell: Callable[..., SegmentShell]) -> None:
+    places = np.array([[5.0, 0.2]])
+    with pytest.raises(ValueError, match=r"^no wall is at x = 5 m, 0\.2 m across$"):
+        WallPoints(box_shell(0.5)).rows(Wall("z", 1), places, "z")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
+    """Reference: analytic, (4) at both stations; the pressure's middle is that of the overlap."""
+    system = _system(flat_boom())
+    depth = 2.0e-3
+    heave = side * (LAW.clearance + depth)
+    state = _rigid(system, {"tip": heave, "tail": heave})
+    force = _forces(system, state)
+    assert np.count_nonzero(force) == 8
+    assert force.sum() == pytest.approx(side * 2.0 * LAW.stiffness * depth**2, rel=1.0e-6)
+    # A turn about the middle of the overlap, whose ends are at 9, 10 and 19 m.
+    turn = _rigid(system, {"tip": 9.5, "tail": -0.5})
+    assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
+
+
+def test_a_tilted_approach_presses_as_its_integral() -> None:
+    """Reference: analytic, ∫ k_A b (θ x)² dx = k_A b θ² L³/3 over the overlap, k_A given."""
+    given = 3.0e14
+    system = _system(flat_boom(), surface=SurfaceOptions((4, 2), stiffness=given))
+    tilt = 1.0e-3
+    state = _rigid(system, {"tip": LAW.clearance + 10.0 * tilt, "tail": LAW.clearance})
+    section = flat_boom().segments[1].section
+    assert section is not None
+    expected = given * section.width * tilt**2 / 3.0
+    assert _forces(system, state).sum() == pytest.approx(expected, rel=1.0e-6)
+
+
+def test_every_point_has_its_share_of_the_penalty() -> None:
+    """Reference: analytic. The area's weights are positive and add up, on either side; points
+    belong to the nearest station.
+    """
+    law = replace(LAW, stiffness_below=0.5e13)
+    system = _system(flat_boom(), law=law)
+    above = np.array([one.stiffness for one in system.laws])
+    below = np.array([one.below for one in system.laws])
+    assert ((above > 0.0) ^ (below > 0.0)).all()
+    assert above.sum() == pytest.approx(2.0e13)
+    assert below.sum() == pytest.approx(1.0e13)
+    assert [int(n) for n in np.bincount(system.station_of_row)] == [8, 8]
+
+
+def test_a_law_that_never_touches_below_has_no_points_there() -> None:
+    law = replace(LAW, stiffness_below=0.0)
+    assert len(_system(flat_boom(), law=law).laws) == 8
+
+
+def test_friction_stays_at_the_stations() -> None:
+    """Reference: this shell with contact at its stations: the same slides, in compliance, but for
+    the part of 1e-4 that modes which are left out may have.
+    """
+    lines, surface = (
+        _system(flat_boom(friction=0.2), line=line) for line in ("near webs", "surface")
+    )
+    assert surface.frictions == lines.frictions
+    slow = (2.0 * np.pi * 10.0) ** 2
+    found, expected = (
+        one.friction_rows @ (one.friction_rows / (one.omega2 + slow)).T for one in (surface, lines)
+    )
+    assert found == pytest.approx(expected, rel=2.0e-4)
+
+
+def test_in_space_each_point_presses_one_corner() -> None:
+    """Reference: analytic. Webs touch too; every point adds to the normal force of one pad; a
+    roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange.
+    """
+    system = _system(boom_in_space(friction=0.2))
+    pressing = sorted(row for friction in system.frictions for row in friction.pressed_by)
+    assert pressing == list(range(len(system.laws))) == list(range(4 * 16))
+    assert len(system.frictions) == 16
+    along_z = np.array(system.station_directions)[system.station_of_row] == "z"
+    state = _rigid(
+        system,
+        {"tip": 0.0, "tail": 0.0, "tip_lateral": 0.0, "tail_lateral": 0.0, "tip_twist": 1.0},
+    )
+    arms = system.rows @ state
+    section = flat_boom().segments[1].section
+    assert section is not None
+    for walls, size in ((along_z, section.width), (~along_z, section.height)):
+        above = np.array([w.stiffness for w in system.laws])[walls]
+        assert above.sum() == pytest.approx(2.0e13)
+        assert above @ arms[walls] ** 2 == pytest.approx(2.0e13 * size**2 / 12.0, rel=1.0e-6)
+
+
+def test_contact_over_a_surface_keeps_energy() -> None:
+    """Reference: analytic, the ledger; first contact where the stations' is, at the tail."""
+    surface, lines = (
+        integrate(_system(flat_boom(), line=line), duration=0.25)
+        for line in ("surface", "near webs")
+    )
+    assert surface.energy_residual < 1.0e-4
+    assert surface.first_contact == pytest.approx(lines.first_contact, rel=0.02)
+    assert surface.first_contact > lines.first_contact
+
+
+_ROWS = """
+import json
+from mpi4py import MPI
+from tests.shell_model.test_surface_contact import FEW, compliances
+comm = MPI.COMM_WORLD
+found = compliances(comm)
+if comm.rank == 0:
+    print(json.dumps(found))
+"""
+
+
+def compliances(comm: MPI.Comm) -> list[float]:
+    """What each contact row gives way under its own force, in m/N at 10 Hz."""
+    found = []
+    for line, boom in (("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))):
+        options = ShellOptions(
+            0.5,
+            "surface" if line == "surface" else "near webs",
+            FEW,
+            krylov=KrylovOptions(moments=1),
+        )
+        system = reduce_boom(boom, [LAW], options, comm).system
+        slow = (2.0 * np.pi * 10.0) ** 2
+        found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()
+    return found
+
+
+def test_two_ranks_find_the_same_points(
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
+) -> None:
+    """Reference: the serial run."""
+    done = two_ranks(_ROWS)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.strip().splitlines()[-1])
+    assert found == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
+
+
+@pytest.mark.parametrize("boom", [flat_boom(0.2), boom_in_space(0.2)], ids=["flat", "space"])
+def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
+    """Reference: analytic. As many rows with the same laws; a rigid motion is read at the middle
+    of the patch: half its length inside the overlap's ends.
+    """
+    plain, padded = _system(boom, "near webs"), _system(_with_pads(boom), "near webs")
+    assert padded.laws == plain.laws
+    assert padded.frictions == plain.frictions
+    readings = {"tip": 10.0, "tail": 0.0}
+    if boom.spatial:
+        readings |= {"tip_lateral": 0.0, "tail_lateral": 0.0, "tip_twist": 0.0}
+    arms = (padded.rows @ _rigid(padded, readings)).round(9)
+    along_z = np.array(padded.station_directions)[padded.station_of_row] == "z"
+    assert set(np.abs(arms[along_z])) == {0.05, 0.95}
+    assert set(np.abs(arms[~along_z])) <= {0.0}
+
+
+def test_larger_pads_are_softer() -> None:
+    """Reference: none but sense: further from the stiff corners the flanges give way more."""
+    slow = (2.0 * np.pi * 10.0) ** 2
+
+    def give(width: float) -> float:
+        system = _system(_with_pads(flat_boom(), PadSize(0.1, width)), "near webs")
+        return float((system.rows[0] ** 2 / (system.omega2 + slow)).sum())
+
+    assert give(0.02) < give(0.06) < give(0.12)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("line", ["across", "surface"])
+def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
+    message = (
+        f"contact_line: '{line}' leaves no place to the joints' pads; give 'near webs', or leave "
+        "pad out"
+    )
+    with pytest.raises(BoomError, match=f"^{message}$"):
+        _system(_with_pads(flat_boom()), line)
