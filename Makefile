@@ -27,7 +27,7 @@ BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots bench readings convergence test quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence test quick lint matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -40,13 +40,16 @@ verify: $(REPORTS) $(READINGS) ## run the cases where they are not up to date, p
 snapshots: $(REPORTS) ## pictures of the verify cases
 	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
-bench: $(READY) ## what the integrators cost, into runs/out/bench
+gallery: $(REPORTS) ## the pictures of docs/gallery.md, from the verify cases
+	$(BIN)/python -m runs.gallery
+
+bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
 	$(BIN)/python -m runs.bench
 
 readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
 	$(BIN)/python -m runs.readings
 
-convergence: $(READY) ## how results settle with steps, terms, elements, meshes, into runs/out/convergence
+convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m runs.convergence
 
 test: $(READY) ## all tests

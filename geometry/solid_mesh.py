@@ -19,6 +19,9 @@ from geometry.section import BoxSection
 
 Array = npt.NDArray[np.float64]
 
+# Of an edge over the one before it.
+_GROWTH = 4.0
+
 
 @dataclass(frozen=True, slots=True)
 class SolidMesh:
@@ -42,7 +45,8 @@ def mesh_quarter(
     section: BoxSection,
     places: Sequence[float],
     along: tuple[float, float],
-    edges: int,
+    around: float,
+    splits: int = 1,
     layers: int = 2,
 ) -> SolidMesh:
     """Mesh the walls of a box where y and z are positive.
@@ -52,53 +56,53 @@ def mesh_quarter(
         places: x in m at which there must be mesh planes; the smallest and the largest are the
             ends of the segment.
         along: edge lengths in m along x, about: at the places, where forces and supports act, and
-            the largest away from them; edges double from one to the other.
-        edges: from the middle of each wall to the inside of the corner.
+            the largest away from them.
+        around: largest edge length in m around the section, about; edges grow to it from the
+            corners, where they are as long as the wall is thick.
+        splits: into how many each edge around the section is split, to refine the mesh evenly.
         layers: of hexahedra through a wall, an even number.
 
     Raises:
-        ValueError: the lengths along x are not positive and rising, there is no edge, the layers
-            are no even number, there are no two distinct places.
+        ValueError: the lengths are not positive and rising, edges are not split into whole ones,
+            the layers are no even number, there are no two distinct places.
     """
     if not 0.0 < along[0] <= along[1] < np.inf:
         raise ValueError(f"the lengths along x must be positive numbers of m, rising, got {along}")
-    if edges < 1:
-        raise ValueError(f"there must be an edge or more to a corner, got {edges}")
+    if not 0.0 < around < np.inf:
+        raise ValueError(f"the length around must be a positive number of m, got {around}")
+    if splits < 1:
+        raise ValueError(f"an edge must be split into 1 or more, got {splits}")
     if layers < 2 or layers % 2:
         raise ValueError(f"the layers must be an even number from 2 on, got {layers}")
     ends = np.unique(places)
     if ends.size < 2:
         raise ValueError("a segment needs two distinct places at least, its ends")
-    spans = [_growing(length, *along) for length in np.diff(ends)]
+    spans = []
+    for length in np.diff(ends):
+        half = _growing(0.5 * length, *along)
+        spans += [half, half[::-1]]
     planes = (
         ends[0] + np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]),
-        _across(section.width, section.web, edges, layers),
-        _across(section.height, section.flange, edges, layers),
+        _across(section.width, section.web, around, splits, layers),
+        _across(section.height, section.flange, around, splits, layers),
     )
     points, hexahedra = _walls(planes, layers)
     return SolidMesh(points, hexahedra, planes, layers)
 
 
 def _growing(length: float, smallest: float, largest: float) -> Array:
-    """Edges of a length that are smallest at its ends and largest in its middle."""
-    half = [smallest]
-    while sum(half) < 0.5 * length:
-        half.append(min(2.0 * half[-1], largest))
-    edges = np.array([*half, *half[::-1]])
-    return np.asarray(edges * (length / edges.sum()))
+    """Edges of a length, each longer than the one before until they are the largest."""
+    edges = [min(smallest, largest)]
+    while sum(edges) < length:
+        edges.append(min(_GROWTH * edges[-1], largest))
+    return np.array(edges) * (length / sum(edges))
 
 
-def _across(distance: float, wall: float, edges: int, layers: int) -> Array:
+def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
     """Planes from the middle to the outside of a wall, whose mid-line is at half the distance."""
-    inside, middle, outside = 0.5 * (distance - wall), 0.5 * distance, 0.5 * (distance + wall)
-    half = layers // 2 + 1
-    return np.concatenate(
-        [
-            np.linspace(0.0, inside, edges + 1),
-            np.linspace(inside, middle, half)[1:],
-            np.linspace(middle, outside, half)[1:],
-        ]
-    )
+    clear = _growing(0.5 * (distance - wall), wall, size)[::-1]
+    edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
+    return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
 
 
 def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, npt.NDArray[np.int64]]:

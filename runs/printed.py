@@ -42,6 +42,14 @@ def print_models(results: Results, console: Console) -> None:
             row.seconds,
         )
     console.print(models)
+    for name, model in results.summary["models"].items():
+        if errors := model.get("reduction_errors"):
+            console.print(
+                f"{name}: {model['modes']} coordinates answer as the full shell does, contacts "
+                f"within {number(errors['contact_compliance'], 1)}, tip and head within "
+                f"{number(errors['readings'], 1)}",
+                markup=False,
+            )
     for caution in results.cautions():
         console.print(caution, markup=False)
 

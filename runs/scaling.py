@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -287,8 +286,11 @@ def _motion(system: GapSystem, duration: float, step: float) -> dict[str, Any]:
 
 
 def _peak() -> float:
-    """This process's largest resident set so far, in GB."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0 / 1.0e9
+    """This program's largest resident set so far, in GB."""
+    # getrusage would tell the parent's as well, which was this process before it began.
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    (line,) = (line for line in status.splitlines() if line.startswith("VmHWM:"))
+    return float(line.split()[1]) * 1024.0 / 1.0e9
 
 
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from shell_model.boom_shell import ReducedShell
+    from shell_model.krylov import KrylovOptions
 
 
 def beam_system(case: Case, boom: Boom, model: KantorovichTable | FiniteElementTable) -> GapSystem:
@@ -87,6 +88,7 @@ def reduce_shell(
         mesh_size=model.mesh_size,
         contact_line=model.contact_line,
         surface=SurfaceOptions(model.surface_points or POINTS, model.surface_stiffness),
+        krylov=_krylov(model),
         mesh_folder=mesh_folder,
     )
     laws, lateral = contact_laws(case, model), lateral_laws(case, model)
@@ -95,6 +97,14 @@ def reduce_shell(
         return compute()
     content = (boom, laws, lateral, replace(options, mesh_folder=None))
     return remembered(cache, content, comm, mesh_folder, compute)
+
+
+def _krylov(model: ShellTable) -> KrylovOptions:
+    from shell_model.krylov import KrylovOptions
+
+    if model.modes == "auto":
+        return KrylovOptions(tolerance=model.tolerance)
+    return KrylovOptions(most=model.modes)
 
 
 def damped(system: GapSystem, table: DampingTable) -> GapSystem:

@@ -36,6 +36,9 @@ Array = npt.NDArray[np.float64]
 
 RADIUS = 0.8
 
+# How often a motion looks whether its energies can be trusted.
+_CHECKS = 20
+
 
 @dataclass(frozen=True, slots=True)
 class FullShell:
@@ -167,20 +170,34 @@ def integrate_directly(
         SegmentStepper(shell, load, _rows(resisting, number, shell), alpha)
         for number, (shell, load) in enumerate(zip(full.shells, full.loads, strict=True))
     ]
-    observers = [
-        _rows(list(full.observers.values()), number, shell)
-        for number, shell in enumerate(full.shells)
-    ]
+    try:
+        return _march(full, alpha, steppers, outputs, substeps, energy_bound, progress)
+    finally:
+        for stepper in steppers:
+            stepper.destroy()
+
+
+def _march(
+    full: FullShell,
+    alpha: GeneralisedAlpha,
+    steppers: Sequence[SegmentStepper],
+    outputs: int,
+    substeps: int,
+    energy_bound: float,
+    progress: Callable[[float], None] | None,
+) -> DirectMotion:
+    """Make ``substeps`` steps for each of the outputs."""
     rows = ResistingRows(
         [contact.law for contact in full.contacts],
         [friction.law for friction in full.frictions],
-        np.sum([one.compliance for one in steppers], axis=0),
+        np.sum([stepper.compliance for stepper in steppers], axis=0),
         1.0 / (1.0 - alpha.force_shift),
     )
-
-    m = len(full.contacts)
-    observed = np.zeros((outputs + 1, len(full.observers)))
-    means = np.zeros((outputs + 1, len(resisting)))
+    readings = list(full.observers.values())
+    observers = [_rows(readings, number, shell) for number, shell in enumerate(full.shells)]
+    contacts = len(full.contacts)
+    observed = np.zeros((outputs + 1, len(readings)))
+    means = np.zeros((outputs + 1, contacts + len(full.frictions)))
     slides = np.zeros((outputs + 1, len(full.frictions)))
     energies = np.zeros((outputs + 1, len(ENERGIES)))
     energies[0, 2] = rows.contact_energy
@@ -188,28 +205,26 @@ def integrate_directly(
         for _ in range(substeps):
             for stepper in steppers:
                 stepper.free_response()
-            free = full.comm.allreduce(np.sum([one.read() for one in steppers], axis=0))
-            forces = rows.forces(free)
+            read = np.sum([stepper.read() for stepper in steppers], axis=0)
+            forces = rows.forces(full.comm.allreduce(read))
             for stepper in steppers:
                 stepper.push(forces)
             means[k] += forces / substeps
         parts = zip(observers, steppers, strict=True)
-        observed[k] = full.comm.allreduce(np.sum([r @ one.displacement() for r, one in parts], 0))
-        energies[k, [0, 1, 3]] = np.sum([one.energies() for one in steppers], axis=0)
+        seen = np.sum([row @ stepper.displacement() for row, stepper in parts], axis=0)
+        observed[k] = full.comm.allreduce(seen)
+        slides[k] = rows.readings[contacts:]
+        energies[k, [0, 1, 3]] = np.sum([stepper.energies() for stepper in steppers], axis=0)
         energies[k, [2, 5]] = rows.contact_energy, rows.friction_loss
-        slides[k] = rows.readings[m:]
-        if k % max(1, outputs // 20) == 0:
+        if k == outputs or k % max(1, outputs // _CHECKS) == 0:
             check_energy(energies[: k + 1], alpha.step, energy_bound)
         if progress is not None:
             progress(k / outputs)
-    check_energy(energies, alpha.step, energy_bound)
-    for stepper in steppers:
-        stepper.destroy()
     return DirectMotion(
-        time=output_step * np.arange(outputs + 1),
+        time=substeps * alpha.step * np.arange(outputs + 1),
         observed=dict(zip(full.observers, observed.T, strict=True)),
-        contact_forces=means[:, :m],
-        friction_forces=-means[:, m:],
+        contact_forces=means[:, :contacts],
+        friction_forces=-means[:, contacts:],
         slides=slides,
         energies=energies,
         step=alpha.step,

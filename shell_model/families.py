@@ -46,7 +46,7 @@ class _Compact(Matrices):
     """Matrices of one rank without the zeros that the pattern of their forms has.
 
     A plane wall's motions in its plane and across it do not know of each other, nor does the mass
-    of one component of another; factors that know this are smaller by half.
+    of one component of another: with these zeros factors would hold them too.
     """
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
@@ -24,7 +25,6 @@ from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from geometry.solid_mesh import mesh_quarter
 from runs.studies.motions import SLOW
-from shell_model.eigenmodes import natural_modes
 from shell_model.families import Folding
 from shell_model.krylov import KrylovOptions, reduce_family
 from shell_model.mirror import ALONG_Z, BREATHING, TWISTING, Family
@@ -49,12 +49,12 @@ TAIL, TIP = 1.5, 3.5
 SPEED = 1.0  # m/s
 CLEARANCE = 2.0e-3  # m
 # Of the contact, over the thickness of the walls, in N/m²: as stiff as the boxes are themselves.
-CONTACT = 2.5e10
+CONTACT = 1.0e10
 AFTER = 1.0e-2  # s
 OUTPUT_STEP = 1.0e-5  # s
 
 # Up to the frequencies of a blow of some milliseconds.
-KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=3)
+KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
 
 class Probe(NamedTuple):
@@ -87,6 +87,19 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 )
 
 
+class Answers(NamedTuple):
+    """What is measured of a family.
+
+    Args:
+        frequency: the lowest of its elastic modes, in Hz.
+        compliances: name of a probe → what a unit force on it moves it by at ``SLOW``, in m/N, or
+            rad/(N·m).
+    """
+
+    frequency: float
+    compliances: Mapping[str, float]
+
+
 @dataclass(frozen=True, slots=True)
 class Part:
     """A family of a segment's motions.
@@ -99,18 +112,30 @@ class Part:
     model: Shell
     rows: Mapping[str, Array]
 
-    def lowest_frequency(self) -> float:
-        """Of the elastic modes, in Hz."""
-        rigid = self.model.rigid_motions().shape[1]
-        return float(natural_modes(self.model, rigid + 1).frequencies[-1])
-
-    def compliance(self, what: str) -> float:
-        """What a unit force on a probe moves it by, at ``SLOW``, in m/N, or rad/(N·m)."""
-        row = self.rows[what][:, None]
-        solve = ShiftedSolver(self.model, SLOW)
-        moved = float((row.T @ solve(row))[0, 0])
+    def measure(self) -> Answers:
+        """The lowest elastic frequency, and what each probe gives way, by one factorisation."""
+        model = self.model
+        solve = ShiftedSolver(model, SLOW)
+        inverse, mass, stiffness = (
+            LinearOperator(
+                (model.num_dofs,) * 2, matvec=lambda u, of=of: of(u.reshape(-1, 1))[:, 0]
+            )
+            for of in (solve, partial(times, model.mass), partial(times, model.stiffness))
+        )
+        rigid = model.rigid_motions().shape[1]
+        # At a negative shift the matrix is positive definite, whatever motions are rigid.
+        omega2 = eigsh(
+            stiffness,
+            rigid + 1,
+            mass,
+            sigma=-solve.sigma,
+            OPinv=inverse,
+            v0=np.sin(np.arange(model.num_dofs)) * model.free,
+            return_eigenvectors=False,
+        )
+        moved = {what: float(row @ inverse(row)) for what, row in self.rows.items()}
         solve.destroy()
-        return moved
+        return Answers(float(np.sqrt(omega2.max()) / (2.0 * np.pi)), moved)
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,13 +146,14 @@ class Blow:
         time: (num_times,) in s.
         force: (num_times,) at the contact in N.
         tip: (num_times,) rise of the inner box's tip in m.
-        compliance_error: of the reduction, the worst of both boxes.
+        reduction_error: of what the force moves at the contact and at the tip, the worst of both
+            boxes.
     """
 
     time: Array
     force: Array
     tip: Array
-    compliance_error: float
+    reduction_error: float
 
     @property
     def peak(self) -> float:
@@ -185,12 +211,14 @@ def solid_parts(
     segment: Segment,
     probes: Sequence[Probe],
     along: tuple[float, float],
-    edges: int,
+    around: float,
+    splits: int,
     layers: int = 2,
 ) -> dict[Family, Part]:
     """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
     assert segment.section is not None
-    mesh = mesh_quarter(segment.section, _places(segment, probes), along, edges, layers)
+    places = _places(segment, probes)
+    mesh = mesh_quarter(segment.section, places, along, around, splits, layers)
     parts = {}
     for family in dict.fromkeys(probe.family for probe in probes):
         model = assemble_solid(segment, mesh, family)
@@ -213,10 +241,10 @@ def blow(outer: Part, inner: Part, wall: float) -> Blow:
         wall: thickness in m, which tells the contact's stiffness.
     """
     coordinates = []
-    for part in (outer, inner):
-        inputs = np.column_stack(list(part.rows.values()))
-        none = np.zeros((len(inputs), 0))
-        coordinates.append(reduce_family(part.model, inputs, none, KRYLOV, lambda done: None))
+    for part, struck_at in ((outer, "head"), (inner, "struck")):
+        push = part.rows[struck_at][:, None]
+        read = np.column_stack(list(part.rows.values()))
+        coordinates.append(reduce_family(part.model, push, read, KRYLOV, lambda done: None))
     head, struck = coordinates[0].shapes, coordinates[1].shapes
     up = np.zeros((len(struck), 1))
     up[inner.model.node_dofs[:, 2]] = SPEED
@@ -238,7 +266,7 @@ def blow(outer: Part, inner: Part, wall: float) -> Blow:
         motion.time,
         np.asarray(motion.data["contact_force"].values[:, 0]),
         np.asarray(motion.data["tip"].values),
-        max(part.compliance_error for part in coordinates),
+        max(max(part.compliance_error, part.reading_error) for part in coordinates),
     )
 
 

@@ -32,7 +32,7 @@ def test_the_quarter_has_a_quarter_of_the_volume_and_of_both_second_moments(laye
 
     A shell's mid-surfaces have the same area, and less second moment: by tw h tf²/2 about y.
     """
-    mesh = mesh_quarter(BOX, PLACES, (0.02, 0.3), 3, layers)
+    mesh = mesh_quarter(BOX, PLACES, (0.02, 0.3), 0.05, 2, layers)
     parts = volumes(mesh)
     assert (parts > 0.0).all()
     assert parts.sum() == pytest.approx(0.25 * BOX.area * 2.0, rel=1.0e-12)
@@ -51,7 +51,7 @@ def test_the_quarter_has_a_quarter_of_the_volume_and_of_both_second_moments(laye
 
 def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places() -> None:
     """Reference: analytic."""
-    mesh = mesh_quarter(BOX, PLACES, (0.02, 0.3), 3)
+    mesh = mesh_quarter(BOX, PLACES, (0.02, 0.3), 0.05)
     x, y, z = mesh.planes
     for plane, places in ((x, PLACES), (y, (0.0, 0.14, 0.15, 0.16)), (z, (0.0, 0.185, 0.2, 0.215))):
         for place in places:
@@ -61,9 +61,15 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
         beside = np.abs(0.5 * (x[1:] + x[:-1]) - place) < 0.6 * edges
         assert edges[beside].max() < 0.02 * (1.0 + 1.0e-12)
     assert 0.1 < edges.max() < 0.3
-    assert (edges[1:] / edges[:-1]).max() < 2.0 + 1.0e-9
+    assert (edges[1:] / edges[:-1]).max() < 4.0 + 1.0e-9
     assert len(mesh.points) == mesh.hexahedra.max() + 1
-    assert y.size == z.size == 3 + 2 + 1
+    for plane, wall in ((y, BOX.web), (z, BOX.flange)):
+        around = np.diff(plane)
+        assert (around[:-3] >= around[1:-2] - 1.0e-12).all()
+        assert 0.5 * wall < around[-3] < 1.0001 * wall
+        assert around.max() < 0.05
+    split = mesh_quarter(BOX, PLACES, (0.02, 0.3), 0.05, splits=2)
+    assert split.planes[1][:-2:2] == pytest.approx(y[:-2], abs=1.0e-12)
 
 
 @pytest.mark.parametrize(
@@ -77,12 +83,13 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
             {"along": (0.2, 0.1)},
             "the lengths along x must be positive numbers of m, rising, got (0.2, 0.1)",
         ),
-        ({"edges": 0}, "there must be an edge or more to a corner, got 0"),
+        ({"around": 0.0}, "the length around must be a positive number of m, got 0.0"),
+        ({"splits": 0}, "an edge must be split into 1 or more, got 0"),
         ({"layers": 3}, "the layers must be an even number from 2 on, got 3"),
         ({"places": (1.0, 1.0)}, "a segment needs two distinct places at least, its ends"),
     ],
 )
 def test_refuses_what_cannot_be_meshed(changes: dict[str, object], message: str) -> None:
-    arguments = {"places": PLACES, "along": (0.1, 0.2), "edges": 2, "layers": 2, **changes}
+    arguments = {"places": PLACES, "along": (0.1, 0.2), "around": 0.1, "layers": 2, **changes}
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         mesh_quarter(BOX, **arguments)  # type: ignore[arg-type]

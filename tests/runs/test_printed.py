@@ -12,7 +12,7 @@ import xarray as xr
 from rich.console import Console
 
 from runs import case as case_file
-from runs.printed import decisive, print_verdicts
+from runs.printed import decisive, print_models, print_verdicts
 from runs.results import Results
 from runs.statements import STATEMENTS, Judgement, Verdict
 
@@ -72,3 +72,18 @@ def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
 def test_runs_without_a_series_judge_nothing() -> None:
     beams = case_file.select(RUNS["paper"].case, "", ["beam-fe"])
     assert printed({"beams": replace(RUNS["paper"], case=beams)}) == ""
+
+
+def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
+    summary = {"models": {"shell": {"modes": 110, "reduction_errors": errors}}}
+    results = replace(RUNS["paper"], summary=summary)
+    monkeypatch.setattr("runs.printed.model_rows", lambda results: [])
+    monkeypatch.setattr(Results, "cautions", lambda self: [])
+    console = Console(file=StringIO(), width=160)
+    print_models(results, console)
+    assert isinstance(console.file, StringIO)
+    assert console.file.getvalue().splitlines()[-1] == (
+        "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
+        "head within 8 × 10⁻⁷"
+    )
