@@ -22,29 +22,21 @@ _ROUND_OFF = 1.0e-13
 
 _ROUNDS = 200
 
-# Scratch: a Cholesky factor (num_rows, num_rows), changes (num_rows,), the rows between their
-# bounds (num_rows,).
-Scratch = tuple[Array, Array, npt.NDArray[np.int64]]
+# Rows of a problem (``num_rows`` columns each): the slip c without impulses, bounds low ≤ high, the
+# round-off of c, in which rows that depend on one another may contradict themselves, the impulses;
+# what the solution needs besides: their changes, which rows are between their bounds, and from
+# ``_FACTOR`` on a Cholesky factor. One array, since each that is handed on costs as much as a sum.
+FREE, LOW, HIGH, NOISE, IMPULSE, _CHANGE, _INNER, _FACTOR = range(8)
 
 
-def scratch(num_rows: int) -> Scratch:
-    """Scratch for so many rows."""
-    return np.zeros((num_rows, num_rows)), np.zeros(num_rows), np.zeros(num_rows, dtype=np.int64)
+def problem_for(num_rows: int) -> Array:
+    """A problem of so many rows."""
+    return np.zeros((_FACTOR + num_rows, num_rows))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def bounded_impulses(
-    matrix: Array,
-    free: Array,
-    low: Array,
-    high: Array,
-    noise: Array,
-    impulse: Array,
-    factor: Array,
-    change: Array,
-    inner: npt.NDArray[np.int64],
-) -> bool:
-    """Improve ``impulse`` (num_rows,) until it solves the problem; False if it nearly does.
+def bounded_impulses(matrix: Array, problem: Array) -> bool:
+    """Improve the impulses, a guess, until they solve the problem; False if they nearly do.
 
     Rounds of a Gauss-Seidel sweep, which finds the rows that leave their bounds (it needs one round
     where these are the ones of the guess), and exact solutions for the others, in which a row
@@ -52,115 +44,108 @@ def bounded_impulses(
 
     Args:
         matrix: (num_rows, num_rows) G.
-        free: (num_rows,) c, the slip without impulses.
-        low, high: (num_rows,) bounds, low ≤ high.
-        noise: (num_rows,) round-off of ``free``, in which rows that depend on one another may
-            contradict themselves.
-        impulse: (num_rows,) a guess.
-        factor, change, inner: :func:`scratch`.
+        problem: of :func:`problem_for`, with c, bounds, round-off and a guess.
     """
-    for j in range(free.size):
-        impulse[j] = min(max(impulse[j], low[j]), high[j])
+    size = matrix.shape[0]
+    for j in range(size):
+        problem[IMPULSE, j] = min(max(problem[IMPULSE, j], problem[LOW, j]), problem[HIGH, j])
     for _ in range(_ROUNDS):
-        for j in range(free.size):
-            if low[j] < high[j] and matrix[j, j] > 0.0:
-                moved = impulse[j] - slip(matrix, free, impulse, j) / matrix[j, j]
-                impulse[j] = min(max(moved, low[j]), high[j])
+        for j in range(size):
+            if problem[LOW, j] < problem[HIGH, j] and matrix[j, j] > 0.0:
+                moved = problem[IMPULSE, j] - slip(matrix, problem, j) / matrix[j, j]
+                problem[IMPULSE, j] = min(max(moved, problem[LOW, j]), problem[HIGH, j])
         part = 0.0
         while part < 1.0:
             count = 0
-            for j in range(free.size):
-                if low[j] < impulse[j] < high[j] and matrix[j, j] > 0.0:
-                    inner[count] = j
+            for j in range(size):
+                inside = problem[LOW, j] < problem[IMPULSE, j] < problem[HIGH, j]
+                if inside and matrix[j, j] > 0.0:
+                    problem[_INNER, count] = j
                     count += 1
-            _newton(matrix, free, impulse, inner, count, factor, change)
-            part = _advance(low, high, impulse, inner, count, change)
-        if _solved(matrix, free, low, high, noise, impulse):
+            _newton(matrix, problem, count)
+            part = _advance(problem, count)
+        if _solved(matrix, problem):
             return True
     return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _advance(
-    low: Array,
-    high: Array,
-    impulse: Array,
-    inner: npt.NDArray[np.int64],
-    count: int,
-    change: Array,
-) -> float:
+def _advance(problem: Array, count: int) -> float:
     """Change the inner impulses until the first is at its bound; the part of the change made."""
     part = 1.0
     first = -1
     for p in range(count):
-        j = inner[p]
-        room = high[j] - impulse[j] if change[p] > 0.0 else impulse[j] - low[j]
-        if part * abs(change[p]) > room:
-            part, first = room / abs(change[p]), p
+        j = int(problem[_INNER, p])
+        change = problem[_CHANGE, p]
+        if change > 0.0:
+            room = problem[HIGH, j] - problem[IMPULSE, j]
+        else:
+            room = problem[IMPULSE, j] - problem[LOW, j]
+        if part * abs(change) > room:
+            part, first = room / abs(change), p
     for p in range(count):
-        j = inner[p]
-        impulse[j] = min(max(impulse[j] + part * change[p], low[j]), high[j])
+        j = int(problem[_INNER, p])
+        moved = problem[IMPULSE, j] + part * problem[_CHANGE, p]
+        problem[IMPULSE, j] = min(max(moved, problem[LOW, j]), problem[HIGH, j])
     if first >= 0:
-        impulse[inner[first]] = high[inner[first]] if change[first] > 0.0 else low[inner[first]]
+        j = int(problem[_INNER, first])
+        problem[IMPULSE, j] = problem[HIGH if problem[_CHANGE, first] > 0.0 else LOW, j]
     return part
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def slip(matrix: Array, free: Array, impulse: Array, j: int) -> float:
+def slip(matrix: Array, problem: Array, j: int) -> float:
     """c_j + (G p)_j."""
-    total: float = free[j]
-    for k in range(free.size):
-        total += matrix[j, k] * impulse[k]
+    total: float = problem[FREE, j]
+    for k in range(matrix.shape[0]):
+        total += matrix[j, k] * problem[IMPULSE, k]
     return total
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _newton(
-    matrix: Array,
-    free: Array,
-    impulse: Array,
-    inner: npt.NDArray[np.int64],
-    count: int,
-    factor: Array,
-    change: Array,
-) -> None:
+def _newton(matrix: Array, problem: Array, count: int) -> None:
     """The change of the inner impulses that takes their slip away, by Cholesky's method.
 
     A row that depends on those before it keeps its impulse: what stops those stops it.
     """
     for p in range(count):
-        change[p] = -slip(matrix, free, impulse, inner[p])
+        i = int(problem[_INNER, p])
+        change = -slip(matrix, problem, i)
         for q in range(p + 1):
-            total = matrix[inner[p], inner[q]]
+            total = matrix[i, int(problem[_INNER, q])]
             for k in range(q):
-                total -= factor[p, k] * factor[q, k]
+                total -= problem[_FACTOR + p, k] * problem[_FACTOR + q, k]
             if q < p:
-                factor[p, q] = total / factor[q, q] if factor[q, q] > 0.0 else 0.0
+                pivot = problem[_FACTOR + q, q]
+                problem[_FACTOR + p, q] = total / pivot if pivot > 0.0 else 0.0
             else:
-                independent = total > _DEPENDENT * matrix[inner[p], inner[p]]
-                factor[p, p] = np.sqrt(total) if independent else 0.0
+                independent = total > _DEPENDENT * matrix[i, i]
+                problem[_FACTOR + p, p] = np.sqrt(total) if independent else 0.0
         for k in range(p):
-            change[p] -= factor[p, k] * change[k]
-        change[p] = change[p] / factor[p, p] if factor[p, p] > 0.0 else 0.0
+            change -= problem[_FACTOR + p, k] * problem[_CHANGE, k]
+        pivot = problem[_FACTOR + p, p]
+        problem[_CHANGE, p] = change / pivot if pivot > 0.0 else 0.0
     for p in range(count - 1, -1, -1):
+        change = problem[_CHANGE, p]
         for k in range(p + 1, count):
-            change[p] -= factor[k, p] * change[k]
-        change[p] = change[p] / factor[p, p] if factor[p, p] > 0.0 else 0.0
+            change -= problem[_FACTOR + k, p] * problem[_CHANGE, k]
+        pivot = problem[_FACTOR + p, p]
+        problem[_CHANGE, p] = change / pivot if pivot > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _solved(
-    matrix: Array, free: Array, low: Array, high: Array, noise: Array, impulse: Array
-) -> bool:
-    for j in range(free.size):
-        if low[j] == high[j]:
+def _solved(matrix: Array, problem: Array) -> bool:
+    for j in range(matrix.shape[0]):
+        if problem[LOW, j] == problem[HIGH, j]:
             continue
-        left: float = free[j]
-        reach = abs(free[j])
-        for k in range(free.size):
-            left += matrix[j, k] * impulse[k]
-            reach += abs(matrix[j, k]) * max(-low[k], high[k])
-        small = noise[j] + _ROUND_OFF * reach
-        if (left > small and impulse[j] > low[j]) or (left < -small and impulse[j] < high[j]):
+        left: float = problem[FREE, j]
+        reach = abs(left)
+        for k in range(matrix.shape[0]):
+            left += matrix[j, k] * problem[IMPULSE, k]
+            reach += abs(matrix[j, k]) * max(-problem[LOW, k], problem[HIGH, k])
+        small = problem[NOISE, j] + _ROUND_OFF * reach
+        above = left > small and problem[IMPULSE, j] > problem[LOW, j]
+        below = left < -small and problem[IMPULSE, j] < problem[HIGH, j]
+        if above or below:
             return False
     return True

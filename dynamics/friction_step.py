@@ -19,9 +19,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.bounded_impulses import bounded_impulses, slip
+from dynamics.bounded_impulses import FREE, HIGH, IMPULSE, LOW, NOISE, bounded_impulses, slip
 from dynamics.contact_kicks import contact_forces
-from dynamics.integrator_state import BOUND, HELD, IMPULSE, PLACE, SLIDING, SPEED
+from dynamics.integrator_state import BOUND, HELD, MIDDLE, PLACE, REST, SLIDING, SPEED
 
 Array = npt.NDArray[np.float64]
 
@@ -29,12 +29,13 @@ _EPSILON = 2.0 * float(np.finfo(np.float64).eps)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
-def push_rows(v: Array, rows: Array, impulse: Array) -> None:
-    """v += rowsᵀ impulse."""
+def push_rows(v: Array, rows: Array, problem: Array) -> None:
+    """v += rowsᵀ p."""
     for j in range(rows.shape[0]):
-        if impulse[j] != 0.0:
+        impulse = problem[IMPULSE, j]
+        if impulse != 0.0:
             for i in range(v.size):
-                v[i] += rows[j, i] * impulse[j]
+                v[i] += rows[j, i] * impulse
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
@@ -61,7 +62,14 @@ def round_off(row_masses: Array, a: Array, noise: Array) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def sliding_bounds(
+def prescribed_bounds(given: Array, time: float, grip: Array) -> None:
+    """h μ N of every row by its prescribed N, in N·s."""
+    for j in range(given.shape[1]):
+        grip[BOUND, j] = time * given[0, j] * given[1, j]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def add_pressed_bounds(
     ahead: Array,
     v: Array,
     contact_rows: Array,
@@ -72,29 +80,26 @@ def sliding_bounds(
     time: float,
     y: Array,
     force: Array,
-    bound: Array,
+    grip: Array,
 ) -> None:
-    """h μ N of every row: μ times the contact impulses of the step, and the prescribed part.
+    """Add μ times the contact impulses of the step to the bounds of the rows that they press.
 
     Args:
         ahead: (num_modes,) modes at the end of the step but for friction.
         v: (num_modes,) their speeds in its middle.
         push: (num_rows,) contact forces at its start in N.
         y, force: (num_rows,) scratch.
-        bound: (num_frictions,) is set, in N·s.
     """
-    for j in range(bound.size):
-        bound[j] = given[1, j]
-    if pressing.size > 0:
-        contact_forces(ahead, contact_rows, law, y, force)
-        for k in range(force.size):
-            if law[4, k] > 0.0 and force[k] != 0.0:
-                rate = np.sign(force[k]) * np.dot(contact_rows[k], v)
-                force[k] *= max(0.0, 1.0 + law[4, k] * rate)
-            for j in range(bound.size):
-                bound[j] += pressing[j, k] * 0.5 * (abs(push[k]) + abs(force[k]))
-    for j in range(bound.size):
-        bound[j] *= time * given[0, j]
+    contact_forces(ahead, contact_rows, law, y, force)
+    for k in range(force.size):
+        if law[4, k] > 0.0 and force[k] != 0.0:
+            rate = 0.0
+            for i in range(v.size):
+                rate += contact_rows[k, i] * v[i]
+            force[k] *= max(0.0, 1.0 + law[4, k] * np.sign(force[k]) * rate)
+        impulse = 0.5 * time * (abs(push[k]) + abs(force[k]))
+        for j in range(given.shape[1]):
+            grip[BOUND, j] += given[0, j] * pressing[j, k] * impulse
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
@@ -106,104 +111,83 @@ def look_ahead(a: Array, v: Array, half: Array, ahead: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rub(
-    v: Array,
-    filtered: Array,
-    matrix: Array,
-    free: Array,
-    noise: Array,
-    grip: Array,
-    impulse: Array,
-    low: Array,
-    bound: Array,
-    factor: Array,
-    change: Array,
-    inner: npt.NDArray[np.int64],
-    time: float,
+    v: Array, filtered: Array, matrix: Array, grip: Array, problem: Array, time: float
 ) -> float:
     """The impulses in the middle of a step of ``time``; gives the friction loss in J.
 
     Args:
-        free: (num_frictions,) s_free in m, its round-off in ``noise``.
-        impulse, bound: (num_frictions,) those of ``grip``.
-        low, factor, change, inner: scratch.
+        problem: (…, num_frictions) with s_free in m and its round-off; the guess and the bounds
+            are those of ``grip``.
     """
-    for j in range(free.size):
-        low[j] = -bound[j]
-    bounded_impulses(matrix, free, low, bound, noise, impulse, factor, change, inner)
+    size = matrix.shape[0]
+    for j in range(size):
+        problem[HIGH, j] = grip[BOUND, j]
+        problem[LOW, j] = -grip[BOUND, j]
+        problem[IMPULSE, j] = grip[MIDDLE, j]
+    bounded_impulses(matrix, problem)
     loss = 0.0
-    for j in range(free.size):
-        way = slip(matrix, free, impulse, j)
-        inside = abs(impulse[j]) < bound[j] or (bound[j] > 0.0 and abs(way) <= noise[j])
+    for j in range(size):
+        impulse, bound = problem[IMPULSE, j], grip[BOUND, j]
+        way = slip(matrix, problem, j)
+        inside = abs(impulse) < bound or (bound > 0.0 and abs(way) <= problem[NOISE, j])
+        grip[MIDDLE, j] = impulse
         grip[HELD, j] = 1.0 if inside else 0.0
         if not inside:
             grip[PLACE, j] += way
-            loss -= impulse[j] * way / time
-    push_rows(v, filtered, impulse)
+            loss -= impulse * way / time
+    push_rows(v, filtered, problem)
     return loss
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def settle(
-    v: Array,
-    rows: Array,
-    masses: Array,
-    raw: Array,
-    noise: Array,
-    grip: Array,
-    rest: Array,
-    low: Array,
-    high: Array,
-    factor: Array,
-    change: Array,
-    inner: npt.NDArray[np.int64],
-) -> float:
+def settle(v: Array, rows: Array, masses: Array, grip: Array, problem: Array) -> float:
     """Take the speed of held rows at the end of a step; gives the friction loss in J.
 
     Args:
-        raw: (num_frictions,) the rows' speeds in m/s, their round-off in ``noise``.
-        rest: (num_frictions,) of ``grip``.
-        low, high, factor, change, inner: scratch.
+        problem: (…, num_frictions) with the rows' speeds in m/s and their round-off; the impulses
+            that it leaves are kept in ``grip``.
     """
+    size = masses.shape[0]
     holding = False
-    for j in range(raw.size):
-        bound, impulse, held = grip[BOUND, j], grip[IMPULSE, j], grip[HELD, j]
-        rest[j] = 0.0
-        low[j] = held * min(-bound - impulse, 0.0)
-        high[j] = held * max(bound - impulse, 0.0)
+    for j in range(size):
+        bound, impulse, held = grip[BOUND, j], grip[MIDDLE, j], grip[HELD, j]
+        problem[IMPULSE, j] = grip[REST, j] = 0.0
+        problem[LOW, j] = held * min(-bound - impulse, 0.0)
+        problem[HIGH, j] = held * max(bound - impulse, 0.0)
         holding = holding or held > 0.0
     if not holding:
         return 0.0
-    bounded_impulses(masses, raw, low, high, noise, rest, factor, change, inner)
-    push_rows(v, rows, rest)
+    bounded_impulses(masses, problem)
+    push_rows(v, rows, problem)
     loss = 0.0
-    for j in range(raw.size):
-        loss -= rest[j] * 0.5 * (raw[j] + slip(masses, raw, rest, j))
+    for j in range(size):
+        grip[REST, j] = problem[IMPULSE, j]
+        loss -= problem[IMPULSE, j] * 0.5 * (problem[FREE, j] + slip(masses, problem, j))
     return loss
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def note_directions(
-    masses: Array, raw: Array, noise: Array, grip: Array, rest: Array, slid: Array, before: Array
-) -> bool:
+def note_directions(masses: Array, grip: Array, problem: Array, before: Array) -> bool:
     """Note speeds and directions of the rows at the end of a step; whether a direction changed.
 
     Args:
-        slid, before: (num_frictions,) are set to the directions and speeds at its start.
+        problem: as :func:`settle` leaves it.
+        before: (2, num_frictions) is set to the directions and speeds at its start.
     """
     changed = False
-    for j in range(raw.size):
-        slid[j], before[j] = grip[SLIDING, j], grip[SPEED, j]
-        after = slip(masses, raw, rest, j)
-        still = grip[HELD, j] > 0.0 or abs(after) <= noise[j]
+    for j in range(masses.shape[0]):
+        before[0, j], before[1, j] = grip[SLIDING, j], grip[SPEED, j]
+        after = slip(masses, problem, j)
+        still = grip[HELD, j] > 0.0 or abs(after) <= problem[NOISE, j]
         grip[SPEED, j] = after
         grip[SLIDING, j] = 0.0 if still else np.sign(after)
-        changed = changed or grip[SLIDING, j] != slid[j]
+        changed = changed or grip[SLIDING, j] != before[0, j]
     return changed
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_turns(
-    masses: Array, raw: Array, grip: Array, slid: Array, before: Array, time: float, turns: Array
+    masses: Array, grip: Array, problem: Array, before: Array, time: float, turns: Array
 ) -> float:
     """When in a step of ``time`` the first row turned, infinity if none did.
 
@@ -212,13 +196,16 @@ def find_turns(
     left it with. ``turns`` (num_frictions,) is set, to infinity where a row did not.
     """
     first = np.inf
-    for j in range(raw.size):
-        straight = raw[j]
-        for k in range(raw.size):
-            if slid[k] != 0.0:
-                straight -= masses[j, k] * (slid[k] * grip[BOUND, k] + grip[IMPULSE, k])
+    size = masses.shape[0]
+    for j in range(size):
+        slid, speed = before[0, j], before[1, j]
+        straight = problem[FREE, j]
+        for k in range(size):
+            if before[0, k] != 0.0:
+                kept = before[0, k] * grip[BOUND, k] + grip[MIDDLE, k]
+                straight -= masses[j, k] * kept
         turns[j] = np.inf
-        if grip[BOUND, j] > 0.0 and grip[SLIDING, j] != slid[j] and straight * slid[j] < 0.0:
-            turns[j] = time * before[j] / (before[j] - straight)
+        if grip[BOUND, j] > 0.0 and grip[SLIDING, j] != slid and straight * slid < 0.0:
+            turns[j] = time * speed / (speed - straight)
             first = min(first, turns[j])
     return first

@@ -31,7 +31,7 @@ _TALLY = 8
 # What is known of each friction row, the rows of ``grip`` (7, num_frictions): where it is, or was
 # when it came to rest, in m; its speed in m/s; 1 or -1 while it slides, 0 at rest; the impulse in
 # the middle of the last step in N·s, its bound, and the impulse at its end; 1 if it was held.
-PLACE, SPEED, SLIDING, IMPULSE, BOUND, REST, HELD = range(7)
+PLACE, SPEED, SLIDING, MIDDLE, BOUND, REST, HELD = range(7)
 _GRIP = 7
 
 # All that a step changes, in one array; its parts a, v (num_modes,), y and elastic contact forces
@@ -104,7 +104,7 @@ def look(a: Array, v: Array, rows: Array, grip: Array) -> None:
     grip[SLIDING] = np.sign(grip[SPEED])
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(cache=True, nogil=True, error_model="numpy")
 def enter(y: Array, before: Array, law: Array, time: float, tally: Array) -> None:
     """Enter a step of ``time`` that has been made: contact changes, the first contact."""
     tally[TIME] += time

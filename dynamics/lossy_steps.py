@@ -7,25 +7,25 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.bounded_impulses import scratch
+from dynamics.bounded_impulses import FREE, NOISE, problem_for
 from dynamics.contact_kicks import contact_forces, damped_kick
 from dynamics.friction_step import (
+    add_pressed_bounds,
     filter_rows,
     find_turns,
     look_ahead,
     note_directions,
+    prescribed_bounds,
     round_off,
     rub,
     settle,
-    sliding_bounds,
 )
 from dynamics.gap_system import GapSystem
 from dynamics.integrator_state import (
-    BOUND,
     CONTACT,
     DAMPING,
     FRICTION,
-    IMPULSE,
+    MIDDLE,
     PLACE,
     REST,
     SLIDING,
@@ -38,7 +38,7 @@ from dynamics.integrator_state import (
     excite,
     read,
 )
-from dynamics.modal_flow import drive, tabulate, travel
+from dynamics.modal_flow import drive, move, tabulate, travel
 
 Array = npt.NDArray[np.float64]
 
@@ -47,16 +47,16 @@ _TOGETHER = 1.0e-9
 
 # A length of step in s (1,), and of this the flow over its half (8, num_modes), the filtered
 # friction rows and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows),
-# friction rows (5, num_frictions), and that of bounded impulses.
-Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, npt.NDArray[np.int64]]
+# friction rows (3, num_frictions), and the problem of bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array]
 
 
 def space_for(system: GapSystem) -> Space:
     """What the steps of a system need beside its state."""
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
-    shapes = ((1,), (8, n), (f, n), (f, f), (n,), (3, m), (5, f))
+    shapes = ((1,), (8, n), (f, n), (f, f), (n,), (3, m), (3, f))
     length, half, filtered, matrix, ahead, middle, lines = (np.zeros(shape) for shape in shapes)
-    return length, half, filtered, matrix, ahead, middle, lines, *scratch(f)
+    return length, half, filtered, matrix, ahead, middle, lines, problem_for(f)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -86,10 +86,12 @@ def lossy_steps(
     friction_rows, given, pressing, masses = dry
     loads, samples, factors = excitations
     start, centre, end = factors
-    length, half, filtered, matrix, ahead, middle, lines, factor, change, inner = space
+    length, half, filtered, matrix, ahead, middle, lines, problem = space
     push, y_ahead, force_ahead = middle
-    slips, low, high, noise, turns = lines
-    bound, impulse, rest = grip[BOUND], grip[IMPULSE], grip[REST]
+    slid, turns = lines[:2], lines[2]
+    slips, noise = problem[FREE], problem[NOISE]
+    pressed = pressing.any()
+    plain = not damped and loads.shape[0] == 0
     for k in range(first, last):
         left = step
         parts = 0
@@ -109,27 +111,36 @@ def lossy_steps(
                 loss = damped_kick(v, rows, force, law, 0.5 * time, False, push)
                 for j in range(y.size):
                     mean[j] += share * push[j]
-                work, lost = travel(
-                    a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre
-                )
+                if plain:
+                    move(a, v, half)
+                else:
+                    work, lost = travel(
+                        a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre
+                    )
+                    tally[WORK] += work
+                    tally[DAMPING] += lost
 
                 look_ahead(a, v, half, ahead)
                 drive(ahead, half, loads, centre, end)
-                sliding_bounds(
-                    ahead, v, rows, law, push, pressing, given, time, y_ahead, force_ahead, bound
-                )
+                prescribed_bounds(given, time, grip)
+                if pressed:
+                    add_pressed_bounds(
+                        ahead, v, rows, law, push, pressing, given, time, y_ahead, force_ahead, grip
+                    )
                 read(friction_rows, ahead, slips)
                 round_off(masses, ahead, noise)
                 for j in range(friction.size):
                     slips[j] -= grip[PLACE, j]
-                tally[FRICTION] += rub(
-                    v, filtered, matrix, slips, noise, grip, impulse, low, bound,
-                    factor, change, inner, time,
-                )  # fmt: skip
+                tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
 
-                more = travel(a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end)
-                tally[WORK] += work + more[0]
-                tally[DAMPING] += lost + more[1]
+                if plain:
+                    move(a, v, half)
+                else:
+                    work, lost = travel(
+                        a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end
+                    )
+                    tally[WORK] += work
+                    tally[DAMPING] += lost
                 contact_forces(a, rows, law, y, force)
                 loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
                 tally[CONTACT] += loss
@@ -140,18 +151,15 @@ def lossy_steps(
 
                 read(friction_rows, v, slips)
                 round_off(masses, v, noise)
-                tally[FRICTION] += settle(
-                    v, friction_rows, masses, slips, noise, grip, rest, low, high,
-                    factor, change, inner,
-                )  # fmt: skip
+                tally[FRICTION] += settle(v, friction_rows, masses, grip, problem)
                 for j in range(friction.size):
-                    friction[j] += (impulse[j] + rest[j]) / (substeps * step)
-                changed = note_directions(masses, slips, noise, grip, rest, low, high)
+                    friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
+                changed = note_directions(masses, grip, problem, slid)
                 enter(y, before, law, time, tally)
 
                 if cut or not changed or parts > 2 * friction.size:
                     break
-                first_turn = find_turns(masses, slips, grip, low, high, time, turns)
+                first_turn = find_turns(masses, grip, problem, slid, time, turns)
                 if not 0.0 < first_turn < left:
                     break
                 for i in range(whole.size):

@@ -187,21 +187,14 @@ def travel(
     now: Array,
     then: Array,
 ) -> tuple[float, float]:
-    """Move the modes over ``time``; gives the work of the excitations and the damping loss in J.
+    """:func:`move`, with excitations; gives their work and the damping loss in J.
 
     Args:
         loads: (num_excitations, num_modes).
         now, then: (num_excitations,) their factors at the start and at the end.
     """
-    if not damped and loads.shape[0] == 0:
-        move(a, v, flow)
-        return 0.0, 0.0
     held = _energy_under_load(a, v, omega2, load)
-    work = 0.0
-    if loads.shape[0] > 0:
-        work = _driven_move(a, v, flow, time, loads, now, then)
-    else:
-        move(a, v, flow)
+    work = _driven_move(a, v, flow, time, loads, now, then)
     if not damped:
         return work, 0.0
     return work, held + work - _energy_under_load(a, v, omega2, load)

@@ -19,8 +19,9 @@ from geometry.section import BoxSection
 
 Array = npt.NDArray[np.float64]
 
-# Of an edge over the one before it.
-_GROWTH = 4.0
+# Of an edge over the one before it: what ends at a place fades slower than what ends in a corner.
+_GROWTH_ALONG = 3.0
+_GROWTH_AROUND = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,7 @@ def mesh_quarter(
         raise ValueError("a segment needs two distinct places at least, its ends")
     spans = []
     for length in np.diff(ends):
-        half = _growing(0.5 * length, *along)
+        half = _growing(0.5 * length, *along, _GROWTH_ALONG)
         spans += [half, half[::-1]]
     planes = (
         ends[0] + np.concatenate([[0.0], np.cumsum(np.concatenate(spans))]),
@@ -90,17 +91,17 @@ def mesh_quarter(
     return SolidMesh(points, hexahedra, planes, layers)
 
 
-def _growing(length: float, smallest: float, largest: float) -> Array:
+def _growing(length: float, smallest: float, largest: float, growth: float) -> Array:
     """Edges of a length, each longer than the one before until they are the largest."""
     edges = [min(smallest, largest)]
     while sum(edges) < length:
-        edges.append(min(_GROWTH * edges[-1], largest))
+        edges.append(min(growth * edges[-1], largest))
     return np.array(edges) * (length / sum(edges))
 
 
 def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
     """Planes from the middle to the outside of a wall, whose mid-line is at half the distance."""
-    clear = _growing(0.5 * (distance - wall), wall, size)[::-1]
+    clear = _growing(0.5 * (distance - wall), wall, size, _GROWTH_AROUND)[::-1]
     edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
     return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
 

@@ -49,7 +49,7 @@ class Sizes:
     walls: Sequence[float] = tuple(np.geomspace(0.004, 0.04, 4).round(4).tolist())
     triangles: Sequence[float] = (0.05, 0.025, 0.0125)
     splits: Sequence[int] = (1, 2, 4)
-    along: tuple[float, float] = (0.0125, 0.25)
+    along: tuple[float, float] = (0.0125, 0.2)
     around: float = 0.1
 
 
@@ -110,7 +110,7 @@ COMPLIANCES = (
         1,
         BREATHING,
         "tail squeeze",
-        allowed=0.03,
+        allowed=0.04,
     ),
 )
 
@@ -141,7 +141,7 @@ class Comparison:
     Args:
         wall: in m.
         shell, solid: of each quantity.
-        blows: of the shell and of the solid, on the finest mesh.
+        blows: of the shell and of the solid, on the finest mesh but one.
     """
 
     wall: float
@@ -190,14 +190,15 @@ _Size = TypeVar("_Size")
 def _refined(
     wall: float, sizes: Sequence[_Size], parts_of: Callable[[int, _Size], Mapping[Family, Part]]
 ) -> tuple[dict[Measured, Values], Blow]:
-    """Every quantity on every mesh, and the blow on the finest."""
+    """Every quantity on every mesh, and the blow on the finest but one."""
     values: dict[Measured, list[float]] = {what: [] for what in FREQUENCIES + COMPLIANCES}
     for size in sizes:
         parts = parts_of(0, size), parts_of(1, size)
         measured = answers(parts)
         for what, found in values.items():
             found.append(what.of(measured))
-    struck = blow(parts[0][ALONG_Z], parts[1][ALONG_Z], wall)
+        if size == sizes[-2]:
+            struck = blow(parts[0][ALONG_Z], parts[1][ALONG_Z], wall)
     return {what: Values(found) for what, found in values.items()}, struck
 
 

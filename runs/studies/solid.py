@@ -146,7 +146,7 @@ def blow_table(comparisons: Sequence[Comparison]) -> TextTable:
         ("walls", "shell", "solid", "difference (%)"),
         rows,
         (
-            f"The inner box rises at {SPEED:g} m/s and hits the head from within. Finest meshes; "
+            f"The inner box rises at {SPEED:g} m/s and hits the head from within. Middle meshes; "
             f"the reductions err by {worst:.1e} at most.",
         ),
         name="solid-blow",

@@ -7,7 +7,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from dynamics.bounded_impulses import bounded_impulses, scratch
+from dynamics.bounded_impulses import (
+    FREE,
+    HIGH,
+    IMPULSE,
+    LOW,
+    NOISE,
+    bounded_impulses,
+    problem_for,
+)
 
 pytestmark = pytest.mark.quick
 
@@ -15,10 +23,11 @@ Array = npt.NDArray[np.float64]
 
 
 def solve(matrix: Array, free: Array, bound: Array, guess: Array) -> Array:
-    noise = 1e-15 * np.sqrt(np.diag(matrix)) * np.abs(free).max()
-    impulse = guess.copy()
-    assert bounded_impulses(matrix, free, -bound, bound, noise, impulse, *scratch(free.size))
-    return impulse
+    problem = problem_for(free.size)
+    problem[FREE], problem[LOW], problem[HIGH], problem[IMPULSE] = free, -bound, bound, guess
+    problem[NOISE] = 1e-15 * np.sqrt(np.diag(matrix)) * np.abs(free).max()
+    assert bounded_impulses(matrix, problem)
+    return problem[IMPULSE]
 
 
 def violation(matrix: Array, free: Array, bound: Array, impulse: Array) -> float:

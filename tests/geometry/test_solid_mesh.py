@@ -61,7 +61,7 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
         beside = np.abs(0.5 * (x[1:] + x[:-1]) - place) < 0.6 * edges
         assert edges[beside].max() < 0.02 * (1.0 + 1.0e-12)
     assert 0.1 < edges.max() < 0.3
-    assert (edges[1:] / edges[:-1]).max() < 4.0 + 1.0e-9
+    assert (edges[1:] / edges[:-1]).max() < 3.0 + 1.0e-9
     assert len(mesh.points) == mesh.hexahedra.max() + 1
     for plane, wall in ((y, BOX.web), (z, BOX.flange)):
         around = np.diff(plane)
