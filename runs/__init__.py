@@ -1,2 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Case files in, trajectories, verdicts and a report out."""
+
+import os
+
+# Before numpy reads it. Parallelism is ranks, members and points; sums that BLAS splits over threads
+# would differ in the last bit between one process and several, and contact amplifies that.
+os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the integrators cost: ``python -m runs.bench``.
+"""What the integrators cost, and what a shell does: ``python -m runs.bench``.
 
 Everything is measured in one process; methods that are compared take turns, so that what else
 the machine does falls on all of them.
@@ -30,6 +30,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrators import Events, Integrator, by_splitting
 from dynamics.splitting import integrate
 from runs import case as case_file
+from runs import scaling
 from runs.build import build_boom
 from runs.generic_solvers import (
     METHODS,
@@ -361,4 +362,6 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    bench(Sizes(), OUT, Console())
+    shown_on = Console()
+    bench(Sizes(), OUT, shown_on)
+    scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)
