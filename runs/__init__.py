@@ -3,6 +3,6 @@
 
 import os
 
-# Before numpy reads it. Parallelism is ranks, members and points; sums that BLAS splits over threads
-# would differ in the last bit between one process and several, and contact amplifies that.
+# Before numpy reads it. Parallelism is ranks, members and points; what BLAS sums over threads
+# differs in the last bit between one process and several, and contact amplifies that.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
