@@ -36,6 +36,7 @@ STUDIES = (
     "benchmarks",
     "mesh",
     "direct",
+    "solid",
     "stress",
     "surface_contact",
     "stiffeners",
