@@ -184,7 +184,7 @@ def node_places(space: Any) -> npt.NDArray[np.float64]:
     same place to the last bit on whatever rank; DOLFINx takes it from any of its cells.
     """
     geometry = space.mesh.geometry
-    corners = geometry.dofmap if hasattr(geometry, "dofmap") else geometry.dofmaps[0]
+    corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
     corners = np.asarray(getattr(corners, "array", corners)).reshape(-1, 3)
     ends = geometry.x[corners]
     middles = 0.5 * (ends[:, [1, 0, 0]] + ends[:, [2, 2, 1]])
