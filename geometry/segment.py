@@ -228,7 +228,7 @@ class Segment:
     def _check_collars(self, where: str) -> None:
         for number, collar in enumerate(self.collars, start=1):
             key = f"{where}.collars[{number}]"
-            _check_thickness(key, collar.thickness)
+            self._check_thickness(key, collar.thickness)
             if not collar.end - collar.start > SAME_PLACE * self.length:
                 raise BoomError(
                     f"{key}.span",
@@ -249,11 +249,25 @@ class Segment:
     def _check_diaphragms(self, where: str) -> None:
         for number, diaphragm in enumerate(self.diaphragms, start=1):
             key = f"{where}.diaphragms[{number}]"
-            _check_thickness(key, diaphragm.thickness)
+            self._check_thickness(key, diaphragm.thickness)
             self._check_place(f"{key}.x", diaphragm.x)
         places = sorted(diaphragm.x for diaphragm in self.diaphragms)
         if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
             raise BoomError(f"{where}.diaphragms", "a place is given twice; give each once")
+
+    def _check_thickness(self, where: str, thickness: float) -> None:
+        if not 0.0 < thickness < float("inf"):
+            raise BoomError(
+                f"{where}.thickness", f"must be a positive number of m, got {thickness:g}"
+            )
+        if self.section is None:
+            return
+        half = 0.5 * min(self.section.height, self.section.width)
+        if thickness > half:
+            raise BoomError(
+                f"{where}.thickness",
+                f"must be at most {half:.6g} m, half of what the box is across, got {thickness:g}",
+            )
 
     def _check_place(self, where: str, x: float) -> None:
         if not self.holds(x):
@@ -262,11 +276,6 @@ class Segment:
                 f"{x:g} m lies outside the segment; it must be between {self.start:g} and "
                 f"{self.end:g} m",
             )
-
-
-def _check_thickness(where: str, thickness: float) -> None:
-    if not 0.0 < thickness < float("inf"):
-        raise BoomError(f"{where}.thickness", f"must be a positive number of m, got {thickness:g}")
 
 
 def _check_stiffness(where: str, support: Support) -> None:

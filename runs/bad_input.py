@@ -19,6 +19,8 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "section": schema.SectionTable,
     "supports": schema.SupportTable,
     "masses": schema.MassTable,
+    "collars": schema.CollarTable,
+    "diaphragms": schema.DiaphragmTable,
     "segment": schema.SegmentTable,
     "restitution": schema.RestitutionTable,
     "pad": schema.PadTable,

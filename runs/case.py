@@ -115,7 +115,8 @@ def select(
         chosen = _with_shells(chosen, path, "--mesh-size", {"mesh_size": mesh_size})
     if modes is not None:
         if modes != "auto" and not (modes.isdecimal() and int(modes) > 0):
-            raise BadInput(path, "--modes", f"must be a number above 0, or auto, got {modes!r}")
+            what = f"must be a whole number above 0, or auto, got {modes!r}"
+            raise BadInput(path, "--modes", what)
         number = "auto" if modes == "auto" else int(modes)
         chosen = _with_shells(chosen, path, "--modes", {"modes": number})
     ensemble = case.ensemble

@@ -12,6 +12,7 @@ import os
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -61,9 +62,9 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
         console: for the tables.
     """
     found: dict[str, Study] = {}
-    # FEniCSx does not outlive a fork.
+    # FEniCSx does not outlive a fork, and a study's memory ends with its process.
     fresh = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(os.cpu_count(), mp_context=fresh) as pool:
+    with ProcessPoolExecutor(os.cpu_count(), fresh, max_tasks_per_child=1) as pool:
         running = {pool.submit(run, name): name for name in names}
         for done in as_completed(running):
             study, seconds = done.result()
@@ -93,7 +94,11 @@ def main() -> None:
     if unknown:
         print(f"protractile: {unknown[0]} is no study; give {', '.join(STUDIES)}", file=sys.stderr)
         sys.exit(2)
-    studies = survey(names, OUT, console)
+    try:
+        studies = survey(names, OUT, console)
+    except BrokenProcessPool:
+        print("protractile: the system has killed a study; run fewer at a time", file=sys.stderr)
+        sys.exit(3)
     console.print(f"written to {OUT}")
     failed = [proof for study in studies for proof in study.proofs if not proof.holds]
     for proof in failed:

@@ -27,6 +27,9 @@ CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
 
+# Relative error of a reduction beyond which a run says so.
+POOR = 0.01
+
 
 @dataclass(frozen=True, slots=True)
 class Results:
@@ -106,6 +109,11 @@ class Results:
             "boom's length: small displacements do not hold; check units and loads"
             for name, move in zip(self.trajectories["model"].values, largest, strict=True)
             if move > 0.1 * length
+        ] + [
+            f"caution: the {model['modes']} coordinates of {name} err by {100.0 * error:.2g} % "
+            "where the segments touch; allow more modes, or --modes auto"
+            for name, model in self.summary["models"].items()
+            if (error := model.get("reduction_errors", {}).get("contact_compliance", 0.0)) > POOR
         ]
 
     def broken_demands(self) -> list[Verdict]:

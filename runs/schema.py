@@ -50,9 +50,7 @@ class EnsembleTable(Table):
     members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)] = Field(
         description="the number of runs of each model, the unchanged one among them"
     )
-    relative: Part = Field(
-        1.0e-9, description="the largest relative change"
-    )
+    relative: Part = Field(1.0e-9, description="the largest relative change")
     seed: Annotated[int, Field(strict=True, ge=0)] = Field(
         1, description="the seed of the changes: the same one gives the same members"
     )
@@ -395,7 +393,8 @@ class ShellTable(ModelTable):
     modes: Modes | None = Field(
         None,
         description="the number of coordinates of each segment, at most, or 'auto' for as many as "
-        "the tolerance asks; what makes the reduction's error about 1e-8 unless given",
+        "the tolerance asks; unless given, those of three moments at four frequencies, which "
+        "answer the contacts within about 1e-8",
     )
     tolerance: Part = Field(
         1.0e-6,

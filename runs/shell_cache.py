@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import pickle
-import shutil
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from runs.cache import Cache, key, sources
 from runs.versions import versions
@@ -20,9 +19,16 @@ if TYPE_CHECKING:
 
     from shell_model.boom_shell import ReducedShell
 
-_FILE = "reduced.pickle"
+_FILE = "shell.pickle"
 # What decides a reduction beside its data.
 _ROOMS = ("geometry", "dynamics", "shell_model")
+
+
+class _Kept(NamedTuple):
+    """A shell, and gmsh's files by their names: whole in one file, or damaged together."""
+
+    reduced: ReducedShell
+    meshes: dict[str, bytes]
 
 
 def remembered(
@@ -64,19 +70,17 @@ def _load(cache: Cache, name: str, mesh_folder: Path) -> ReducedShell | None:
         return None
     try:
         with (entry / _FILE).open("rb") as file:
-            reduced: ReducedShell = pickle.load(file)
-        for path in entry.glob("*.msh"):
-            shutil.copyfile(path, mesh_folder / path.name)
+            kept: _Kept = pickle.load(file)
     except Exception:
         # Whatever has become of an entry on the disk: it is made again.
         cache.drop(name)
         return None
-    return reduced
+    for file_name, content in kept.meshes.items():
+        (mesh_folder / file_name).write_bytes(content)
+    return kept.reduced
 
 
 def _keep(cache: Cache, name: str, mesh_folder: Path, reduced: ReducedShell) -> None:
-    with cache.fill(name) as folder:
-        with (folder / _FILE).open("wb") as file:
-            pickle.dump(reduced, file, protocol=pickle.HIGHEST_PROTOCOL)
-        for path in mesh_folder.glob("*.msh"):
-            shutil.copyfile(path, folder / path.name)
+    meshes = {path.name: path.read_bytes() for path in mesh_folder.glob("*.msh")}
+    with cache.fill(name) as folder, (folder / _FILE).open("wb") as file:
+        pickle.dump(_Kept(reduced, meshes), file, protocol=pickle.HIGHEST_PROTOCOL)

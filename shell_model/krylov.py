@@ -124,9 +124,9 @@ def reduce_family(
         raise NumericsError("the reduced compliance is not finite; check the mesh and the material")
     if options.tolerance is not None and max(errors) > options.tolerance:
         raise NumericsError(
-            f"a segment's reduction errs by {max(errors):.1e} with {basis.size} coordinates of one "
-            f"kind of motion, and {options.tolerance:.1e} is asked for; allow more modes, or a "
-            "larger tolerance"
+            f"a segment's reduction errs by {max(errors):.1e} with {basis.size} coordinates in one "
+            f"of its planes, and {options.tolerance:.1e} is asked for; give a larger tolerance, or "
+            "a coarser mesh, whose round-off is less"
         )
     omega2, shapes = basis.modes()
     solve.move(tests[-1])

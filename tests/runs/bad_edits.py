@@ -477,6 +477,28 @@ BAD_EDITS = {
         "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
         "at least 0.002 m",
     ),
+    "a collar without its thickness": (
+        "height_to_width = 1.5",
+        "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0] }]",
+        "segment[1].collars[1].thickness: missing; it is the thickness in m that it adds to all "
+        "four walls",
+    ),
+    "an unknown key of a collar": (
+        "height_to_width = 1.5",
+        "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0], thick = 0.1 }]",
+        "segment[1].collars[1].thick: unknown key; the nearest known one is thickness",
+    ),
+    "a diaphragm without its thickness": (
+        "height_to_width = 1.5",
+        "height_to_width = 1.5\ndiaphragms = [{ x = 1.0 }]",
+        "segment[1].diaphragms[1].thickness: missing; it is the thickness in m",
+    ),
+    "a collar thicker than the box": (
+        "height_to_width = 1.5",
+        "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0], thickness = 5.0 }]",
+        "segment[1].collars[1].thickness: must be at most 0.162958 m, half of what the box is "
+        "across, got 5",
+    ),
     "coordinates that are no number": (
         "mesh_size = 0.25",
         'mesh_size = 0.25\nmodes = "many"',

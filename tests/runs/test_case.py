@@ -275,8 +275,8 @@ def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> No
 @pytest.mark.parametrize(
     ("models", "modes", "line"),
     [
-        (None, "many", "--modes: must be a number above 0, or auto, got 'many'"),
-        (None, "0", "--modes: must be a number above 0, or auto, got '0'"),
+        (None, "many", "--modes: must be a whole number above 0, or auto, got 'many'"),
+        (None, "0", "--modes: must be a whole number above 0, or auto, got '0'"),
         (["beam-fe"], "auto", "--modes: no shell is to be run; leave it out"),
     ],
 )

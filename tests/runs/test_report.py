@@ -256,6 +256,20 @@ def test_cautions_against_what_is_no_small_displacement(results: Results) -> Non
     assert line in printed(replace(results, trajectories=wild), width=200)
 
 
+def test_cautions_against_a_poor_reduction(results: Results) -> None:
+    name = str(results.trajectories["model"].values[0])
+    for error, cautions in ((0.009, []), (0.93, [name])):
+        errors = {"contact_compliance": error, "readings": 0.0}
+        model = {**results.summary["models"][name], "modes": 6, "reduction_errors": errors}
+        models = {**results.summary["models"], name: model}
+        poor = replace(results, summary={**results.summary, "models": models})
+        assert poor.cautions() == [
+            f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow more "
+            "modes, or --modes auto"
+            for name in cautions
+        ]
+
+
 def test_judges_no_statements_of_the_paper_without_its_series(
     results: Results, figures: list[Figure]
 ) -> None:

@@ -62,7 +62,7 @@ def test_a_damaged_entry_is_made_again(case: Case, tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
     whole = reduce(case, cache, tmp_path / "first")
     (entry,) = cache.folder.iterdir()
-    file = entry / "reduced.pickle"
+    file = entry / "shell.pickle"
     file.write_bytes(file.read_bytes()[:1000])
     again = reduce(case, cache, tmp_path / "second")
     assert "reduction" in again.seconds

@@ -164,8 +164,9 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
 def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
     shell = box_shell(0.5, supports=HELD)
     message = (
-        r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates of one kind of motion, "
-        r"and 1\.0e-09 is asked for; allow more modes, or a larger tolerance$"
+        r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates in one of its planes, "
+        r"and 1\.0e-09 is asked for; give a larger tolerance, or a coarser mesh, whose round-off "
+        r"is less$"
     )
     with pytest.raises(NumericsError, match=message):
         reduce_segment(shell, _inputs(shell), KrylovOptions(tolerance=1.0e-9, most=20))
