@@ -13,6 +13,12 @@ from runs.results import Results
 from runs.schema import ShellTable
 from shell_model.rendering import ANIMATED, ANIMATION, SHOWN, TITLES, telling_instants
 
+# What an arrow stands for where there is more than one point to a station.
+ON_SURFACES = (
+    " The segments touch over surfaces: each arrow is the sum of the forces of the points nearest "
+    "to its station."
+)
+
 # A time in s that a user has asked for.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
@@ -28,9 +34,11 @@ def describe(results: Results, path: Path) -> Figure:
         path: as :func:`shell_model.rendering.render_snapshots` names it, with the shell's name
             before it where the case has several.
     """
-    shells = [model.name for model in results.case.models if isinstance(model, ShellTable)]
+    lines = {m.name: m.contact_line for m in results.case.models if isinstance(m, ShellTable)}
+    shells = list(lines)
     several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
     model = max(several, key=len) if len(shells) > 1 and several else shells[0]
+    forces = ON_SURFACES if lines[model] == "surface" else ""
     name = path.name.removeprefix(f"{model}-" if len(shells) > 1 else "")
     motion = results.trajectories.sel(model=model)
     if name == ANIMATION:
@@ -54,13 +62,13 @@ def describe(results: Results, path: Path) -> Figure:
             f"Von Mises stresses of {model!r}{above}: {state}. Above: the whole boom; below: the "
             f"overlap{which}, cut open. Each triangle has the larger value of its two faces; the "
             "few beyond the end of the scale have its darkest colour. Displacements and play are "
-            "magnified by the factors above the picture."
+            f"magnified by the factors above the picture.{forces}"
         )
         return Figure(path, f"Stress at the overlap{which}{above}: {when}", caption)
     caption = (
         f"The overlap{which} of {model!r}{above}, cut open: {state}. Blue: outer segment; orange: "
         "inner one; arrows: forces of the inner one on the outer one. Displacements and play are "
-        "magnified by the factor above the picture."
+        f"magnified by the factor above the picture.{forces}"
     )
     return Figure(path, f"Overlap{which}{above}: {when}", caption)
 

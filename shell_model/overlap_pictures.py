@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -24,6 +24,9 @@ Array = npt.NDArray[np.float64]
 CLEARANCE_DRAWN, MARGIN = 0.08, 0.6
 
 PIXELS = (theme.SHEET[0], 625)
+
+# Lengths of the arrows, and what is left for them above and below the section, in pixels.
+SHORTEST, LONGEST, ARROW_ROOM = 60.0, 110.0, 120.0
 
 
 class Look(NamedTuple):
@@ -54,13 +57,24 @@ class OverlapView:
     behind: npt.NDArray[np.bool_]
 
     @classmethod
-    def of(cls, shell: MovingShell, overlap: Overlap, pixels: tuple[int, int]) -> OverlapView:
-        """The view that shows all stations of an overlap."""
+    def of(
+        cls,
+        shell: MovingShell,
+        instants: Sequence[Instant],
+        overlap: Overlap,
+        pixels: tuple[int, int],
+    ) -> OverlapView:
+        """The view that shows all stations of an overlap, and forces there at these instants."""
         half = shell.half_height(overlap.outer)
         scale = round_scale(CLEARANCE_DRAWN * 2.0 * half / max(overlap.clearance, SAME_PLACE))
         stations = shell.motion["station"].values[overlap.stations]
-        # Above and below the section, half its height is left for the forces at least.
-        room = 4.0 * half * pixels[0] / pixels[1]
+        flanges = [shell.flange_in_plane(overlap.outer, side) for side in (-1, 1)]
+        tallest = 0.0
+        for instant in instants:
+            places = shell.drawn(shell.displacement(instant.time), scale)
+            tallest = max(tallest, np.ptp(_ends([places[line] for line in flanges], stations)))
+        tallest += shell.wall(overlap)
+        room = tallest * pixels[0] / (pixels[1] - 2.0 * ARROW_ROOM)
         width = max(float(np.ptp(stations)) + 2.0 * MARGIN, room)
         corners = shell.points[shell.triangles]
         middle = 0.5 * (stations.min() + stations.max())
@@ -107,12 +121,12 @@ class OverlapView:
                 cut = _band(line, wall)
                 scene.surface(f"cut {number} {side}", *cut, color=look.cut, lighting=False)
                 scene.outline(f"rim {number} {side}", *cut, theme.INK, 2.0)
-        height = np.mean([_at(line, self.middle)[2] for line in flanges.values()])
+        outer = {side: flanges[self.overlap.outer, side] for side in (-1, 1)}
+        height = np.mean(_ends(list(outer.values()), self.motion["station"].values))
         centre = np.array([self.middle, 0.0, height])
         camera = Camera(centre, self.width, self.pixels, elevation=8.0)
         sheet.show(scene.seen_by(camera))
         sheet.mark_x(camera, self.middle - 0.475 * self.width, self.middle + 0.475 * self.width)
-        outer = {side: flanges[self.overlap.outer, side] for side in (-1, 1)}
         self._draw_forces(sheet, camera, time, outer)
 
     def _draw_forces(
@@ -132,25 +146,26 @@ class OverlapView:
             outside[2] += 0.5 * side * self.shell.wall(self.overlap)
             sheet.arrow(
                 camera.project(outside),
-                side * (50.0 + 60.0 * abs(force) / strongest),
+                side * (SHORTEST + (LONGEST - SHORTEST) * abs(force) / strongest),
                 f"{abs(force) / 1.0e3:.3g} kN\n(peak {abs(peak) / 1.0e3:.3g} kN)",
             )
 
     def heading(self, instant: Instant) -> str:
         """What stands above a picture."""
         now = self.motion.sel(time=instant.time, method="nearest")
-        touching = "" if np.nan_to_num(now["contact_force"].values).any() else ",  no contact"
-        return instant.heading(self.shell, float(now["tip"])) + touching
+        return instant.heading(self.shell, float(now["tip"]))
 
-    @property
-    def forces_explained(self) -> str:
-        """What the arrows' numbers are."""
+    def forces_explained(self, time: float) -> str:
+        """What the arrows' numbers are, or that there are none at a time (s)."""
+        now = self.motion.sel(time=time, method="nearest")
+        if not np.nan_to_num(now["contact_force"].values).any():
+            return "no contact here"
         interval = float(np.diff(self.motion["time"].values[:2])[0])
         return f"forces: mean of the last {1.0e3 * interval:.3g} ms (and peak)"
 
 
 def draw_overlap(
-    shell: MovingShell, instants: Iterable[Instant], overlap: Overlap
+    shell: MovingShell, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
     """An overlap without its half before the plane of bending, and what presses where.
 
@@ -159,7 +174,7 @@ def draw_overlap(
         instants: of the pictures.
         overlap: one of the shell's.
     """
-    view = OverlapView.of(shell, overlap, PIXELS)
+    view = OverlapView.of(shell, instants, overlap, PIXELS)
     sheet = Sheet(PIXELS, floor=90)
     sheet.figure.legend(
         handles=[
@@ -179,7 +194,8 @@ def draw_overlap(
     with Scene(PIXELS) as scene:
         for instant in instants:
             view.draw(scene, sheet, instant.time, looks)
-            sheet.write(view.heading(instant), f"{view.explanation}\n{view.forces_explained}")
+            forces = view.forces_explained(instant.time)
+            sheet.write(view.heading(instant), f"{view.explanation}\n{forces}")
             yield sheet.image()
 
 
@@ -194,6 +210,12 @@ def _band(line: Array, thickness: float) -> tuple[Array, Triangles]:
     lower = np.stack([low, low + 1, high + 1], axis=1)
     upper = np.stack([low, high + 1, high], axis=1)
     return np.concatenate(halves), np.concatenate([lower, upper]).astype(np.int32)
+
+
+def _ends(flanges: Sequence[Array], stations: Array) -> tuple[float, float]:
+    """The lowest and the highest z in m of flanges, each (num_points, 3), at the stations."""
+    heights = [_at(line, x)[2] for line in flanges for x in stations]
+    return min(heights), max(heights)
 
 
 def _at(line: Array, x: float) -> Array:

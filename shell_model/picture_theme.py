@@ -248,7 +248,10 @@ class Sheet:
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": FORCE}
         self._arrows += [
-            self.picture.annotate("", (x, y + length), (x, y), arrowprops=shaft),
+            # Matplotlib would leave out an arrow whose tip is beyond the picture.
+            self.picture.annotate(
+                "", (x, y + length), (x, y), arrowprops=shaft, annotation_clip=False
+            ),
             self.picture.annotate(
                 text,
                 (x + 22.0, y + 0.6 * length),

@@ -34,6 +34,9 @@ TITLES = {
     "first-contact": "first contact",
 }
 
+# What happens at one station, of a joint or a stop.
+AT_A_STATION = ("largest-force", "first-contact")
+
 # Without a working OpenGL VTK ends its process, so another process makes a picture first.
 PROBE = """
 import pyvista
@@ -87,7 +90,10 @@ def render_snapshots(
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
     require_opengl()
 
-    instants = [Instant(t, TITLES.get(name, "")) for name, t in when.items()]
+    instants = [
+        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
+        for name, t in when.items()
+    ]
     film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
     drawn: dict[str, Image.Image] = {}
     with rc_context(LETTERS):
@@ -137,6 +143,21 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
         instants["largest-force"] = float(time[force.max(axis=1).argmax()])
         instants["first-contact"] = float(time[force.any(axis=1).argmax()])
     return instants
+
+
+def where_pressed(views: Sequence[MovingShell], time: float) -> str:
+    """Where the force is largest at a time (s); nothing where there is but one such place."""
+    shell = views[0]
+    places = [
+        (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
+        for seen in views
+        for number, overlap in enumerate(seen.overlaps, start=1)
+    ]
+    if len(places) + len(shell.stops) < 2:
+        return ""
+    peaks = shell.motion["contact_force_peak"].sel(time=time, method="nearest").values
+    hardest = int(np.abs(np.nan_to_num(peaks)).argmax())
+    return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
 
 
 def require_opengl() -> None:

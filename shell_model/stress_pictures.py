@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
+from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
 from shell_model import picture_theme as theme
@@ -27,6 +28,9 @@ BOOM_DISPLACEMENT = 0.1
 # The scale of stresses ends where this part of the walls' area is below: the few triangles at a
 # line of contact would leave nothing but the light end for the rest.
 SHOWN_AREA = 0.995
+
+# Between this part of the scale and its end there is no room for another number.
+LAST_TICK = 0.65
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +70,16 @@ class StressScale:
 
     def add_bar(self, sheet: Sheet) -> None:
         """Draw the scale beside the boom."""
+        end, goes_on = self.end / 1.0e6, self.largest > self.end
         bar = sheet.figure.colorbar(
-            ScalarMappable(Normalize(0.0, self.end / 1.0e6), theme.STRESS),
+            ScalarMappable(Normalize(0.0, end), theme.STRESS),
             cax=sheet.axes(1215, 665, 330, 34),
             orientation="horizontal",
-            extend="max" if self.largest > self.end else "neither",
+            extend="max" if goes_on else "neither",
         )
+        ticks = [t for t in MaxNLocator(3).tick_values(0.0, end) if t <= LAST_TICK * end]
+        last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
+        bar.set_ticks([*ticks, end], labels=[*(f"{t:g}" for t in ticks), last])
         bar.set_label("von Mises stress (MPa),\nthe larger of both faces", fontsize=18)
 
 
@@ -86,7 +94,7 @@ def draw_stress(
         scale: of the stresses.
         overlap: one of the shell's.
     """
-    overlap_view = OverlapView.of(shell, overlap, OVERLAP_PIXELS)
+    overlap_view = OverlapView.of(shell, instants, overlap, OVERLAP_PIXELS)
     view = BoomView.of(shell, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
     sheet = Sheet(OVERLAP_PIXELS, floor=85)
     scale.add_bar(sheet)
@@ -112,7 +120,8 @@ def draw_stress(
                 overlap_view.heading(instant),
                 f"{where}boom: displacements × {view.scale:g}, sections × {SECTION_DRAWN:g}; "
                 f"overlap: cut open, × {overlap_view.scale:g}, cuts white (outer), grey (inner)\n"
-                f"{_largest(shell, overlap, instant.time)};  {overlap_view.forces_explained}",
+                f"{_largest(shell, overlap, instant.time)};  "
+                f"{overlap_view.forces_explained(instant.time)}",
             )
             yield sheet.image()
 

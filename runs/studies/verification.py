@@ -10,6 +10,7 @@ from runs.tables import TextTable
 from runs.theme import fixed, number
 
 INTRODUCTION = """\
+<!-- SPDX-License-Identifier: LGPL-3.0-or-later -->
 # Verification
 
 Each row holds a value against a reference. *Analytic* is a formula; *external*, a published value;
@@ -28,7 +29,7 @@ def table(study: Study) -> TextTable:
     """The proofs of one study."""
     return TextTable(
         study.title,
-        ("what", "value", "reference", "kind", "source", "error (%)", "allowed (%)", "order", ""),
+        ("what", "value", "reference", "error (%)", "allowed", "", "order", "kind", "source"),
         [_row(proof) for proof in study.proofs],
         name=f"proofs-{study.name}",
     )
@@ -48,10 +49,10 @@ def _row(proof: Proof) -> tuple[str, ...]:
         proof.what,
         f"{number(proof.value, digits)}{unit}",
         f"{number(proof.reference, digits)}{unit}",
-        proof.kind,
-        proof.source,
         number(100.0 * proof.error, 2),
         number(100.0 * proof.allowed, 2),
-        fixed(proof.order, 2),
         "✓" if proof.holds else "✗",
+        fixed(proof.order, 2),
+        proof.kind,
+        proof.source,
     )

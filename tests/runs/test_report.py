@@ -264,8 +264,8 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
         models = {**results.summary["models"], name: model}
         poor = replace(results, summary={**results.summary, "models": models})
         assert poor.cautions() == [
-            f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow more "
-            "modes, or --modes auto"
+            f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow "
+            "more modes, or --modes auto"
             for name in cautions
         ]
 

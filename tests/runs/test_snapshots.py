@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,16 @@ def test_a_caption_says_what_is_seen(name: str, title: str, seen: str) -> None:
     assert seen in figure.caption
     assert "'shell'" in figure.caption
     assert "magnifi" in figure.caption
+
+
+def test_arrows_over_a_surface_are_sums() -> None:
+    lines = results("shell")
+    table = lines.case.models[0].model_copy(update={"contact_line": "surface"})
+    case = lines.case.model_copy(update={"models": (table,)})
+    for name in ("overlap-first-peak.png", "stress-first-peak.png"):
+        told = "each arrow is the sum of the forces of the points nearest to its station."
+        assert describe(replace(lines, case=case), Path(name)).caption.endswith(told)
+        assert told not in describe(lines, Path(name)).caption
 
 
 def test_of_several_shells_the_right_one_is_named() -> None:

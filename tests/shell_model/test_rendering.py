@@ -5,6 +5,7 @@ The shell of these tests is made by hand: an outer segment that bends beyond its
 and 2 m, an inner one that moves as a rigid body.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +19,17 @@ from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from shell_model import rendering
 from shell_model.deformation import MovingShell, round_scale
+from shell_model.overlap_pictures import draw_overlap
 from shell_model.picture_theme import LETTERS, Camera, Scene
 from shell_model.pictures import Instant
-from shell_model.rendering import RenderingUnavailable, render_snapshots, telling_instants
+from shell_model.rendering import (
+    RenderingUnavailable,
+    render_snapshots,
+    telling_instants,
+    where_pressed,
+)
 from shell_model.still_pictures import draw_mesh, draw_sections
+from shell_model.stress_pictures import StressScale, draw_stress
 
 Array = npt.NDArray[np.float64]
 
@@ -171,10 +179,10 @@ def test_what_touches_in_the_run_touches_in_the_picture(
         assert between == pytest.approx(apart, abs=1e-9)
 
 
-@pytest.mark.quick
-def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+@pytest.fixture(scope="module")
+def two_joints(fields: xr.Dataset, trajectories: xr.Dataset) -> list[MovingShell]:
     """Two joints along z, the first along y too, and a stop inside the first overlap, which is no
-    contact of the segments.
+    contact of the segments. Seen from the side and from above.
     """
     motion = trajectories.sel(model="shell").isel(station=[0, 1, 0, 1, 0, 1, 0])
     motion = motion.assign_coords(
@@ -192,7 +200,12 @@ def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dat
         stop_side=("stop", [-1.0]),
         stop_clearance=("stop", [0.02]),
     )
-    side, above = MovingShell.views(longer, motion)
+    return MovingShell.views(longer, motion)
+
+
+@pytest.mark.quick
+def test_each_overlap_gets_its_stations(two_joints: list[MovingShell]) -> None:
+    side, above = two_joints
     assert [tuple(overlap) for overlap in side.overlaps] == [
         (0, 1, [0, 1], CLEARANCE),
         (1, 2, [2, 3], 0.5 * CLEARANCE),
@@ -200,6 +213,27 @@ def test_each_overlap_gets_its_stations(fields: xr.Dataset, trajectories: xr.Dat
     assert [tuple(overlap) for overlap in above.overlaps] == [(0, 1, [4, 5], 3.0e-3)]
     assert [tuple(stop) for stop in side.stops] == [(1, 9.5, -1.0, 0.02)]
     assert not above.stops
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("station", "place"),
+    [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1 sideways)"), (6, " (a stop)")],
+)
+def test_of_several_joints_the_pressed_one_is_named(
+    two_joints: list[MovingShell], station: int, place: str
+) -> None:
+    """Reference: the fixture. One station with a force, up or down, the others with none."""
+    side, above = two_joints
+    peak = xr.zeros_like(side.motion["contact_force_peak"])
+    peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
+    side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
+    assert where_pressed([side, above], float(TIME[200])) == place
+
+
+@pytest.mark.quick
+def test_the_only_joint_is_not_named(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    assert where_pressed(MovingShell.views(fields, trajectories.sel(model="shell")), 0.5) == ""
 
 
 @pytest.mark.quick
@@ -363,6 +397,32 @@ def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> Non
     assert rows[0] + 200.0 < rows[1]
 
 
+@pytest.mark.usefixtures("_opengl")
+@pytest.mark.parametrize("steep", [1.0, 4.0])
+def test_arrows_and_their_numbers_stay_above_the_axis(
+    fields: xr.Dataset, trajectories: xr.Dataset, steep: float
+) -> None:
+    """Two red arrows, as long as their forces make them, however steep the overlap is.
+
+    Reference: analytic. The forces of the first peak are 1 and 0.9 of the largest, and the
+    arrows 110 and 104 pixels.
+    """
+    steeper = fields.assign(state=steep * fields["state"])
+    (shell,) = MovingShell.views(steeper, trajectories.sel(model="shell"))
+    instants, (overlap,) = [Instant(0.5)], shell.overlaps
+    with rc_context(LETTERS):
+        scale = StressScale.of(shell, instants)
+        (plain,) = draw_overlap(shell, instants, overlap)
+        (stress,) = draw_stress(shell, instants, scale, overlap)
+    for picture, top, axis in ((plain, 190, 810), (stress, 345, 815)):
+        red, green, blue = np.moveaxis(np.asarray(picture, dtype=float), 2, 0)
+        is_force = (red > 120.0) & (green < 70.0) & (blue < 40.0)
+        assert not is_force[axis:].any()
+        halves = np.array_split(is_force[top:axis], 2, axis=1)
+        tallest = [half.sum(axis=0).max() for half in halves]
+        assert tallest == pytest.approx([110.0, 104.0], abs=4.0)
+
+
 def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
     """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else; at
     the end of the light scale red is above blue, at its dark end below.
@@ -373,7 +433,7 @@ def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
     assert dark.mean() > 0.02
     assert light.mean() > 0.1
     columns = np.flatnonzero(dark.any(axis=0))
-    # The picture shows 3.3 m round x = 9.5 m.
+    # The picture shows 3.8 m round x = 9.5 m.
     assert 0.25 * 1600 < columns.min() < columns.max() < 0.6 * 1600
 
 
