@@ -194,7 +194,5 @@ def infer_inner_section(
             "take up the difference to the stated clearance"
         )
     first = crossing[0]
-    wall = brentq(
-        defect, walls[first], walls[first + 1], xtol=1e-15 * walls[first], rtol=1e-14
-    )
+    wall = brentq(defect, walls[first], walls[first + 1], xtol=1e-15 * walls[first], rtol=1e-14)
     return box(float(wall))
