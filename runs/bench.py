@@ -42,7 +42,7 @@ from runs.generic_solvers import (
 )
 from runs.schema import Case, KantorovichTable, ShellTable
 from runs.systems import beam_system, reduce_shell
-from runs.tables import TextTable, write
+from runs.tables import TextTable, wide_console, write
 from runs.timing import NOISE, by_turns, shown
 
 PAPER = Path(__file__).parent / "cases" / "paper.toml"
@@ -362,6 +362,6 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    shown_on = Console()
+    shown_on = wide_console()
     bench(Sizes(), OUT, shown_on)
     scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)

@@ -24,13 +24,10 @@ from runs.files import whole, whole_folder
 from runs.pages import page
 from runs.studies import plots, verification
 from runs.studies.study import Study
-from runs.tables import write
+from runs.tables import wide_console, write
 
 OUT = Path("runs/out/convergence")
 TITLE = "What proves the models"
-
-# Letters in a line where nobody watches: proofs are wide.
-PAPER = 180
 
 # Modules of runs.studies in the order of the report.
 STUDIES = (
@@ -86,9 +83,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
 
 def main() -> None:
     """Run the studies that are named on the command line, or all; 1 if a proof does not hold."""
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=PAPER)
+    console = wide_console()
     names = sys.argv[1:] or STUDIES
     unknown = [name for name in names if name not in STUDIES]
     if unknown:

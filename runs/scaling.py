@@ -27,7 +27,7 @@ from dynamics.splitting import integrate
 from runs import case as case_file
 from runs.build import build_boom, contact_laws
 from runs.schema import ShellTable
-from runs.tables import TextTable, write
+from runs.tables import TextTable, wide_console, write
 
 CASES = {
     "paper": Path(__file__).parent / "cases" / "paper.toml",
@@ -311,4 +311,4 @@ if __name__ == "__main__":
     if len(sys.argv) > 1:
         _run(*sys.argv[1:])
     else:
-        scaling(Sizes(), OUT, Console())
+        scaling(Sizes(), OUT, wide_console())

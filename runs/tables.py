@@ -16,8 +16,15 @@ from rich.text import Text
 
 from runs.files import whole
 
-# Letters that fit in a line of the report with its usual font.
+# Letters that fit in a line of the report with its usual font, and in one of a file.
 ROOMY = 110
+WIDE = 180
+
+
+def wide_console() -> Console:
+    """Where to print tables: as wide as they are where nobody watches."""
+    console = Console()
+    return console if console.is_terminal else Console(width=WIDE)
 
 
 @dataclass(frozen=True, slots=True)
