@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The pictures of docs/gallery.md, from runs that are there.
 
-``python -m runs.gallery`` takes them from the folders ``paper``, ``spatial`` and
-``three-segments`` of runs/out, which ``make verify`` leaves, and writes docs/gallery/*.png.
+``python -m runs.gallery`` takes them from the folders ``paper``, ``spatial``, ``three-segments``
+and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and writes
+docs/gallery/*.png.
 """
 
 from __future__ import annotations
@@ -39,6 +40,9 @@ COPIED = {
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
     "three-segments-overlap": ("three-segments", "snapshots/overlap-2-first-peak.png"),
     "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
+    "benchmarks": ("convergence", "figures/benchmarks.png"),
+    "meshes": ("convergence", "figures/mesh.png"),
+    "solid": ("convergence", "figures/solid-frequencies.png"),
 }
 
 

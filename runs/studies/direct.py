@@ -291,7 +291,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             ),
             Plot(
                 "direct-steps",
-                "What is left between them is the step's",
+                "Finer steps close in on the reduced shell",
                 "step of the direct integration (s)",
                 "tip difference (part of range)",
                 {

@@ -51,7 +51,6 @@ def draw(plot: Plot, folder: Path) -> Figure:
                 axes.xaxis.set_major_locator(FixedLocator(sizes))
                 axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.xaxis.set_minor_formatter(NullFormatter())
-            axes.yaxis.set_minor_formatter(NullFormatter())
         if len(plot.curves) > 1:
             sheet.legend(loc="outside lower left", ncols=1 if len(plot.curves) < 4 else 2)
         sheet.suptitle(plot.title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
