@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -89,7 +90,13 @@ def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places
         ({"places": (1.0, 1.0)}, "a segment needs two distinct places at least, its ends"),
     ],
 )
-def test_refuses_what_cannot_be_meshed(changes: dict[str, object], message: str) -> None:
-    arguments = {"places": PLACES, "along": (0.1, 0.2), "around": 0.1, "layers": 2, **changes}
+def test_refuses_what_cannot_be_meshed(changes: dict[str, Any], message: str) -> None:
+    arguments: dict[str, Any] = {
+        "places": PLACES,
+        "along": (0.1, 0.2),
+        "around": 0.1,
+        "layers": 2,
+        **changes,
+    }
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        mesh_quarter(BOX, **arguments)  # type: ignore[arg-type]
+        mesh_quarter(BOX, **arguments)

@@ -14,7 +14,8 @@ from runs.bad_input import BadInput
 from runs.build import build_boom, contact_laws
 from runs.case import load, select
 from runs.schema import Case, ShellTable
-from tests.runs.bad_edits import BAD_EDITS, CASES, COARSE
+from tests.runs.bad_edits import BAD_EDITS
+from tests.runs.coarse_case import CASES, COARSE
 
 pytestmark = pytest.mark.quick
 

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -88,9 +90,7 @@ class _Here:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def submit(self, task, *arguments):  # type: ignore[no-untyped-def]
-        from concurrent.futures import Future
-
-        future = Future()
-        future.set_result(task(*arguments))
+    def submit(self, task: Callable[[str], object], name: str) -> Future[object]:
+        future: Future[object] = Future()
+        future.set_result(task(name))
         return future

@@ -18,7 +18,7 @@ from runs.cache import Cache
 from runs.schema import Case, ShellTable
 from runs.systems import reduce_shell
 from shell_model.boom_shell import ReducedShell
-from tests.runs.bad_edits import CASES
+from tests.runs.coarse_case import CASES
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from geometry.boom import Boom, BoomError, Collar, Diaphragm
 from runs import cli
 from runs.build import build_boom
 from runs.case import load
-from tests.runs.bad_edits import COARSE
+from tests.runs.coarse_case import COARSE
 from tests.shell_model.booms import three_segments
 
 pytestmark = pytest.mark.quick

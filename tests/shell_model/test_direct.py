@@ -14,8 +14,10 @@ import numpy.typing as npt
 import pytest
 import scipy.sparse
 from mpi4py import MPI
+from petsc4py import PETSc
 from scipy.linalg import eigh
 
+from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, Stop
@@ -46,8 +48,8 @@ if comm.rank == 0:
 """
 
 
-def _dense(matrix: object) -> Array:
-    indptr, indices, values = matrix.getValuesCSR()  # type: ignore[attr-defined]
+def _dense(matrix: PETSc.Mat) -> Array:
+    indptr, indices, values = matrix.getValuesCSR()
     return scipy.sparse.csr_matrix((values, indices, indptr)).toarray()
 
 
@@ -237,9 +239,9 @@ def test_two_ranks_give_the_serial_motion(
         ),
     ],
 )
-def test_what_it_does_not_take_is_refused(boom: Boom, law: object, message: str) -> None:
+def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message: str) -> None:
     with pytest.raises(BoomError, match=message):
-        assemble_boom(boom, [law] * len(boom.joints), ShellOptions(2.0), MPI.COMM_SELF)  # type: ignore[list-item]
+        assemble_boom(boom, [law] * len(boom.joints), ShellOptions(2.0), MPI.COMM_SELF)
 
 
 @pytest.mark.quick

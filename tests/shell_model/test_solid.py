@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -241,6 +242,6 @@ def _compliance(model: SolidFamily, row: Array) -> float:
         ),
     ],
 )
-def test_refuses_what_the_solid_does_not_know(change: dict[str, object], message: str) -> None:
+def test_refuses_what_the_solid_does_not_know(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{message}$"):
-        assemble_solid(replace(segment(), **change), coarse(), ALONG_Z)  # type: ignore[arg-type]
+        assemble_solid(replace(segment(), **change), coarse(), ALONG_Z)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slips in how segments touch and rub; see ``bad_edits``."""
+
+from __future__ import annotations
+
+from tests.runs.coarse_case import CONTACT, FROM_EXPONENT
+
+CONTACTS = {
+    "friction without what presses": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = 0.2\n",
+        "joint[1].normal_forces: missing, and the joint has friction; give normal_forces, one in N "
+        "for each station, since in a flat boom no other plane presses",
+    ),
+    "a normal force too few": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0]\n",
+        "joint[1].normal_forces: must have one number for each of the 2 stations, got 1",
+    ),
+    "negative friction": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nfriction = -0.2\n",
+        "joint[1].friction: must be a number not less than 0, got -0.2",
+    ),
+    "restitution above one": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nrestitution = { coefficient = 1.2, speed = 0.1 }\n",
+        "joint[1].restitution.coefficient: must be a number not greater than 1, got 1.2",
+    ),
+    "width that the play does not leave": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nlateral_play = 0.1\n",
+        "joint[1].lateral_play: 'inner' does not fit in 'outer': 0.044042 m of width are free, and "
+        "a lateral play of 0.1 m is asked for; make the inner section or the lateral play smaller",
+    ),
+    "friction of a tied joint": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]\n",
+        "joint[1].friction: the joint is tied, and nothing slides; leave it out",
+    ),
+    "pads longer than the overlap": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 1.5, width = 0.06 }\n",
+        "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
+    ),
+    "pads wider than half a flange": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1, width = 0.2 }\n",
+        "joint[1].pad.width: must be above 0 and not above half a wall of the inner segment, "
+        "0.135298 m, got 0.2 m",
+    ),
+    "pads without a width": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1 }\n",
+        "joint[1].pad.width: missing; it is the width from the corner inwards in m",
+    ),
+    "pads of a tied joint": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\npad = { length = 0.1, width = 0.06 }\n",
+        "joint[1].pad: the joint is tied, and nothing touches; leave it out",
+    ),
+    "pads across the flanges": (
+        FROM_EXPONENT,
+        FROM_EXPONENT.replace(
+            "exponent = 2.0\n", "exponent = 2.0\npad = { length = 0.1, width = 0.06 }\n"
+        ).replace('"near webs"', '"across"'),
+        "model[6].contact_line: 'across' leaves no place to the pads of joint[1]; give 'near "
+        "webs', or leave pad out",
+    ),
+    "contact across the flanges in space": (
+        FROM_EXPONENT,
+        FROM_EXPONENT.replace("exponent = 2.0\n", "exponent = 2.0\nlateral_play = 0.01\n").replace(
+            '"near webs"', '"across"'
+        ),
+        "model[6].contact_line: 'across' is for a flat boom; in space the segments touch 'near "
+        "webs' or by 'surface'",
+    ),
+    "stiffness of a surface at stations": (
+        'contact_line = "near webs"',
+        'contact_line = "near webs"\nsurface_stiffness = 1e10',
+        "model[6].surface_stiffness: the segments touch at their stations, 'near webs'; leave it "
+        "out, or give contact_line = 'surface'",
+    ),
+    "points of a surface at stations": (
+        'contact_line = "near webs"',
+        "surface_points = [8, 4]",
+        "model[6].surface_points: the segments touch at their stations, 'near webs'; leave it out, "
+        "or give contact_line = 'surface'",
+    ),
+    "too many points of a surface": (
+        'contact_line = "near webs"',
+        'contact_line = "surface"\nsurface_points = [100, 4]',
+        "model[6].surface_points: 100 times 4 points on half a wall are more than 256, which a "
+        "reduced model can bear; give fewer",
+    ),
+    "one stiffness for surfaces of two laws": (
+        FROM_EXPONENT,
+        FROM_EXPONENT.replace(
+            "exponent", "lateral_play = 0.01\nlateral_exponent = 1.5\nexponent", 1
+        )
+        .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
+        .replace(CONTACT, "", 3),
+        "model[6].surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and "
+        "2; leave it out, or give the model its own contact",
+    ),
+}

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slips in the form of a case file: keys, types, what is missing; see ``bad_edits``."""
+
+from __future__ import annotations
+
+from tests.runs.coarse_case import CONTACT
+
+FORMS = {
+    "unknown key": (
+        "duration = 0.6",
+        "colour = 1",
+        "time.colour: unknown key; known ones are duration, output_step, step",
+    ),
+    "misspelled key": (
+        "duration = 0.6",
+        "durration = 0.6",
+        "time.durration: unknown key; the nearest known one is duration",
+    ),
+    "misspelled key of a model": (
+        "terms = [2, 3]",
+        "term = [2, 3]",
+        "model[2].term: unknown key; the nearest known one is terms",
+    ),
+    "misspelled table": (
+        "[material]",
+        "[materials]",
+        "materials: unknown key; the nearest known one is material",
+    ),
+    "unknown key in a section": (
+        "height_to_width = 1.5",
+        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065, wall = 2 }",
+        "segment[1].section.wall: unknown key; known ones are height, width, flange, web",
+    ),
+    "support that is a text": (
+        "supports = [0.0, 2.0]",
+        'supports = [0.0, "2 m"]',
+        "segment[1].supports[2]: must be a table, got '2 m'",
+    ),
+    "missing key": (
+        "density = 7850.0\n",
+        "",
+        "material.density: missing; it is the density in kg/m^3",
+    ),
+    "missing key of a segment": (
+        "span = [9.0, 19.0]\n",
+        "",
+        "segment[2].span: missing; it is the x of its two ends in m, rising",
+    ),
+    "missing key of a law": (
+        CONTACT,
+        "contact = { stiffness = 1e9 }",
+        "model[3].contact.exponent: missing; it is the exponent n of the contact law",
+    ),
+    "missing mass": (
+        "mass_per_length = 55.07\n",
+        "",
+        "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
+        "section unless given",
+    ),
+    "missing kind": (
+        'kind = "shell"\n',
+        "",
+        "model[6].kind: missing; give 'kantorovich', 'finite-element' or 'shell'",
+    ),
+    "missing section": (
+        "height_to_width = 1.5\n",
+        "",
+        "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width",
+    ),
+    "text for a number": (
+        "duration = 0.6",
+        'duration = "0.6"',
+        "time.duration: must be a number, got '0.6'",
+    ),
+    "truth for a number": (
+        "duration = 0.6",
+        "duration = true",
+        "time.duration: must be a number, got true",
+    ),
+    "number for a truth": (
+        "tied = true",
+        "tied = 1",
+        "model[5].tied: must be true or false, got 1",
+    ),
+    "number for a text": (
+        'title = "The paper\'s boom, coarse and short"',
+        "title = 3",
+        "title: must be a text, got 3",
+    ),
+    "number for a table": (
+        CONTACT,
+        "contact = 3",
+        "model[3].contact: must be a table, got 3",
+    ),
+    "number for a list": (
+        "span = [9.0, 19.0]",
+        "span = 9.0",
+        "segment[2].span: must be a list, got 9.0",
+    ),
+    "table for an array of tables": (
+        "[[joint]]",
+        "[joint]",
+        "joint: must be an array of tables, each headed [[joint]], got {'outer': 'outer', "
+        "'inner': 'inner', 'stations': [9.0, 10...",
+    ),
+    "part of a term": (
+        "terms = [2, 3]",
+        "terms = [2, 2.5]",
+        "model[2].terms[2]: must be a whole number, got 2.5",
+    ),
+    "one end": (
+        "span = [9.0, 19.0]",
+        "span = [9.0]",
+        "segment[2].span: must be a list of two numbers, got [9.0]",
+    ),
+    "three ends": (
+        "span = [9.0, 19.0]",
+        "span = [9.0, 14.0, 19.0]",
+        "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
+    ),
+    "unknown kind": (
+        'kind = "shell"',
+        'kind = "plate"',
+        "model[6].kind: must be 'kantorovich', 'finite-element' or 'shell', got 'plate'",
+    ),
+    "unknown option": (
+        'contact_line = "near webs"',
+        'contact_line = "middle"',
+        "model[6].contact_line: must be 'near webs', 'across' or 'surface', got 'middle'",
+    ),
+    "unknown statement": (
+        "[time]",
+        'demand = ["S1", "S12"]\n[time]',
+        "demand[2]: must be 'S1', 'S2', 'S3', 'S4', 'S5', 'S6', 'S7', 'S8', 'S9', 'S10' or 'S11', "
+        "got 'S12'",
+    ),
+    "name that is no file name": (
+        'name = "beam-fe"',
+        'name = "beam/fe"',
+        "model[3].name: must be made of letters, digits, blanks and . _ + -, starting with one of "
+        "the first, got 'beam/fe'",
+    ),
+    "not TOML": (
+        "[time]",
+        "[time",
+        "line 7: not TOML: Expected ']' at the end of a table declaration (column 6); see "
+        "https://toml.io",
+    ),
+}
