@@ -85,9 +85,8 @@ def _law_of(pad: Pad, law: PowerContact) -> PowerContact | None:
     """A pad's part of its joint's law; None on a side where the law never touches."""
     if pad.side == 0:
         return law
-    if (law.stiffness if pad.side > 0 else law.below) == 0.0:
-        return None
-    return (law.upper() if pad.side > 0 else law.lower()).shared(pad.weight)
+    one_sided = law.one_sided(pad.side)
+    return None if one_sided is None else one_sided.shared(pad.weight)
 
 
 def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:

@@ -176,15 +176,19 @@ class Boom:
         return any(joint.lateral_clearance is not None for joint in self.joints)
 
     @property
+    def directions(self) -> tuple[Direction, ...]:
+        """Along which the segments touch."""
+        return ("z", "y") if self.spatial else ("z",)
+
+    @property
     def stations(self) -> list[tuple[float, Direction]]:
         """x in m and direction of all places of contact, tied joints left out.
 
         Those of the joints along z, in space those of the joints along y, those of the stops.
         """
-        directions: tuple[Direction, ...] = ("z", "y") if self.spatial else ("z",)
         between: list[tuple[float, Direction]] = [
             (x, direction)
-            for direction in directions
+            for direction in self.directions
             for joint in self.joints
             if not joint.tied
             for x in joint.stations

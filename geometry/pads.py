@@ -71,10 +71,9 @@ def pads(boom: Boom) -> list[Pad]:
     The weights of one side of a station sum to one: when the segments approach each other
     without roll, the pads together press as one contact on the axis would.
     """
-    directions: tuple[Direction, ...] = ("z", "y") if boom.spatial else ("z",)
     found: list[Pad] = []
     station = 0
-    for direction in directions:
+    for direction in boom.directions:
         for number, joint in enumerate(boom.joints):
             if joint.tied:
                 continue

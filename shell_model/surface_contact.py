@@ -88,10 +88,9 @@ def surface_points(
         options: points and penalty.
     """
     walls = [WallPoints(shell) for shell in shells]
-    directions: tuple[Direction, ...] = ("z", "y") if boom.spatial else ("z",)
     found: list[SurfacePoint] = []
     first = 0
-    for direction in directions:
+    for direction in boom.directions:
         for number, joint in enumerate(boom.joints):
             if joint.tied:
                 continue

@@ -223,7 +223,6 @@ def proofs(found: Comparison, sizes: Sizes) -> list[Proof]:
     """The tip, and the energy of both motions."""
     finest, reduced = found.runs[-1], found.runs[0]
     where = f"mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
-    ledger = "conservation of energy"
     return [
         Proof(
             what=f"tip of the reduced shell off the unreduced one, part of its range, {where}",
@@ -235,23 +234,17 @@ def proofs(found: Comparison, sizes: Sizes) -> list[Proof]:
             allowed=ALLOWED,
             order=found.order,
         ),
-        Proof(
-            what=f"energy residual of the reduced shell, {where}",
-            value=reduced.energy_residual,
-            reference=0.0,
-            unit="",
-            kind="analytic",
-            source=ledger,
-            allowed=ENERGY_BOUND,
-        ),
-        Proof(
-            what=f"energy residual of the unreduced shell, {where}",
-            value=finest.energy_residual,
-            reference=0.0,
-            unit="",
-            kind="analytic",
-            source=ledger,
-            allowed=ENERGY_BOUND,
+        *(
+            Proof(
+                what=f"energy residual of the {which} shell, {where}",
+                value=run.energy_residual,
+                reference=0.0,
+                unit="",
+                kind="analytic",
+                source="conservation of energy",
+                allowed=ENERGY_BOUND,
+            )
+            for which, run in (("reduced", reduced), ("unreduced", finest))
         ),
     ]
 
