@@ -23,13 +23,11 @@ from dynamics.friction_step import (
 from dynamics.gap_system import GapSystem
 from dynamics.integrator_state import (
     CONTACT,
-    DAMPING,
     FRICTION,
     MIDDLE,
     PLACE,
     REST,
     SLIDING,
-    WORK,
     Dry,
     Excitations,
     State,
@@ -114,11 +112,9 @@ def lossy_steps(
                 if plain:
                     move(a, v, half)
                 else:
-                    work, lost = travel(
-                        a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre
+                    travel(
+                        a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre, tally
                     )
-                    tally[WORK] += work
-                    tally[DAMPING] += lost
 
                 look_ahead(a, v, half, ahead)
                 drive(ahead, half, loads, centre, end)
@@ -136,11 +132,7 @@ def lossy_steps(
                 if plain:
                     move(a, v, half)
                 else:
-                    work, lost = travel(
-                        a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end
-                    )
-                    tally[WORK] += work
-                    tally[DAMPING] += lost
+                    travel(a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end, tally)
                 contact_forces(a, rows, law, y, force)
                 loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
                 tally[CONTACT] += loss

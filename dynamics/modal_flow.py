@@ -12,6 +12,7 @@ from scipy.linalg import expm
 from scipy.special import spherical_jn
 
 from dynamics.gap_system import GapSystem
+from dynamics.integrator_state import DAMPING, WORK
 
 Array = npt.NDArray[np.float64]
 
@@ -186,15 +187,17 @@ def travel(
     loads: Array,
     now: Array,
     then: Array,
-) -> tuple[float, float]:
-    """:func:`move`, with excitations; gives their work and the damping loss in J.
+    tally: Array,
+) -> None:
+    """:func:`move`, with excitations; enters their work and the damping loss in J.
 
     Args:
         loads: (num_excitations, num_modes).
         now, then: (num_excitations,) their factors at the start and at the end.
+        tally: of the integration.
     """
     held = _energy_under_load(a, v, omega2, load)
     work = _driven_move(a, v, flow, time, loads, now, then)
-    if not damped:
-        return work, 0.0
-    return work, held + work - _energy_under_load(a, v, omega2, load)
+    tally[WORK] += work
+    if damped:
+        tally[DAMPING] += held + work - _energy_under_load(a, v, omega2, load)

@@ -25,7 +25,6 @@ from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.gap_system import GapSystem
 from dynamics.integrator_state import (
     CHANGES,
-    DAMPING,
     FIRST_CONTACT,
     STEPS,
     WORK,
@@ -148,11 +147,10 @@ def _march(
                     mean[j] += 0.5 * force[j] / substeps
             if excited or damped:
                 excite(samples, interval * substeps + done, 0.0, 1.0, factors)
-                work, lost = travel(
-                    a, v, flows[stride], time, omega2, load, damped, loads, factors[0], factors[2]
-                )
-                tally[WORK] += work
-                tally[DAMPING] += lost
+                travel(
+                    a, v, flows[stride], time, omega2, load, damped, loads, factors[0], factors[2],
+                    tally,
+                )  # fmt: skip
             else:
                 move(a, v, flows[stride])
             touching = contact_forces(a, rows, law, y, force)
