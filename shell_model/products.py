@@ -30,6 +30,17 @@ def times(matrix: PETSc.Mat, block: Array) -> Array:
     return product
 
 
+def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
+    """uᵀ A u of a vector (num_owned,): twice an energy in J, say. Collective."""
+    right, left = matrix.createVecs()
+    right.array[:] = vector
+    matrix.mult(right, left)
+    form = float(right.dot(left))
+    right.destroy()
+    left.destroy()
+    return form
+
+
 def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
     """(num_left, num_right) products of all columns, the same on every rank. Collective."""
     product = np.ascontiguousarray(left.T @ right)

@@ -4,18 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
-from petsc4py import PETSc
 
 from geometry.solid_mesh import mesh_quarter
 from runs.studies.box_pair import box
 from runs.studies.study import Proof
 from shell_model.eigenmodes import natural_frequencies
 from shell_model.mirror import ALONG_Z, BREATHING, Family
-from shell_model.products import times
+from shell_model.products import quadratic_form
 from shell_model.solid import SolidFamily, assemble_solid
-
-Array = npt.NDArray[np.float64]
 
 # Thick and slender: as a rod in its length, its section cannot breathe.
 BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)
@@ -40,7 +36,7 @@ def solid_proofs() -> list[Proof]:
     return [
         Proof(
             "solid box: mass",
-            _square(stretched, slide, stretched.mass),
+            quadratic_form(stretched.mass, slide.ravel()),
             steel.density * section.area * BAR.length,
             "kg",
             "analytic",
@@ -49,7 +45,7 @@ def solid_proofs() -> list[Proof]:
         ),
         Proof(
             "solid box: stiffness against stretching",
-            _square(stretched, stretch, stretched.stiffness) / BAR.length,
+            quadratic_form(stretched.stiffness, stretch.ravel()) / BAR.length,
             young * section.area,
             "N",
             "analytic",
@@ -58,7 +54,7 @@ def solid_proofs() -> list[Proof]:
         ),
         Proof(
             "solid box: stiffness against pure bending",
-            _square(bent, bend, bent.stiffness) / BAR.length,
+            quadratic_form(bent.stiffness, bend.ravel()) / BAR.length,
             young * section.second_moment_of_area,
             "N·m²",
             "analytic",
@@ -81,9 +77,3 @@ def _solid(family: Family) -> SolidFamily:
     assert BAR.section is not None
     mesh = mesh_quarter(BAR.section, (BAR.start, BAR.end), (0.1, 0.1), 0.1)
     return assemble_solid(BAR, mesh, family)
-
-
-def _square(solid: SolidFamily, field: Array, matrix: PETSc.Mat) -> float:
-    """uᵀ A u of a displacement (num_nodes, 3) and one of the solid's matrices."""
-    u = field.ravel()
-    return float(u @ times(matrix, u[:, None])[:, 0])

@@ -23,7 +23,7 @@ from shell_model.eigenmodes import natural_frequencies
 from shell_model.families import Folding
 from shell_model.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.outline import Outline
-from shell_model.products import times
+from shell_model.products import quadratic_form, times
 from shell_model.segment_shell import assemble_segment
 from shell_model.shifted_solver import ShiftedSolver
 from shell_model.solid import SolidFamily, assemble_solid
@@ -58,8 +58,7 @@ def distorted(mesh: SolidMesh) -> SolidMesh:
 
 def energy(solid: SolidFamily, field: Array) -> float:
     """uᵀ K u of a displacement (num_nodes, 3) in J."""
-    u = field.reshape(-1, 1)
-    return float((u.T @ times(solid.stiffness, u))[0, 0])
+    return quadratic_form(solid.stiffness, field.ravel())
 
 
 @pytest.mark.quick
