@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -115,10 +113,8 @@ def render_snapshots(
             if not seen.from_above:
                 moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, film[-1].time)]
     for name, picture in drawn.items():
-        with _whole(folder / name) as part:
-            picture.save(part)
-    with _whole(folder / ANIMATION) as part:
-        _save_animation(moving, part)
+        picture.save(folder / name)
+    _save_animation(moving, folder / ANIMATION)
     return [folder / name for name in (*drawn, ANIMATION)]
 
 
@@ -199,14 +195,3 @@ def _save_animation(pictures: Sequence[Image.Image], path: Path) -> None:
         duration=round(1.0e3 * SHOWN / len(pictures)),
         loop=0,
     )
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[Path]:
-    """A name to write to; the file gets its own when it is complete."""
-    part = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        yield part
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
