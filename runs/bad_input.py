@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from runs import schema
+from runs.shown import shown
 
 _TABLES: Mapping[str, type[BaseModel]] = {
     "time": schema.TimeTable,
@@ -37,6 +38,9 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "shell": schema.ShellTable,
 }
 
+# Names that a message lists of those that would be right.
+MOST_CHOICES = 12
+
 _TYPES = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -50,7 +54,7 @@ class BadInput(Exception):
     """``file`` as the user gave it, ``key`` of the fault, and what is wrong and would be right."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
-        super().__init__(" ".join(f"{file}: {key}: {what}".split()))
+        super().__init__(" ".join(f"{shown(file)}: {shown(key)}: {what}".split()))
         self.file = file
         self.key = key
         self.what = what
@@ -67,7 +71,9 @@ class BadInput(Exception):
 
 
 def choices(known: Sequence[str]) -> str:
-    """'a', 'b' or 'c'."""
+    """'a', 'b' or 'c'; the first few of many."""
+    if len(known) > MOST_CHOICES:
+        return f"{', '.join(repr(name) for name in known[:MOST_CHOICES])} or another of its kind"
     quoted = [repr(name) for name in known]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
 
@@ -104,10 +110,16 @@ def _explain(
         what = f"must be {limits['expected']}"
     elif fault == "too_short":
         return key, "empty; give at least one"
-    elif fault == "too_long":
+    elif fault == "too_long" and limits["max_length"] == 2:
         what = "must be a list of two numbers"
-    elif fault == "string_pattern_mismatch":
+    elif fault == "too_long":
+        return key, f"too many; give {limits['max_length']} at most"
+    elif fault == "string_too_long":
+        return key, f"too long; give {limits['max_length']} characters at most"
+    elif fault == "string_pattern_mismatch" and limits["pattern"] == schema.NAME:
         what = "must be made of letters, digits, blanks and . _ + -, starting with one of the first"
+    elif fault == "string_pattern_mismatch":
+        what = "must be a line of printable characters"
     elif fault == "tuple_type" and key in ("segment", "joint", "stop", "load", "base", "model"):
         what = f"must be an array of tables, each headed [[{key}]]"
     elif fault == "tuple_type":
@@ -150,7 +162,7 @@ def _field(location: Sequence[int | str]) -> FieldInfo:
 
 def _unknown_key(location: Sequence[int | str]) -> str:
     known = list(_fields(_table(location)))
-    near = get_close_matches(str(location[-1]), known, n=1)
+    near = get_close_matches(shown(str(location[-1])), known, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(known)}"

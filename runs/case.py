@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,6 +18,7 @@ from runs.bad_input import BadInput, choices
 from runs.build import build_boom, check_names, needs_plates
 from runs.schema import (
     MOST_MEMBERS,
+    MOST_TIMES,
     Case,
     EnsembleTable,
     FiniteElementTable,
@@ -27,6 +29,8 @@ from runs.schema import (
     TimeTable,
 )
 from runs.shell_contact import check_contact
+from runs.shown import shown
+from runs.user_files import read_text
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
 MOST_OUTPUTS = 10_000_000
@@ -38,6 +42,11 @@ MOST_ELEMENTS = 5_000
 # Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
 MOST_TERMS = 60
 MOST_TRIANGLES = 20_000_000
+
+# What an option takes as a whole number: nobody means one of more digits.
+_WHOLE = re.compile(r"[0-9]{1,9}")
+
+_TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
 
 def load(path: str) -> Case:
@@ -114,7 +123,7 @@ def select(
             raise BadInput(path, error.where, error.what) from None
         chosen = _with_shells(chosen, path, "--mesh-size", {"mesh_size": mesh_size})
     if modes is not None:
-        if modes != "auto" and not (modes.isdecimal() and int(modes) > 0):
+        if modes != "auto" and not (_WHOLE.fullmatch(modes) and int(modes) > 0):
             what = f"must be a whole number above 0, or auto, got {modes!r}"
             raise BadInput(path, "--modes", what)
         number = "auto" if modes == "auto" else int(modes)
@@ -146,14 +155,27 @@ def _with_shells(
 
 def _read(path: str) -> dict[str, object]:
     try:
-        text = Path(path).read_bytes().decode("utf-8-sig")
-        return tomllib.loads(text)
+        tables = tomllib.loads(read_text(Path(path)))
+        _check_whole_numbers(tables, path)
+        return tables
     except FileNotFoundError:
         raise BadInput(path, "file", "does not exist; give the path of a case file") from None
     except IsADirectoryError:
         raise BadInput(path, "file", "is a directory; give the path of a case file") from None
     except (OSError, ValueError, RecursionError) as error:
         raise BadInput(path, *_unreadable(error)) from None
+
+
+def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
+    """TOML promises 64 bits; Python reads any number of digits, and then cannot show them."""
+    if isinstance(thing, dict):
+        for name, value in thing.items():
+            _check_whole_numbers(value, path, f"{key}.{name}" if key else name)
+    elif isinstance(thing, list):
+        for number, value in enumerate(thing, start=1):
+            _check_whole_numbers(value, path, f"{key}[{number}]")
+    elif isinstance(thing, int) and not -(2**63) <= thing < 2**63:
+        raise BadInput(path, key, _TOO_MANY_DIGITS)
 
 
 def _read_tables(case: Case, path: str) -> Case:
@@ -177,17 +199,22 @@ def _read_tables(case: Case, path: str) -> Case:
 def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
     remedy = "give a CSV file of two columns without a heading, time in s and factor"
     place = Path(path).parent / file
+    name = f"'{shown(file)}'"
     try:
-        pairs = np.loadtxt(place, delimiter=",", ndmin=2)
+        lines = [line for line in read_text(place).splitlines() if line.partition("#")[0].strip()]
+        if len(lines) > MOST_TIMES:
+            what = f"{name} has {len(lines)} lines; give {MOST_TIMES} at most"
+            raise BadInput(path, key, what)
+        pairs = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, 2))
     except OSError as error:
-        reason = error.strerror or "there is no such file"
-        raise BadInput(path, key, f"{str(place)!r} cannot be read ({reason}); {remedy}") from None
+        what = f"'{shown(str(place))}' cannot be read ({error.strerror}); {remedy}"
+        raise BadInput(path, key, what) from None
     except ValueError:
-        raise BadInput(path, key, f"{file!r} holds other than numbers; {remedy}") from None
+        raise BadInput(path, key, f"{name} holds other than numbers; {remedy}") from None
     if len(pairs) < 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise BadInput(path, key, f"{file!r} has other columns, or one line alone; {remedy}")
+        raise BadInput(path, key, f"{name} has other columns, or one line alone; {remedy}")
     if (np.diff(pairs[:, 0]) <= 0.0).any():
-        raise BadInput(path, key, f"the times in {file!r} must rise")
+        raise BadInput(path, key, f"the times in {name} must rise")
     return tuple((float(t), float(factor)) for t, factor in pairs)
 
 
@@ -200,6 +227,8 @@ def _unreadable(error: Exception) -> tuple[str, str]:
         return f"line {line}", "not UTF-8; save the file in this encoding"
     if isinstance(error, RecursionError):
         return "file", "not TOML: nested too deeply; a case has three levels at most"
+    if not isinstance(error, tomllib.TOMLDecodeError):
+        return "file", f"a whole number {_TOO_MANY_DIGITS}"
     what, _, place = str(error).rstrip(")").rpartition(" (at ")
     at_line, _, at_column = place.partition(", ")
     if not what or not at_line.startswith("line "):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import sys
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,7 +19,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from dynamics.failure import NumericsError
 from runs import case as case_file
-from runs import output, ranks, sweep_output, sweep_points
+from runs import output, ranks, sweep_output, sweep_points, terminal
 from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
 from runs.cache import Cache, default_folder
@@ -29,7 +28,9 @@ from runs.pipeline import Progress as Tell
 from runs.pipeline import run_case
 from runs.printed import print_models, print_verdicts
 from runs.results import FIELDS, Results
-from runs.schema import Case, ShellTable
+from runs.schema import Case, ShellTable, case_schema
+from runs.shown import message, printable, shown
+from runs.terminal import Terminal, say
 from shell_model.rendering import RenderingUnavailable
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def run(
             finished = run_case(effective, case, comm, Path(scratch), tell, cache)
         assert finished is not None
         output.write(finished, folder, Path(scratch))
-        print(f"{folder / output.REPORT}")
+        print(printable(str(folder / output.REPORT)))
         return _show({case: finished.results})
 
 
@@ -128,7 +129,7 @@ def snapshot(
         raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
     output.write_report(results, Path(folder))
     for name in results.summary["snapshots"]["written"]:
-        print(Path(folder) / output.SNAPSHOTS / name)
+        print(printable(str(Path(folder) / output.SNAPSHOTS / name)))
     return 0
 
 
@@ -171,34 +172,34 @@ def sweep(
                     plan.points, folder, pool, tell, None if no_cache else Cache(default_folder())
                 )
         data = sweep_output.write(plan, outcomes, folder)
-        print(folder / sweep_output.CSV)
-        sweep_output.show(data, Console())
+        print(printable(str(folder / sweep_output.CSV)))
+        sweep_output.show(data, Terminal())
         return _show_failures(plan, outcomes)
 
 
 @app.command()
 def check(case: CaseFile) -> int:
     """Check a case file, and print what follows from it."""
-    print_inferred(case_file.load(case), Console())
+    print_inferred(case_file.load(case), Terminal())
     return 0
 
 
 @app.command()
 def schema() -> int:
     """Print the JSON Schema of a case file."""
-    print(json.dumps(Case.model_json_schema(), indent=1))
+    print(json.dumps(case_schema(), indent=1))
     return 0
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit; whatever the user can mend is one line on stderr."""
-    # The form compiler logs its C compiler's command lines to the root logger.
-    logging.getLogger().addFilter(lambda record: record.levelno >= logging.WARNING)
+    terminal.prepare()
     command = typer.main.get_command(app)
     try:
-        status = command.main(arguments, prog_name="protractile", standalone_mode=False)
+        with terminal.flushed():
+            status = command.main(arguments, prog_name="protractile", standalone_mode=False)
     except typer.Abort:
-        ranks.fail("protractile: interrupted", 130, None)
+        ranks.fail(message("interrupted"), 130, None)
     except Exception as error:
         known = _explain(error)
         if known is None:
@@ -210,17 +211,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _explain(error: Exception) -> tuple[str, int] | None:
     """The line and the exit status for what is not a fault of the program."""
     if isinstance(error, BadInput):
-        return f"protractile: {error}", 2
+        return message(str(error)), 2
     if isinstance(error, NumericsError):
-        return " ".join(f"protractile: {error}".split()), 3
+        return message(str(error)), 3
     if isinstance(error, MemoryError):
-        return f"protractile: out of memory ({error}); make the models or the output smaller", 3
+        return message(f"out of memory ({error}); make the models or the output smaller"), 3
     # A usage error of typer's, whose class has no public name.
     if hasattr(error, "format_message"):
-        text = " ".join(error.format_message().split())
-        return f"protractile: {text} (protractile --help tells more)", 2
-    if isinstance(error, OSError) and error.filename is not None:
-        return f"protractile: {error.filename}: file: cannot be used ({error.strerror})", 2
+        return message(f"{error.format_message()} (protractile --help tells more)"), 2
+    if isinstance(error, OSError):
+        # Some libraries do not say which file it was, or why.
+        file = "output" if error.filename is None else shown(str(error.filename))
+        return message(f"{file}: file: cannot be used ({error.strerror or error})"), 2
     return None
 
 
@@ -290,7 +292,7 @@ def _silence(model: str, stage: str, part: float) -> None:
 
 def _show(runs: Mapping[str, Results]) -> int:
     """Print the tables of runs, by their file, and what is amiss; the exit status."""
-    console = Console()
+    console = Terminal()
     for results in runs.values():
         print_models(results, console)
         skipped = results.summary["snapshots"]["skipped"]
@@ -299,10 +301,11 @@ def _show(runs: Mapping[str, Results]) -> int:
     print_verdicts({Path(file).stem: results for file, results in runs.items()}, console)
     broken = [(file, verdict) for file, run in runs.items() for verdict in run.broken_demands()]
     for file, verdict in broken:
-        print(
-            f"protractile: {file}: demand: {verdict.id} is {verdict.verdict}, and the case demands "
-            f"that it is reproduced: {verdict.why}",
-            file=sys.stderr,
+        say(
+            message(
+                f"{shown(file)}: demand: {verdict.id} is {verdict.verdict}, and the case demands "
+                f"that it is reproduced: {verdict.why}"
+            )
         )
     return 1 if broken else 0
 
@@ -311,8 +314,7 @@ def _show_failures(plan: sweep_points.Plan, outcomes: Sequence[sweep_runs.Outcom
     """A line for each model that failed at a point; the exit status, 3 if nothing else is left."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
-            line = f"protractile: {plan.file}: --vary {point.label}: {model}: {why}"
-            print(" ".join(line.split()), file=sys.stderr)
+            say(message(f"{shown(plan.file)}: --vary {point.label}: {model}: {why}"))
     return 0 if any(outcome.models for outcome in outcomes) else 3
 
 

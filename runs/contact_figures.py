@@ -101,7 +101,7 @@ def friction(pen: Pen) -> list[Figure]:
 
 def _mean(pen: Pen, force: Array) -> Array:
     """(num_times,) running mean over the window that impacts take."""
-    width = max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0])))
+    width = min(max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0]))), force.size)
     return np.convolve(force, np.full(width, 1.0 / width), mode="same")
 
 

@@ -12,6 +12,8 @@ import sys
 import time
 from typing import TYPE_CHECKING, NoReturn
 
+from runs.terminal import say
+
 if TYPE_CHECKING:
     from mpi4py import MPI
 
@@ -45,16 +47,10 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     if comm is None or comm.size == 1:
         if launched_rank() != 0:
             sys.exit(0)
-        _say(line)
+        say(line)
         sys.exit(code)
     if comm.rank != 0:
         time.sleep(_GRACE)
-    _say(line)
+    say(line)
     comm.Abort(code)
     raise AssertionError("MPI_Abort returned")
-
-
-def _say(line: str) -> None:
-    """One write with its newline, which the launcher's own words cannot come between."""
-    sys.stderr.write(f"{line}\n")
-    sys.stderr.flush()

@@ -9,21 +9,31 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Exponent = Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)]
-Count = Annotated[int, Field(strict=True, ge=1)]
+Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0)]
 Flag = Annotated[bool, Field(strict=True)]
-# A name becomes a file name and an element of a comma-separated list.
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$")]
+# A name becomes a part of file names, and an element of a comma-separated list.
+NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
+Name = Annotated[str, Field(pattern=NAME, max_length=60)]
+# Neither controls, nor what breaks a line or turns its direction.
+PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
+Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
 
 # Whole tips are kept of each.
 MOST_MEMBERS = 10_000
+# A boom has a few of each; many more are a slip of the pen, and would take for ever to draw.
+MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS = 20, 50, 50
+Few = Field(max_length=100)
+# Measured accelerations of a minute at a thousand a second, and more.
+MOST_TIMES = 100_000
 
 
 class Table(BaseModel):
@@ -51,7 +61,7 @@ class EnsembleTable(Table):
         description="the number of runs of each model, the unchanged one among them"
     )
     relative: Part = Field(1.0e-9, description="the largest relative change")
-    seed: Annotated[int, Field(strict=True, ge=0)] = Field(
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
         1, description="the seed of the changes: the same one gives the same members"
     )
     vary: Literal["load", "clearance"] = Field(
@@ -117,15 +127,22 @@ def _support(given: Any) -> Any:
     return {"x": float(given)} if number else given
 
 
+Support = Annotated[
+    SupportTable, BeforeValidator(_support, json_schema_input_type=Number | SupportTable)
+]
+
+
 class SegmentTable(Table):
     """One box of the boom."""
 
     name: Name = Field(description="what the joints and the results call the segment")
     span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
-    supports: tuple[Annotated[SupportTable, BeforeValidator(_support)], ...] = Field(
+    supports: Annotated[tuple[Support, ...], Few] = Field(
         (), description="the places that the ground holds: an x in m each, or a table"
     )
-    masses: tuple[MassTable, ...] = Field((), description="the masses on the segment")
+    masses: Annotated[tuple[MassTable, ...], Few] = Field(
+        (), description="the masses on the segment"
+    )
     mass_per_length: Positive | None = Field(
         None, description="the mass per length in kg/m; follows from the section unless given"
     )
@@ -168,10 +185,10 @@ class SegmentTable(Table):
         description="the mass moment of inertia about the axis per length in kg m; follows from "
         "the section unless given",
     )
-    collars: tuple[CollarTable, ...] = Field(
+    collars: Annotated[tuple[CollarTable, ...], Few] = Field(
         (), description="the doublers around the box, which only shells have, mass and all"
     )
-    diaphragms: tuple[DiaphragmTable, ...] = Field(
+    diaphragms: Annotated[tuple[DiaphragmTable, ...], Few] = Field(
         (), description="the plates that close the box, which only shells have, mass and all"
     )
 
@@ -197,7 +214,7 @@ class JointTable(Table):
 
     outer: str = Field(description="the name of the outer segment")
     inner: str = Field(description="the name of the inner segment")
-    stations: Annotated[tuple[Number, ...], Field(min_length=1)] = Field(
+    stations: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
         description="the x in m at which the two may touch, rising"
     )
     play: NotNegative = Field(description="the play in m, the clearance above and below together")
@@ -214,7 +231,7 @@ class JointTable(Table):
         None, description="the table of the contact's own damping; none unless given"
     )
     friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
-    normal_forces: tuple[NotNegative, ...] = Field(
+    normal_forces: Annotated[tuple[NotNegative, ...], Few] = Field(
         (),
         description="the forces in N that press the segments at each station for the friction; in "
         "space the contact forces of the other plane do unless given",
@@ -268,16 +285,19 @@ class StopTable(Table):
     exponent: Exponent = Field(1.0, description="the exponent n of the contact law")
 
 
+Times = tuple[tuple[Number, Number], ...]
+
+
 class HistoryTable(Table):
     """How something goes with time: at once and kept, unless one of these is given."""
 
     ramp: Positive | None = Field(None, description="the time in s in which it rises to its value")
     frequency: Positive | None = Field(None, description="the frequency of a sine in Hz")
-    table: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=2)] | None = Field(
+    table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = Field(
         None,
         description="pairs of a time in s and a factor, linear between them and constant beyond",
     )
-    file: str | None = Field(
+    file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
     )
 
@@ -350,7 +370,7 @@ class KantorovichTable(ModelTable):
     """The semi-discrete Ritz series of the paper."""
 
     kind: Literal["kantorovich"] = Field(description="the kind of model")
-    terms: tuple[Count, ...] = Field(
+    terms: Annotated[tuple[Count, ...], Few] = Field(
         description="the number of functions of each segment, from the base to the tip"
     )
     base: Literal["as printed", "pinned", "complete"] = Field(
@@ -382,7 +402,10 @@ def _modes(given: Any) -> Any:
     raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
 
 
-Modes = Annotated[int | Literal["auto"], BeforeValidator(_modes)]
+Modes = Annotated[
+    int | Literal["auto"],
+    BeforeValidator(_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]),
+]
 
 
 class ShellTable(ModelTable):
@@ -424,8 +447,8 @@ Model = Annotated[KantorovichTable | FiniteElementTable | ShellTable, Field(disc
 class Case(Table):
     """A boom, and the models to run on it."""
 
-    title: str = Field(description="the heading of the report")
-    demand: tuple[StatementId, ...] = Field(
+    title: Text = Field(description="the heading of the report")
+    demand: Annotated[tuple[StatementId, ...], Few] = Field(
         (), description="the statements of the paper that the run must reproduce"
     )
     time: TimeTable = Field(description="the table of the duration and the output step")
@@ -433,26 +456,36 @@ class Case(Table):
         None, description="the table of the ensembles; none are run unless given"
     )
     material: MaterialTable = Field(description="the table of the elastic constants and density")
-    segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1)] = Field(
-        alias="segment", description="the segments, one [[segment]] each, from the base to the tip"
+    segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
+        Field(
+            alias="segment",
+            description="the segments, one [[segment]] each, from the base to the tip",
+        )
     )
-    joints: tuple[JointTable, ...] = Field(
+    joints: Annotated[tuple[JointTable, ...], Field(max_length=MOST_SEGMENTS)] = Field(
         (), alias="joint", description="the joints, one [[joint]] each, from the base to the tip"
     )
-    stops: tuple[StopTable, ...] = Field(
+    stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop", description="the rests that segments may touch, one [[stop]] each"
     )
-    loads: tuple[LoadTable, ...] = Field(
+    loads: Annotated[tuple[LoadTable, ...], Few] = Field(
         (), alias="load", description="the loads that are not uniform or not constant"
     )
     payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
-    base: tuple[BaseTable, ...] = Field((), description="the accelerations of the ground")
+    base: Annotated[tuple[BaseTable, ...], Few] = Field(
+        (), description="the accelerations of the ground"
+    )
     start: StartTable = Field(
         StartTable.model_validate({}), description="the table of the state at t = 0"
     )
     damping: DampingTable = Field(
         DampingTable.model_validate({}), description="the table of the damping of all modes"
     )
-    models: Annotated[tuple[Model, ...], Field(min_length=1)] = Field(
+    models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model", description="the models to run, one [[model]] each"
     )
+
+
+def case_schema() -> dict[str, Any]:
+    """The JSON Schema of a case file."""
+    return {"$schema": GenerateJsonSchema.schema_dialect, **Case.model_json_schema()}

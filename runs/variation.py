@@ -29,7 +29,8 @@ MOST_POINTS = 10_000
 # Evenly spaced numbers are rounded to what a person would write, so that a finer sweep meets them.
 _DIGITS = 12
 
-_STEP = re.compile(r"([^\[\]]+?)(?:\[(\d+)\])?")
+_STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
+_WHOLE = re.compile(r"[0-9]{1,9}")
 _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
 # Units as the schema's descriptions have them: "in N/m^n where", "in kg m;".
@@ -184,7 +185,7 @@ def _are_numbers(values: Sequence[Any]) -> bool:
 
 def _values(text: str) -> tuple[float, ...]:
     parts = [part.strip() for part in text.split(":")]
-    if len(parts) == 3 and not parts[2].isdecimal():
+    if len(parts) == 3 and not _WHOLE.fullmatch(parts[2]):
         raise _Unplaced(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
     if len(parts) == 3:
         start, stop, count = _number(parts[0]), _number(parts[1]), int(parts[2])

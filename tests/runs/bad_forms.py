@@ -140,6 +140,51 @@ FORMS = {
         "model[3].name: must be made of letters, digits, blanks and . _ + -, starting with one of "
         "the first, got 'beam/fe'",
     ),
+    "name longer than a file's": (
+        'name = "beam-fe"',
+        f'name = "{"b" * 61}"',
+        "model[3].name: too long; give 60 characters at most",
+    ),
+    "controls in the title": (
+        'title = "The paper\'s boom, coarse and short"',
+        'title = "red \\u001b[31m"',
+        "title: must be a line of printable characters, got 'red \\x1b[31m'",
+    ),
+    "controls in a key": (
+        "duration = 0.6",
+        '"\\u001b[31m" = 1',
+        "time.\\x1b[31m: unknown key; known ones are duration, output_step, step",
+    ),
+    "key that nobody can read": (
+        "duration = 0.6",
+        f"{'k' * 5000} = 1",
+        f"time.{'k' * 52} ... {'k' * 57}: unknown key; known ones are duration, output_step, step",
+    ),
+    "more supports than anybody builds": (
+        "supports = [0.0, 2.0]",
+        f"supports = {[0.0] * 20_000}",
+        "segment[1].supports: too many; give 100 at most",
+    ),
+    "more stations than anybody builds": (
+        "stations = [9.0, 10.0]",
+        f"stations = {[9.0] * 300}",
+        "joint[1].stations: too many; give 50 at most",
+    ),
+    "more stops than anybody builds": (
+        "[[joint]]",
+        '[[stop]]\nsegment = "inner"\nx = 10.0\nplay = 1.0\nstiffness = 1e7\n' * 2000 + "[[joint]]",
+        "stop: too many; give 50 at most",
+    ),
+    "digits without end": (
+        "density = 7850.0",
+        f"density = {'7' * 5000}",
+        "file: a whole number has more than 64 bits; give fewer digits, or a number as 1.0e20",
+    ),
+    "digits without end, in hexadecimal": (
+        "terms = [2, 3]",
+        f"terms = [2, 0x{'f' * 5000}]",
+        "model[2].terms[2]: has more than 64 bits; give fewer digits, or a number as 1.0e20",
+    ),
     "not TOML": (
         "[time]",
         "[time",

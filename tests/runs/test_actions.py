@@ -229,8 +229,8 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "none.csv"',
-            "base[1].file: '{folder}/none.csv' cannot be read (there is no such file); give a CSV "
-            "file of two columns without a heading, time in s and factor",
+            "base[1].file: '{folder}/none.csv' cannot be read (No such file or directory); give a "
+            "CSV file of two columns without a heading, time in s and factor",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "words.csv"',

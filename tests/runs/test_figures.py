@@ -195,6 +195,12 @@ def test_draws_around_what_is_not_finite(results: Results, tmp_path: Path) -> No
     assert len(draw(replace(results, trajectories=broken), tmp_path)) == 7
 
 
+def test_draws_a_run_shorter_than_its_means(results: Results, tmp_path: Path) -> None:
+    """Contact forces are means over 10 ms; here are 4."""
+    few = replace(results, trajectories=results.trajectories.isel(time=slice(0, 5)))
+    assert draw_some(first_contacts, few, tmp_path)[0].path.exists()
+
+
 def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path) -> None:
     """A boom under its weight deflects downwards: the title tells how far, with the sign."""
     down = results.trajectories.copy(deep=True)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The JSON Schema that editors check case files against: right about good and bad ones."""
+
+from __future__ import annotations
+
+import copy
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from runs import toml
+from runs.case import load
+from runs.schema import case_schema
+from tests.runs.coarse_case import CASES
+
+pytestmark = pytest.mark.quick
+
+VALIDATOR = jsonschema.Draft202012Validator(case_schema())
+
+
+def data(text: str) -> dict[str, Any]:
+    """What an editor sees of a case file."""
+    read: dict[str, Any] = json.loads(json.dumps(tomllib.loads(text)))
+    return read
+
+
+def faults(case: dict[str, Any]) -> list[str]:
+    return [fault.json_path for fault in VALIDATOR.iter_errors(case)]
+
+
+def test_it_is_a_schema() -> None:
+    jsonschema.Draft202012Validator.check_schema(case_schema())
+    assert case_schema()["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_it_accepts_the_cases_that_come_with_the_project(path: Path) -> None:
+    """As they are written, and as a run writes them again."""
+    assert faults(data(path.read_text(encoding="utf-8"))) == []
+    assert faults(data(toml.dumps(load(str(path))))) == []
+
+
+def test_it_accepts_supports_and_modes_in_all_their_forms() -> None:
+    case = data((CASES / "coarse.toml").read_text(encoding="utf-8"))
+    case["segment"][0]["supports"] = [0, 1.5, {"x": 2.0, "kind": "clamped"}]
+    for modes in (3, "auto"):
+        case["model"][-1]["modes"] = modes
+        assert faults(case) == []
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "fault"),
+    [
+        (("durration",), 1.0, "$"),
+        (("time", "duration"), "0.6", "$.time.duration"),
+        (("time", "duration"), -1.0, "$.time.duration"),
+        (("title",), "two\nlines", "$.title"),
+        (("segment", 0, "supports"), [True], "$.segment[0].supports[0]"),
+        (("segment", 0, "supports"), [{"y": 1.0}], "$.segment[0].supports[0]"),
+        (("segment", 0, "span"), [0.0], "$.segment[0].span"),
+        (("joint", 0, "stations"), [], "$.joint[0].stations"),
+        (("joint", 0, "exponent"), 0.5, "$.joint[0].exponent"),
+        (("model", 5, "modes"), 0, "$.model[5]"),
+        (("model", 5, "modes"), "many", "$.model[5]"),
+        (("model", 0, "kind"), "plate", "$.model[0]"),
+    ],
+)
+def test_it_refuses_a_slip(place: tuple[str | int, ...], value: object, fault: str) -> None:
+    case = copy.deepcopy(data((CASES / "coarse.toml").read_text(encoding="utf-8")))
+    here: Any = case
+    for step in place[:-1]:
+        here = here[step]
+    here[place[-1]] = value
+    assert faults(case) == [fault]

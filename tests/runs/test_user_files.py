@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What is no regular file of a sensible size is refused, and nothing waits for it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from runs.bad_input import BadInput
+from runs.case import load
+from runs.user_files import LARGEST
+from tests.runs.coarse_case import COARSE
+
+pytestmark = pytest.mark.quick
+
+GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def complaint(file: str) -> str:
+    with pytest.raises(BadInput) as refused:
+        load(file)
+    return str(refused.value)
+
+
+def test_a_pipe_that_nobody_writes_to_is_no_case() -> None:
+    os.mkfifo("pipe")
+    assert complaint("pipe") == (
+        "pipe: file: cannot be read (not a regular file); give a case file that can"
+    )
+
+
+def test_a_device_without_an_end_is_no_case() -> None:
+    assert complaint("/dev/zero") == (
+        "/dev/zero: file: cannot be read (not a regular file); give a case file that can"
+    )
+
+
+def test_a_huge_file_is_no_case() -> None:
+    with open("huge", "wb") as file:
+        file.truncate(LARGEST + 1)
+    assert complaint("huge") == (
+        "huge: file: cannot be read (larger than 16 MB); give a case file that can"
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "what"),
+    [
+        (os.mkfifo, "'gust.csv' cannot be read (not a regular file); "),
+        (lambda path: os.symlink("/dev/zero", path), "'gust.csv' cannot be read (not a regular"),
+        (os.mkdir, "'gust.csv' cannot be read (Is a directory); "),
+        (lambda path: os.symlink(path, path), "'gust.csv' cannot be read (Too many levels of "),
+        (lambda path: Path(path).write_bytes(b""), "'gust.csv' has other columns, or one line "),
+        (lambda path: Path(path).write_bytes(b"# a\n\n"), "'gust.csv' has other columns, or one "),
+        (lambda path: Path(path).write_bytes(b"0,1\n1,\xff"), "'gust.csv' holds other than numbe"),
+        (lambda path: Path(path).write_bytes(b"0,1\n" * 100_001), "'gust.csv' has 100001 lines; "),
+    ],
+)
+def test_a_history_s_file_is_read_with_the_same_care(
+    make: Callable[[str], object], what: str
+) -> None:
+    make("gust.csv")
+    Path("case.toml").write_text(COARSE.replace("[[model]]", GUST, 1), encoding="utf-8")
+    assert complaint("case.toml").startswith(f"case.toml: base[1].file: {what}")
+
+
+def test_a_history_s_file_is_a_printable_path() -> None:
+    text = COARSE.replace("[[model]]", GUST.replace("gust", "a\\u0000b"), 1)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    assert complaint("case.toml") == (
+        "case.toml: base[1].file: must be a line of printable characters, got 'a\\x00b.csv'"
+    )
