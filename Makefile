@@ -63,7 +63,7 @@ lint: $(READY) ## ruff and mypy
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
 
-matrix: ## the quick tests on the DOLFINx of Debian 13 and of unstable (needs root)
+matrix: ## `make verify` and `make test` on a Debian 13, the quick tests on unstable (needs root)
 	@$(MAKE) --no-print-directory --keep-going -j1 matrix-trixie matrix-sid
 
 matrix-%:

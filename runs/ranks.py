@@ -7,9 +7,14 @@ its other processes have nothing to do.
 
 from __future__ import annotations
 
+import fcntl
 import os
+import stat
 import sys
+import termios
 import time
+from array import array
+from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
 from runs.terminal import say
@@ -22,6 +27,8 @@ _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 
 # Seconds for which another rank's message waits: if rank 0 has failed too, it speaks alone.
 _GRACE = 5.0
+# Seconds between looks at whether the launcher has read a message.
+_LOOK = 1.0e-3
 
 
 def launched() -> bool:
@@ -52,5 +59,24 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
     if comm.rank != 0:
         time.sleep(_GRACE)
     say(line)
+    with suppress(OSError):
+        _until_read(sys.stderr.fileno())
     comm.Abort(code)
     raise AssertionError("MPI_Abort returned")
+
+
+def _until_read(stream: int) -> None:
+    """Wait until a pipe is empty, so that what its reader says of the end comes after it.
+
+    Open MPI 5 else puts our line behind its own on the abort, and in the same line of the terminal.
+
+    Args:
+        stream: a file descriptor that can be written; only a pipe is waited for.
+    """
+    if not stat.S_ISFIFO(os.fstat(stream).st_mode):
+        return
+    unread = array("i", [1])
+    deadline = time.monotonic() + _GRACE
+    while unread[0] and time.monotonic() < deadline:
+        time.sleep(_LOOK)
+        fcntl.ioctl(stream, termios.FIONREAD, unread)
