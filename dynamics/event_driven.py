@@ -195,7 +195,7 @@ def what_hinders(system: GapSystem) -> str | None:
     """What of a system cannot be moved from contact to contact; None if all can."""
     if system.damping.any():
         return "a damped system has no closed form from contact to contact"
-    if system.excitations:
+    if not all(excitation.constant for excitation in system.excitations):
         return "loads that change with time leave no closed form from contact to contact"
     if system.frictions:
         return "dry friction leaves no closed form from contact to contact"
@@ -242,6 +242,7 @@ def integrate_events(
     hindrance = what_hinders(system)
     if hindrance is not None:
         raise ValueError(f"{hindrance}; integrate by splitting")
+    system = system.gathered()
     n, m = system.num_modes, len(system.laws)
     a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
     v = np.zeros(n) if velocity is None else np.array(velocity, dtype=np.float64)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads that change with time: a modal load times a history.
 
-Every history is a function of the time in s, vectorised, without unit. For the choice of a step it
-tells its largest absolute value, ``peak``, and the ``fastest`` frequency in it in rad/s.
+A history is data: all that a step has to know of it is required, so that no step can miss it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +16,31 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 
+@runtime_checkable
+class History(Protocol):
+    """A factor without unit over the time, continuous from t = 0 on."""
+
+    @property
+    def kinks(self) -> Sequence[float]:
+        """Times in s, rising, at which the slope changes."""
+
+    @property
+    def peak(self) -> float:
+        """Largest |value|."""
+
+    @property
+    def fastest(self) -> float:
+        """Highest frequency between the kinks in rad/s; 0 where all between them is straight."""
+
+    def __call__(self, time: Array) -> Array:
+        """Value at each time in s, any shape."""
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """1 from t = 0 on."""
 
+    kinks = (0.0,)
     peak = 1.0
     fastest = 0.0
 
@@ -34,15 +55,16 @@ class Ramp:
     duration: float
 
     peak = 1.0
+    fastest = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.duration < np.inf:
             raise ValueError(f"duration must be finite and positive, got {self.duration} s")
 
     @property
-    def fastest(self) -> float:
-        """1 / duration."""
-        return 1.0 / self.duration
+    def kinks(self) -> tuple[float, float]:
+        """Where it begins and ends."""
+        return 0.0, self.duration
 
     def __call__(self, time: Array) -> Array:
         return np.clip(np.asarray(time) / self.duration, 0.0, 1.0)
@@ -60,6 +82,7 @@ class Sine:
     frequency: float
     phase: float = 0.0
 
+    kinks = ()
     peak = 1.0
 
     def __post_init__(self) -> None:
@@ -89,6 +112,8 @@ class Table:
     times: Sequence[float]
     values: Sequence[float]
 
+    fastest = 0.0
+
     def __post_init__(self) -> None:
         if len(self.times) != len(self.values) or len(self.times) == 0:
             raise ValueError(
@@ -106,9 +131,9 @@ class Table:
         return float(np.abs(self.values).max())
 
     @property
-    def fastest(self) -> float:
-        """1 / the shortest time between two points."""
-        return float(1.0 / np.diff(self.times).min()) if len(self.times) > 1 else 0.0
+    def kinks(self) -> Sequence[float]:
+        """Its times."""
+        return self.times
 
     def __call__(self, time: Array) -> Array:
         return np.asarray(np.interp(time, self.times, self.values))
@@ -116,22 +141,39 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
-    """A modal load that follows a history; over one time step as a straight line.
+    """A modal load that follows a history.
+
+    Between kinks it is integrated exactly where the history is straight, else over one time step
+    as a straight line.
 
     Args:
         load: (num_modes,) in N/√kg.
-        history: time in s, any shape → factor, the same shape.
+        history: what multiplies it.
+
+    Raises:
+        ValueError: the history lacks something, or its data have no meaning.
     """
 
     load: Array
-    history: Callable[[Array], Array]
+    history: History
+
+    def __post_init__(self) -> None:
+        history = self.history
+        if not isinstance(history, History):
+            raise ValueError(
+                "a history needs kinks, peak and fastest beside its values; give a Step, Ramp, "
+                f"Sine, Table or other History, got {type(history).__name__}"
+            )
+        kinks = np.asarray(history.kinks, dtype=np.float64)
+        if not np.isfinite(kinks).all() or (np.diff(kinks) <= 0.0).any():
+            raise ValueError("the kinks of a history must be finite and rise")
+        for name, value in (("peak", history.peak), ("fastest", history.fastest)):
+            if not 0.0 <= value < np.inf:
+                raise ValueError(f"{name} of a history must be finite, not negative, got {value}")
 
     @property
-    def peak(self) -> float:
-        """Largest |history|; 1 if it does not tell."""
-        return float(getattr(self.history, "peak", 1.0))
-
-    @property
-    def fastest(self) -> float:
-        """Highest frequency of the history in rad/s; 0 if it does not tell."""
-        return float(getattr(self.history, "fastest", 0.0))
+    def constant(self) -> bool:
+        """Whether the load stays what it is at t = 0."""
+        ahead = [time for time in self.history.kinks if time > 0.0]
+        times = np.array([0.0, *ahead, 1.0 + max(ahead, default=0.0)])
+        return self.history.fastest == 0.0 and bool(np.ptp(self.history(times)) == 0.0)

@@ -12,7 +12,7 @@ D_l a relative displacement along which two places slide.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -124,8 +124,14 @@ class GapSystem:
     @property
     def largest_load(self) -> Array:
         """(num_modes,) |Q| and the largest of every excitation, in N/√kg."""
-        excited = [np.abs(x.load) * x.peak for x in self.excitations]
+        excited = [np.abs(x.load) * x.history.peak for x in self.excitations]
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
+
+    def gathered(self) -> GapSystem:
+        """The same motion, with all that stays constant from t = 0 on in ``load``."""
+        constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]
+        changing = [x for x in self.excitations if not x.constant]
+        return replace(self, load=np.sum([self.load, *constant], axis=0), excitations=changing)
 
     def static_response(self, force: Array) -> Array:
         """(num_modes,) rest position under a modal force, for a system without rigid modes.

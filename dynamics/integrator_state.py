@@ -20,9 +20,12 @@ System = tuple[Array, Array, Array, Array, Array, bool]
 # contact row presses (num_frictions, num_rows), D Dᵀ.
 Dry = tuple[Array, Array, Array, Array]
 
-# Loads of the excitations (num_excitations, num_modes); their factors at all steps
-# (num_excitations, num_steps + 1), and in one step at the start, the middle and the end.
-Excitations = tuple[Array, Array, Array]
+# Loads of the excitations (num_excitations, num_modes). Kinks cut steps into parts, over each of
+# which all histories are straight: their factors where parts begin and end (num_parts + 1,
+# num_excitations), the length of each part in s, the first part of each step (num_steps + 1,), and
+# through how many steps from each one on the lines go on (num_steps,). Scratch (3, num_modes).
+Integers = npt.NDArray[np.int64]
+Excitations = tuple[Array, Array, Array, Integers, Integers, Array]
 
 # Positions in the tally; from the work on as in ``ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT = range(8)
@@ -61,12 +64,27 @@ def friction_arrays(system: GapSystem) -> Dry:
     return rows, given.T.copy(), pressing, rows @ rows.T
 
 
-def excitation_arrays(system: GapSystem, times: Array) -> Excitations:
+def excitation_arrays(system: GapSystem, times: Array, step: float) -> Excitations:
     """Its excitations at the times of all steps and of the end, (num_steps + 1,) in s."""
-    count = len(system.excitations)
-    loads = np.array([x.load for x in system.excitations]).reshape(count, system.num_modes)
-    samples = np.array([x.history(times) for x in system.excitations], dtype=np.float64)
-    return loads, samples.reshape(count, times.size), np.zeros((3, count))
+    histories = [x.history for x in system.excitations]
+    loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
+    kinks = np.unique(np.concatenate([np.zeros(0), *(history.kinks for history in histories)]))
+    inside = kinks[(kinks > times[0]) & (kinks < times[-1])]
+    places = np.searchsorted(times, inside)
+    between = times[places] != inside
+    knots = np.insert(times, places[between], inside[between])
+    samples = np.array([history(knots) for history in histories], dtype=np.float64)
+    parts = np.searchsorted(knots, times)
+    spans = np.diff(knots)
+    # The differences of whole steps would each have their own round-off.
+    spans[parts[:-1][np.diff(parts) == 1]] = step
+    straight = np.ones(times.size - 1, dtype=np.int64)
+    if not any(history.fastest for history in histories):
+        bends = np.append(inside, np.inf)[np.searchsorted(inside, times[:-1], side="right")]
+        ahead = np.searchsorted(times, bends, side="right") - 1 - np.arange(straight.size)
+        straight = np.maximum(straight, ahead)
+    samples = np.ascontiguousarray(samples.reshape(len(histories), knots.size).T)
+    return loads, samples, spans, parts, straight, np.zeros((3, system.num_modes))
 
 
 def initial_state(system: GapSystem, position: Array, velocity: Array) -> State:
@@ -115,11 +133,21 @@ def enter(y: Array, before: Array, law: Array, time: float, tally: Array) -> Non
         tally[FIRST_CONTACT] = closing
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def excite(samples: Array, k: int, begin: float, end: float, factors: Array) -> None:
-    """Set the factors (3, num_excitations) of a part of step k."""
-    for e in range(samples.shape[0]):
-        now, more = samples[e, k], samples[e, k + 1] - samples[e, k]
-        factors[0, e] = now + begin * more
-        factors[1, e] = now + 0.5 * (begin + end) * more
-        factors[2, e] = now + end * more
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+def excite(excitations: Excitations, first: int, last: int, begin: float, end: float) -> None:
+    """Set the modal loads at the start, the middle and the end of a piece of a straight line.
+
+    Args:
+        excitations: of whose scratch they are the rows.
+        first, last: where in the samples the line begins and ends.
+        begin, end: of the piece, as parts of the line.
+    """
+    loads, samples, _, _, _, pushes = excitations
+    middle = 0.5 * (begin + end)
+    pushes[:] = 0.0
+    for e in range(loads.shape[0]):
+        now, more = samples[first, e], samples[last, e] - samples[first, e]
+        for i in range(loads.shape[1]):
+            pushes[0, i] += (now + begin * more) * loads[e, i]
+            pushes[1, i] += (now + middle * more) * loads[e, i]
+            pushes[2, i] += (now + end * more) * loads[e, i]

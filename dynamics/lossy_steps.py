@@ -43,7 +43,7 @@ Array = npt.NDArray[np.float64]
 # Rows that turn within this part of a step of one another turn together.
 _TOGETHER = 1.0e-9
 
-# A length of step in s (1,), and of this the flow over its half (8, num_modes), the filtered
+# A length of step in s (1,), and of this the flow over its half (9, num_modes), the filtered
 # friction rows and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows),
 # friction rows (3, num_frictions), and the problem of bounded impulses.
 Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array]
@@ -52,7 +52,7 @@ Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array]
 def space_for(system: GapSystem) -> Space:
     """What the steps of a system need beside its state."""
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
-    shapes = ((1,), (8, n), (f, n), (f, f), (n,), (3, m), (3, f))
+    shapes = ((1,), (9, n), (f, n), (f, f), (n,), (3, m), (3, f))
     length, half, filtered, matrix, ahead, middle, lines = (np.zeros(shape) for shape in shapes)
     return length, half, filtered, matrix, ahead, middle, lines, problem_for(f)
 
@@ -72,8 +72,9 @@ def lossy_steps(
 ) -> int:
     """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
 
-    A step in which a sliding row turns is made in parts, the first of which ends where the first
-    row turns; so the direction of friction changes when it should and not at the next step.
+    A step is made in parts where histories have kinks. One in which a sliding row turns is made in
+    parts, too, the first of which ends where the first row turns; so the direction of friction
+    changes when it should and not at the next step.
 
     Gives the number of the next step: ``last``, or an earlier one when nothing touches any more
     unless ``always``.
@@ -82,17 +83,20 @@ def lossy_steps(
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
     omega2, load, damping, rows, law, damped = system
     friction_rows, given, pressing, masses = dry
-    loads, samples, factors = excitations
-    start, centre, end = factors
+    loads, _, spans, parts, _, pushes = excitations
+    start, centre, end = pushes
     length, half, filtered, matrix, ahead, middle, lines, problem = space
     push, y_ahead, force_ahead = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     pressed = pressing.any()
-    plain = not damped and loads.shape[0] == 0
-    for k in range(first, last):
-        left = step
-        parts = 0
+    excited = loads.shape[0] > 0
+    plain = not (damped or excited)
+    k = first
+    for p in range(parts[first], parts[last]):
+        span = spans[p]
+        left = span
+        cuts = 0
         while left > 0.0:
             for i in range(whole.size):
                 kept[i] = whole[i]
@@ -103,7 +107,8 @@ def lossy_steps(
                     length[0] = time
                     tabulate(half, omega2, load, damping, 0.5 * time)
                     filter_rows(friction_rows, half, time, filtered, matrix)
-                excite(samples, k, 1.0 - left / step, 1.0 - (left - time) / step, factors)
+                if excited:
+                    excite(excitations, p, p + 1, 1.0 - left / span, 1.0 - (left - time) / span)
                 share = 0.5 * time / (substeps * step)
 
                 loss = damped_kick(v, rows, force, law, 0.5 * time, False, push)
@@ -112,12 +117,11 @@ def lossy_steps(
                 if plain:
                     move(a, v, half)
                 else:
-                    travel(
-                        a, v, half, 0.5 * time, omega2, load, damped, loads, start, centre, tally
-                    )
+                    travel(a, v, half, 0.5 * time, omega2, load, damped, start, centre, tally)
 
                 look_ahead(a, v, half, ahead)
-                drive(ahead, half, loads, centre, end)
+                if excited:
+                    drive(ahead, half, centre, end)
                 prescribed_bounds(given, time, grip)
                 if pressed:
                     add_pressed_bounds(
@@ -132,7 +136,7 @@ def lossy_steps(
                 if plain:
                     move(a, v, half)
                 else:
-                    travel(a, v, half, 0.5 * time, omega2, load, damped, loads, centre, end, tally)
+                    travel(a, v, half, 0.5 * time, omega2, load, damped, centre, end, tally)
                 contact_forces(a, rows, law, y, force)
                 loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
                 tally[CONTACT] += loss
@@ -149,7 +153,7 @@ def lossy_steps(
                 changed = note_directions(masses, grip, problem, slid)
                 enter(y, before, law, time, tally)
 
-                if cut or not changed or parts > 2 * friction.size:
+                if cut or not changed or cuts > 2 * friction.size:
                     break
                 first_turn = find_turns(masses, grip, problem, slid, time, turns)
                 if not 0.0 < first_turn < left:
@@ -162,7 +166,9 @@ def lossy_steps(
                     if turns[j] <= time * (1.0 + _TOGETHER):
                         grip[SLIDING, j] = 0.0
             left -= time
-            parts += 1
-        if not (always or force.any()):
-            return k + 1
-    return last
+            cuts += 1
+        if p + 1 == parts[k + 1]:
+            k += 1
+            if not (always or force.any()):
+                break
+    return k

@@ -23,7 +23,7 @@ class ModalFlow:
 
     Each array is (num_modes,): a' = aa a + av v + ap, v' = va a + vv v + vp under the constant
     load. A further unit load moves a by ``rise`` and v by av; one that grows from 0 to 1 over the
-    step moves a by ``ramp`` and v by rise / step.
+    step moves a by ``ramp`` and v by rise / step, and a in the mean over the step by ``mean``.
     """
 
     aa: Array
@@ -34,49 +34,56 @@ class ModalFlow:
     vp: Array
     rise: Array
     ramp: Array
+    mean: Array
 
     @classmethod
     def over(cls, system: GapSystem, step: float) -> ModalFlow:
         """The flow of ``system`` without contact over ``step`` seconds."""
         omega = np.sqrt(system.omega2)
         cosine = np.cos(omega * step)
-        # h·sinc and h²·sinc²/2 reach through ω = 0, where the mode is rigid; so does
-        # (1 − sinc x)/x² = sinc²(x/2)/2 − (sinc x + j₂(x))/3 with a spherical Bessel function.
-        unit = np.sinc(omega * step / np.pi)
-        sine = step * unit
-        rise = 0.5 * step**2 * np.sinc(0.5 * omega * step / np.pi) ** 2
-        ramp = rise - step**2 * (unit + spherical_jn(2, omega * step)) / 3.0
-        rows = np.array([cosine, sine, -system.omega2 * sine, cosine, rise, ramp])
+        # h·sinc and h²·sinc²/2 reach through ω = 0, where the mode is rigid.
+        sine = step * np.sinc(omega * step / np.pi)
+        half = np.sinc(0.5 * omega * step / np.pi)
+        rise = 0.5 * step**2 * half**2
+        ramp = step**2 * _lag(omega * step)
+        mean = 0.125 * step**2 * (1.0 + half) * _lag(0.5 * omega * step)
+        rows = np.array([cosine, sine, -system.omega2 * sine, cosine, rise, ramp, mean])
         for i in np.flatnonzero(system.damping):
             rows[:, i] = _damped_flow(float(omega[i]), float(system.damping[i]), step)
-        aa, av, va, vv, rise, ramp = rows
-        return cls(aa, av, rise * system.load, va, vv, av * system.load, rise, ramp)
+        aa, av, va, vv, rise, ramp, mean = rows
+        return cls(aa, av, rise * system.load, va, vv, av * system.load, rise, ramp, mean)
 
     def stacked(self) -> Array:
-        """(8, num_modes), the layout of the compiled loop."""
+        """(9, num_modes), the layout of the compiled loop."""
         return np.array(
-            [self.aa, self.av, self.ap, self.va, self.vv, self.vp, self.rise, self.ramp]
+            [self.aa, self.av, self.ap, self.va, self.vv, self.vp, self.rise, self.ramp, self.mean]
         )
 
 
+def _lag(x: Array) -> Array:
+    """(1 − sinc x)/x² with sinc x = sin x / x, through x = 0 by a spherical Bessel function."""
+    sinc, half = np.sinc(x / np.pi), np.sinc(0.5 * x / np.pi)
+    return np.asarray(0.5 * half**2 - (sinc + spherical_jn(2, x)) / 3.0)
+
+
 def _damped_flow(omega: float, damping: float, step: float) -> Array:
-    """(6,) aa, av, va, vv, rise, ramp of one damped mode.
+    """(7,) aa, av, va, vv, rise, ramp, mean of one damped mode.
 
     By the matrix exponential: its closed forms cancel where damping or step is small. Lengths are
     scaled so that both unknowns are velocities.
     """
     scale = max(omega, 1.0 / step)
-    generator = np.zeros((4, 4))
+    generator = np.zeros((5, 5))
     generator[0, 1] = scale
-    generator[1] = [-(omega**2) / scale, -damping, 1.0, 0.0]
-    generator[2, 3] = 1.0 / step
-    (aa, av, rise, ramp), (va, vv, _, _), _, _ = expm(step * generator)
-    return np.array([aa, av / scale, va * scale, vv, rise / scale, ramp / scale])
+    generator[1] = [-(omega**2) / scale, -damping, 1.0, 0.0, 0.0]
+    generator[2, 3] = generator[3, 4] = 1.0 / step
+    (aa, av, rise, ramp, mean), (va, vv, _, _, _), _, _, _ = expm(step * generator)
+    return np.array([aa, av / scale, va * scale, vv, rise / scale, ramp / scale, mean / scale])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: float) -> None:
-    """Fill ``flow`` (8, num_modes) for any time, as :class:`ModalFlow` stacks it.
+    """Fill ``flow`` (9, num_modes) for any time, as :class:`ModalFlow` stacks it.
 
     By the power series of the response to a unit impulse, x'' = −c x' − ω² x, and of its
     integrals over a time as short as needed, and doublings of that time.
@@ -86,16 +93,18 @@ def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: floa
         doublings = max(0.0, np.ceil(np.log2(time * (c + np.sqrt(square)) + 1.0e-300)))
         t = time / 2.0**doublings
         older, newer = 0.0, t  # terms of x's derivatives at 0
-        sine, rise, fall = t, 0.5 * t * t, t * t * t / 6.0
+        sine, rise, fall, drift = t, 0.5 * t * t, t * t * t / 6.0, t * t * t * t / 24.0
         for k in range(2, 40):
             older, newer = newer, -t / k * (c * newer + square * t / (k - 1) * older)
             sine += newer
             rise += newer * t / (k + 1)
             fall += newer * t * t / ((k + 1) * (k + 2))
+            drift += newer * t * t * t / ((k + 1) * (k + 2) * (k + 3))
             if abs(newer) + abs(older) < 1.0e-18 * t:
                 break
         for _ in range(int(doublings)):
             aa, vv = 1.0 - square * rise, 1.0 - c * sine - square * rise
+            drift += drift + (t - square * fall) * fall + rise * rise + t * fall
             fall += aa * fall + sine * rise + t * rise
             rise += aa * rise + sine * sine
             sine *= aa + vv
@@ -108,6 +117,7 @@ def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: floa
         flow[5, i] = sine * load[i]
         flow[6, i] = rise
         flow[7, i] = fall / time
+        flow[8, i] = drift / (time * time)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
@@ -140,38 +150,38 @@ def move(a: Array, v: Array, flow: Array) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
-def drive(a: Array, flow: Array, loads: Array, now: Array, then: Array) -> None:
-    """Add to ``a`` what excitations do to it within a step in which they go from now to then."""
-    for e in range(loads.shape[0]):
-        more = then[e] - now[e]
-        for i in range(a.size):
-            a[i] += loads[e, i] * (flow[6, i] * now[e] + flow[7, i] * more)
+def drive(a: Array, flow: Array, now: Array, then: Array) -> None:
+    """Add to ``a`` what a load does to it that goes straight from now to then, (num_modes,)."""
+    for i in range(a.size):
+        a[i] += flow[6, i] * now[i] + flow[7, i] * (then[i] - now[i])
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
 def _driven_move(
-    a: Array, v: Array, flow: Array, time: float, loads: Array, now: Array, then: Array
+    a: Array,
+    v: Array,
+    flow: Array,
+    time: float,
+    omega2: Array,
+    load: Array,
+    now: Array,
+    then: Array,
 ) -> float:
-    """Move under excitations too; gives the work of these in J.
+    """Move under a load that goes from now to then too; gives its work in J.
 
-    ∫ g Q·v dt is the trapezoid of g times the way, and g' h²/12 times the change of speed: what is
-    left is of order h⁵.
+    ∫ p·ȧ dt = [p·a] − ṗ·∫ a dt, the integral exact as the flow is.
     """
     work = 0.0
-    for e in range(loads.shape[0]):
-        mean, more = 0.5 * (now[e] + then[e]), then[e] - now[e]
-        for i in range(a.size):
-            work -= loads[e, i] * (mean * a[i] + more * time / 12.0 * v[i])
-    move(a, v, flow)
-    drive(a, flow, loads, now, then)
-    for e in range(loads.shape[0]):
-        mean, more = 0.5 * (now[e] + then[e]), then[e] - now[e]
-        for i in range(a.size):
-            v[i] += loads[e, i] * (flow[1, i] * now[e] + flow[6, i] / time * more)
-    for e in range(loads.shape[0]):
-        mean, more = 0.5 * (now[e] + then[e]), then[e] - now[e]
-        for i in range(a.size):
-            work += loads[e, i] * (mean * a[i] + more * time / 12.0 * v[i])
+    for i in range(a.size):
+        ai, vi, more = a[i], v[i], then[i] - now[i]
+        held = load[i] + now[i]
+        a[i] = flow[0, i] * ai + flow[1, i] * vi + flow[2, i] + flow[6, i] * now[i]
+        a[i] += flow[7, i] * more
+        v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i] + flow[1, i] * now[i]
+        v[i] += flow[6, i] / time * more
+        mean = (1.0 - omega2[i] * flow[7, i]) * ai + flow[6, i] / time * vi
+        mean += flow[7, i] * held + flow[8, i] * more
+        work += then[i] * a[i] - now[i] * ai - more * mean
     return work
 
 
@@ -184,7 +194,6 @@ def travel(
     omega2: Array,
     load: Array,
     damped: bool,
-    loads: Array,
     now: Array,
     then: Array,
     tally: Array,
@@ -192,12 +201,11 @@ def travel(
     """:func:`move`, with excitations; enters their work and the damping loss in J.
 
     Args:
-        loads: (num_excitations, num_modes).
-        now, then: (num_excitations,) their factors at the start and at the end.
+        now, then: (num_modes,) what they push with at the start and at the end, in N/√kg.
         tally: of the integration.
     """
     held = _energy_under_load(a, v, omega2, load)
-    work = _driven_move(a, v, flow, time, loads, now, then)
+    work = _driven_move(a, v, flow, time, omega2, load, now, then)
     tally[WORK] += work
     if damped:
         tally[DAMPING] += held + work - _energy_under_load(a, v, omega2, load)

@@ -41,7 +41,7 @@ from dynamics.integrator_state import (
     system_arrays,
 )
 from dynamics.lossy_steps import Space, lossy_steps, space_for
-from dynamics.modal_flow import ModalFlow, modal_energy, move, travel
+from dynamics.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
 from dynamics.step import contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 
@@ -53,11 +53,21 @@ STRIDES = np.array([1, 8, 64, 512])
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
 def _closing_bounds(
-    a: Array, v: Array, omega2: Array, load: Array, rows: Array, duration: float, bounds: Array
+    a: Array,
+    v: Array,
+    omega2: Array,
+    load: Array,
+    now: Array,
+    then: Array,
+    rows: Array,
+    duration: float,
+    bounds: Array,
 ) -> None:
     """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
 
-    A mode's amplitude √(v² + ω² s²) about its rest position does not grow; rigid modes fall.
+    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
+    under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
+    than the change over ω. Rigid modes fall.
     """
     for j in range(rows.shape[0]):
         swing = 0.0
@@ -65,11 +75,12 @@ def _closing_bounds(
         fall = 0.0
         for i in range(a.size):
             if omega2[i] > 0.0:
-                off = a[i] - load[i] / omega2[i]
-                swing += abs(rows[j, i]) * np.sqrt(v[i] * v[i] + omega2[i] * off * off)
+                off = a[i] - (load[i] + now[i]) / omega2[i]
+                growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
+                swing += abs(rows[j, i]) * (np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth)
             else:
                 speed += abs(rows[j, i] * v[i])
-                fall += abs(rows[j, i] * load[i])
+                fall += abs(rows[j, i]) * (abs(load[i] + now[i]) + abs(then[i] - now[i]))
         bounds[j] = swing + speed + fall * duration
 
 
@@ -104,17 +115,19 @@ def _march(
     """Advance by ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, energies, gaps, mean forces, peak forces, friction forces), one row an
-    interval. ``flows`` has one (8, num_modes) for each of ``STRIDES``.
+    interval. ``flows`` has one (9, num_modes) for each of ``STRIDES``.
     """
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
-    omega2, load, _, rows, law, damped = system
+    omega2, load, damping, rows, law, damped = system
     friction_rows, given, _, _ = dry
-    loads, samples, factors = excitations
+    loads, _, spans, parts, straight, pushes = excitations
+    now, _, then = pushes
     states, energies, gaps, means, peaks, frictions = out
     bounds = np.zeros(y.size)
-    # Excitations are lines over one step; a prescribed normal force rubs always.
+    piece = np.zeros(flows[0].shape)
     excited = loads.shape[0] > 0
-    single = excited or (given[0] * given[1]).any()
+    # A prescribed normal force rubs always.
+    single = (given[0] * given[1]).any() or straight.max() < STRIDES[1]
     lossy = friction.size > 0 or law[4].any()
     touching = force.any()
     for interval in range(states.shape[0]):
@@ -123,19 +136,22 @@ def _march(
         peak[:] = 0.0
         friction[:] = 0.0
         done = 0
+        until = 0
         flying = False
         while done < substeps:
+            k = interval * substeps + done
             stride = 0
             if not (touching or single):
                 if not flying:
-                    _closing_bounds(a, v, omega2, load, rows, substeps * step, bounds)
-                stride = _stride(y, law, bounds, step, substeps - done)
-            flying = not (touching or lossy)
+                    until = done + min(straight[k], substeps - done)
+                    excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
+                    _closing_bounds(a, v, omega2, load, now, then, rows, substeps * step, bounds)
+                stride = _stride(y, law, bounds, step, until - done)
+            flying = not (touching or lossy) and done + STRIDES[stride] < until
             if lossy and stride == 0:
-                first = interval * substeps
-                done = -first + lossy_steps(
+                done += -k + lossy_steps(
                     state, system, dry, excitations, space, step,
-                    first + done, first + substeps, substeps, single,
+                    k, k - done + substeps, substeps, single,
                 )  # fmt: skip
                 touching = force.any()
                 continue
@@ -145,12 +161,15 @@ def _march(
                 elastic_kick(v, rows, force, 0.5 * step)
                 for j in range(y.size):
                     mean[j] += 0.5 * force[j] / substeps
-            if excited or damped:
-                excite(samples, interval * substeps + done, 0.0, 1.0, factors)
-                travel(
-                    a, v, flows[stride], time, omega2, load, damped, loads, factors[0], factors[2],
-                    tally,
-                )  # fmt: skip
+            first, last = parts[k], parts[k + STRIDES[stride]]
+            if stride == 0 and last > first + 1:
+                for p in range(first, last):
+                    tabulate(piece, omega2, load, damping, spans[p])
+                    excite(excitations, p, p + 1, 0.0, 1.0)
+                    travel(a, v, piece, spans[p], omega2, load, damped, now, then, tally)
+            elif excited or damped:
+                excite(excitations, first, last, 0.0, 1.0)
+                travel(a, v, flows[stride], time, omega2, load, damped, now, then, tally)
             else:
                 move(a, v, flows[stride])
             touching = contact_forces(a, rows, law, y, force)
@@ -200,6 +219,7 @@ def integrate(
     Raises:
         NumericsError: the state is not finite, or the energy residual passes its bound.
     """
+    system = system.gathered()
     outputs = max(1, round(duration / output_step))
     n, m = system.num_modes, len(system.laws)
     a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
@@ -230,7 +250,7 @@ def integrate(
         part = slice(begin, min(begin + chunk, outputs + 1))
         times = h * np.arange((part.start - 1) * substeps, (part.stop - 1) * substeps + 1)
         out = tuple(array[part] for array in recorded)
-        excitations = excitation_arrays(system, times)
+        excitations = excitation_arrays(system, times, h)
         _march(state, flows, arrays, dry, excitations, space, h, substeps, out)
         check_energy(energies[: part.stop], h, energy_bound, least)
         if progress is not None:

@@ -46,7 +46,7 @@ def closing_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
         initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
     """
     rigid = system.omega2 == 0.0
-    loads = [(system.load, 1.0), *((x.load, x.peak) for x in system.excitations)]
+    loads = [(system.load, 1.0), *((x.load, x.history.peak) for x in system.excitations)]
     fall = sum(np.abs(system.rows[:, rigid] @ load[rigid]) * peak for load, peak in loads)
     play = np.array([2.0 * law.clearance for law in system.laws])
     swing = np.abs(system.rows) @ modal_speeds(system, initial)
@@ -88,7 +88,7 @@ def contact_step(
         initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
         phase: step times the highest frequency.
     """
-    frequencies = [x.fastest for x in system.excitations]
+    frequencies = [x.history.fastest for x in system.excitations]
     if system.laws:
         frequencies.extend(contact_frequencies(system, initial))
     if system.frictions:

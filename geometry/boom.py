@@ -6,13 +6,9 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
-
-import numpy as np
-import numpy.typing as npt
+from typing import Any, Literal
 
 from geometry.segment import (
     SAME_PLACE,
@@ -97,7 +93,7 @@ class Load:
         direction: along which it acts.
         magnitude: in N/m along the whole segment, or in N at one place.
         x: the place in m; None for the whole segment.
-        history: (num_times,) in s → (num_times,), what multiplies the magnitude.
+        history: what multiplies the magnitude, a history of the dynamics.
         inertial: whether it is an acceleration of the mass per length along the whole segment,
             which collars and diaphragms feel beyond that.
     """
@@ -106,7 +102,7 @@ class Load:
     direction: Direction
     magnitude: float
     x: float | None
-    history: Callable[[npt.NDArray[np.float64]], npt.NDArray[np.float64]]
+    history: Any
     inertial: bool = False
 
 

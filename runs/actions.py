@@ -4,25 +4,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Ramp, Sine, Step, Table
+from dynamics.excitation import History, Ramp, Sine, Step, Table
 from dynamics.gap_system import GapSystem
 from geometry.boom import BoomError, Load, Segment, Stop
 from runs.bad_input import choices
-from runs.schema import Case, HistoryTable
+from runs.schema import Case, HistoryTable, LoadTable
 
 Array = npt.NDArray[np.float64]
 
 
-def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Loads from t = 0 on, then those released at t = 0, then those whose impulse throws a segment.
+@dataclass(frozen=True, slots=True)
+class _Past:
+    """The history of what is over when the motion begins."""
 
-    :func:`start` takes the latter two out of the gap system again.
+    kinks = ()
+    peak = 0.0
+    fastest = 0.0
+
+    def __call__(self, time: Array) -> Array:
+        return np.zeros(np.shape(time))
+
+
+class Released(_Past):
+    """That of a load which has acted for ever and is let go at t = 0."""
+
+
+class Blow(_Past):
+    """That of a load whose impulse, as if it had acted for 1 s, is given at t = 0."""
+
+
+def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
+    """Loads from t = 0 on, those released at t = 0, and those whose impulse throws a segment.
+
+    :func:`start` makes of the latter two what they leave at t = 0.
 
     Raises:
         BoomError: a name that is no segment, a history that cannot be.
@@ -33,35 +53,33 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
             direction=table.direction,
             magnitude=table.magnitude,
             x=table.x,
-            history=_history(f"load[{number}]", table),
+            history=_load_history(f"load[{number}]", table),
         )
         for number, table in enumerate(case.loads, start=1)
     ]
-    for number, table in enumerate(case.loads, start=1):
-        if table.released and not isinstance(given[number - 1].history, Step):
-            raise BoomError(
-                f"load[{number}].released",
-                "a load that is let go has acted for ever, without ramp, frequency or table; leave "
-                "one of them out",
-            )
-    both = list(zip(given, case.loads, strict=True))
-    during = [load for load, table in both if not table.released]
-    released = [load for load, table in both if table.released]
     last = len(segments) - 1
     if case.payload is not None and case.payload.gravity > 0.0:
         weight = -case.payload.mass * case.payload.gravity
-        during.append(Load(last, "z", weight, segments[last].end, Step()))
+        given.append(Load(last, "z", weight, segments[last].end, Step()))
     for number, base in enumerate(case.base, start=1):
         history = _history(f"base[{number}]", base)
         for index, segment in enumerate(segments):
             felt = -base.acceleration
             inertia = felt * segment.mass_per_length
-            during.append(Load(index, base.direction, inertia, None, history, inertial=True))
-            during += [
+            given.append(Load(index, base.direction, inertia, None, history, inertial=True))
+            given += [
                 Load(index, base.direction, felt * point.mass, point.x, history)
                 for point in segment.masses
             ]
-    return (*during, *released, *_throws(case, segments))
+    for name, speed in case.start.velocity.items():
+        index = _segment("start.velocity", name, segments)
+        momentum = speed * segments[index].mass_per_length
+        given.append(Load(index, "z", momentum, None, Blow(), inertial=True))
+        given += [
+            Load(index, "z", speed * point.mass, point.x, Blow())
+            for point in segments[index].masses
+        ]
+    return tuple(given)
 
 
 def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
@@ -90,50 +108,28 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
     )
 
 
-def start(
-    system: GapSystem, case: Case, segments: Sequence[Segment]
-) -> tuple[GapSystem, Array, Array]:
+def start(system: GapSystem, case: Case) -> tuple[GapSystem, Array, Array]:
     """The system under the loads from t = 0 on, and its initial a and ȧ, (num_modes,) each.
 
     Args:
         system: of a boom with the loads of :func:`loads`.
         case: of this boom.
-        segments: of this boom.
 
     Raises:
         NumericsError: there is no static equilibrium to start from.
     """
-    num_released = sum(load.released for load in case.loads)
-    num_thrown = len(_throws(case, segments))
-    before = len(system.excitations) - num_released - num_thrown
-    during = system.excitations[:before]
-    released = system.excitations[before : before + num_released]
-    thrown = system.excitations[before + num_released :]
-    held = np.zeros(system.num_modes)
+    held, velocity = np.zeros((2, system.num_modes))
+    for excitation in system.excitations:
+        if isinstance(excitation.history, Released):
+            held += excitation.load
+        elif isinstance(excitation.history, Blow):
+            velocity += excitation.load
+    system = system.gathered()
     if case.start.state == "equilibrium":
         held += system.load
-        for excitation in during:
+        for excitation in system.excitations:
             held += excitation.load * excitation.history(np.zeros(1))[0]
-    for excitation in released:
-        held += excitation.load
-    velocity = np.zeros(system.num_modes)
-    for excitation in thrown:
-        velocity += excitation.load
-    return replace(system, excitations=during), equilibrium(system, held), velocity
-
-
-def _throws(case: Case, segments: Sequence[Segment]) -> list[Load]:
-    """The momentum of each thrown segment as a load: its impulse in one second gives the speed."""
-    throws = []
-    for name, speed in case.start.velocity.items():
-        index = _segment("start.velocity", name, segments)
-        segment = segments[index]
-        momentum = speed * segment.mass_per_length
-        throws.append(Load(index, "z", momentum, None, Step(), inertial=True))
-        throws += [
-            Load(index, "z", speed * point.mass, point.x, Step()) for point in segment.masses
-        ]
-    return throws
+    return system, equilibrium(system, held), velocity
 
 
 def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
@@ -143,7 +139,18 @@ def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
     return names.index(name)
 
 
-def _history(where: str, table: HistoryTable) -> Step | Ramp | Sine | Table:
+def _load_history(where: str, table: LoadTable) -> History:
+    history = _history(where, table)
+    if table.released and not isinstance(history, Step):
+        raise BoomError(
+            f"{where}.released",
+            "a load that is let go has acted for ever, without ramp, frequency or table; leave "
+            "one of them out",
+        )
+    return Released() if table.released else history
+
+
+def _history(where: str, table: HistoryTable) -> History:
     given = [key for key in ("ramp", "frequency", "table") if getattr(table, key) is not None]
     if len(given) > 1:
         raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")

@@ -19,7 +19,6 @@ from dynamics.horizon import measure_horizons
 from dynamics.integrators import Events, Splitting, suited
 from dynamics.step import contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
-from geometry.boom import Boom
 from runs import actions
 from runs.known import known
 from runs.schema import Case, EnsembleTable, Model, TimeTable
@@ -53,13 +52,13 @@ class Motion:
     integrator: Splitting | Events
 
     @classmethod
-    def of(cls, system: GapSystem, case: Case, boom: Boom, model: Model) -> Motion:
+    def of(cls, system: GapSystem, case: Case, model: Model) -> Motion:
         """The motion that a case asks of one of its models.
 
         Raises:
             NumericsError: there is no equilibrium to start from, or it would take days.
         """
-        system, position, velocity = actions.start(system, case, boom.segments)
+        system, position, velocity = actions.start(system, case)
         system = damped(system, case.damping)
         time = case.time
         given = model.step or time.step

@@ -158,7 +158,7 @@ def _run_model(
     with members.workers(comm if case.ensemble else None) as executor:
         if not first_rank:
             return None
-        motion = Motion.of(system, case, boom, model)
+        motion = Motion.of(system, case, model)
         motion.warm()
         with stage("motion") as told:
             trajectory = motion.trajectory(told)

@@ -135,7 +135,7 @@ def compare(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> Comparison
         ("reduced", own, model.step),
         ("reduced, more coordinates", more, sizes.fine_step),
     ):
-        motion = Motion.of(system, case, boom, model.model_copy(update={"step": step}))
+        motion = Motion.of(system, case, model.model_copy(update={"step": step}))
         motion.warm()
         start = perf_counter()
         trajectory = motion.trajectory(lambda part: None)

@@ -82,7 +82,7 @@ def measure(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> list[Quant
         tell(f"mesh of {size:g} m")
         model = model_of(case, "shell").model_copy(update={"mesh_size": size})
         system = gap_system(case, boom, model)
-        motion = Motion.of(system, case, boom, model).trajectory(lambda part: None)
+        motion = Motion.of(system, case, model).trajectory(lambda part: None)
         results.append(_quantities(system, motion, sizes))
     return [
         Quantity(what, unit, [result[what, unit] for result in results])

@@ -54,7 +54,7 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
 def trajectories(case: Case) -> list[Trajectory]:
     """The motions of all models of a case, in their order, side by side on the cores."""
     boom = build_boom(case)
-    motions = [Motion.of(gap_system(case, boom, m), case, boom, m) for m in case.models]
+    motions = [Motion.of(gap_system(case, boom, m), case, m) for m in case.models]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(lambda motion: motion.trajectory(lambda part: None), motions))
 

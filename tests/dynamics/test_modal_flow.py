@@ -46,20 +46,21 @@ def modes() -> GapSystem:
 def exact(omega2: float, damping: float, load: float, step: float) -> dict[str, float]:
     """The entries of a flow of one mode, from scipy's matrix exponential.
 
-    Over (a, v, load, ramp / step), the last two the load and one that grows from 0 to 1.
+    Over (a, v, load, ramp / step, mean / step²), the last three the load, one that grows from 0 to
+    1, and the integral of that.
     """
-    generator = np.zeros((4, 4))
-    generator[0, 1] = generator[2, 3] = 1.0
-    generator[1] = [-omega2, -damping, 1.0, 0.0]
-    (aa, av, rise, ramp), (va, vv, _, _), _, _ = expm(generator * step)
+    generator = np.zeros((5, 5))
+    generator[0, 1] = generator[2, 3] = generator[3, 4] = 1.0
+    generator[1] = [-omega2, -damping, 1.0, 0.0, 0.0]
+    (aa, av, rise, ramp, mean), (va, vv, _, _, _), _, _, _ = expm(generator * step)
     return {
         "aa": aa, "av": av, "ap": rise * load, "va": va, "vv": vv, "vp": av * load,
-        "rise": rise, "ramp": ramp / step,
+        "rise": rise, "ramp": ramp / step, "mean": mean / step**2,
     }  # fmt: skip
 
 
 def tabulated(system: GapSystem, step: float) -> ModalFlow:
-    flow = np.zeros((8, system.num_modes))
+    flow = np.zeros((9, system.num_modes))
     tabulate(flow, system.omega2, system.load, system.damping, step)
     return ModalFlow(*flow)
 
@@ -80,7 +81,7 @@ def test_flow_is_the_matrix_exponential(
         reach = min(step, 1.0 / omega) if omega > 0.0 else step
         size = {
             "aa": 1.0, "av": reach, "ap": 3.0 * reach**2, "va": omega**2 * reach, "vv": 1.0,
-            "vp": 3.0 * reach, "rise": reach**2, "ramp": reach**2,
+            "vp": 3.0 * reach, "rise": reach**2, "ramp": reach**2, "mean": reach**2,
         }  # fmt: skip
         for entry, expected in exact(*numbers, step).items():
             error = abs(getattr(flow, entry)[k] - expected)
@@ -96,8 +97,8 @@ def test_load_response_of_the_shortest_steps(
     damping: float,
     flow_over: Callable[[GapSystem, float], ModalFlow],
 ) -> None:
-    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load, and
-    h²/6 − c h³/24 + (c² − ω²) h⁴/120 under one that grows.
+    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load,
+    h²/6 − c h³/24 + (c² − ω²) h⁴/120 under one that grows, and the mean of the latter.
 
     At the steps that contacts need, a difference of two numbers near one leaves few digits of
     it, and a relative error of it acts as one of the load.
@@ -106,9 +107,11 @@ def test_load_response_of_the_shortest_steps(
     for h in (1.0e-4, 1.0e-5, 1.0e-6):
         series = h**2 / 2.0 - damping * h**3 / 6.0 + (damping**2 - omega2) * h**4 / 24.0
         growing = h**2 / 6.0 - damping * h**3 / 24.0 + (damping**2 - omega2) * h**4 / 120.0
+        drift = h**2 / 24.0 - damping * h**3 / 120.0 + (damping**2 - omega2) * h**4 / 720.0
         flow = flow_over(mode, h)
         assert flow.ap == pytest.approx(series, rel=1e-9, abs=0.0)
         assert flow.ramp == pytest.approx(growing, rel=1e-9, abs=0.0)
+        assert flow.mean == pytest.approx(drift, rel=1e-9, abs=0.0)
 
 
 def test_steps_add_up() -> None:

@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 
 from dynamics.excitation import Ramp, Sine, Step, Table
+from dynamics.integrators import Events
 from runs import case as case_file
 from runs.bad_input import BadInput
 from runs.build import build_boom
+from runs.motion import Motion
 from runs.pipeline import run_case
 from runs.results import Results
+from runs.schema import FiniteElementTable
+from runs.systems import beam_system
 
 pytestmark = pytest.mark.quick
 
@@ -186,6 +190,20 @@ def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
     swings = np.cos(slower * time) + 0.05 * FIRST / slower * np.sin(slower * time)
     expected = moved[0] * np.exp(-0.05 * FIRST * time) * swings
     assert moved == pytest.approx(expected, abs=0.06 * abs(moved[0]))
+
+
+def test_constant_loads_go_from_contact_to_contact(tmp_path: Path) -> None:
+    """Reference: analytic, the weight m g and P at the tip times each mode's deflection there."""
+    path = tmp_path / "case.toml"
+    load = '[[load]]\nsegment = "beam"\nx = 10.0\nmagnitude = 900.0\n'
+    path.write_text(CANTILEVER + "[payload]\nmass = 500.0\n" + load + ELEMENTS, encoding="utf-8")
+    case = case_file.load(str(path))
+    (model,) = case.models
+    assert isinstance(model, FiniteElementTable)
+    motion = Motion.of(beam_system(case, build_boom(case), model), case, model)
+    assert isinstance(motion.integrator, Events)
+    expected = (900.0 - 500.0 * 9.80665) * motion.system.observers["tip"].row
+    np.testing.assert_allclose(motion.system.load, expected, rtol=1e-12)
 
 
 def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
