@@ -100,9 +100,11 @@ def friction(pen: Pen) -> list[Figure]:
 
 
 def _mean(pen: Pen, force: Array) -> Array:
-    """(num_times,) running mean over the window that impacts take."""
+    """(num_times,) running mean over the window that impacts take, or what of it the run has."""
     width = min(max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0]))), force.size)
-    return np.convolve(force, np.full(width, 1.0 / width), mode="same")
+    window = np.ones(width)
+    held = np.convolve(np.ones(force.size), window, mode="same")
+    return np.convolve(force, window, mode="same") / held
 
 
 def _touches(pen: Pen) -> bool:

@@ -146,6 +146,18 @@ def test_contact_forces_keep_their_impulse(
             assert total == pytest.approx(force.sum(), abs=ends + 1.0e-6 * abs(total))
 
 
+def test_what_presses_from_the_start_does_so_in_full(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: analytic. The running mean of a constant is that constant, at both ends too."""
+    pressed = results.trajectories.copy(deep=True)
+    pressed["contact_force"][:] = 1000.0
+    for stretch in (pressed, pressed.isel(time=slice(0, 5))):
+        draw_some(first_contacts, replace(results, trajectories=stretch), tmp_path)
+        for line in (line for axes in sheets["contact-first"].axes for line in axes.get_lines()):
+            assert line.get_ydata() == pytest.approx(1.0, rel=1e-12)
+
+
 def test_one_colour_per_model_in_all_figures(
     results: Results, everything: tuple[list[Figure], dict[str, Sheet]]
 ) -> None:
