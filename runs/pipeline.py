@@ -182,7 +182,9 @@ def _run_model(
                     )
     if reduced is None:
         return Outcome(trajectory, summary, ensemble, None)
-    summary["reduction_errors"] = reduced.errors
+    summary["reduction_errors"] = {name: known(error) for name, error in reduced.errors.items()}
+    summary["local_compliance"] = [known(value) for value in reduced.local_compliance]
+    summary["mesh_error"] = known(reduced.mesh_error)
     with stage("stress"):
         shell = ShellOutput.of(boom, model.name, reduced, trajectory)
     summary["stress"] = shell.summary

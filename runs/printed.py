@@ -50,6 +50,12 @@ def print_models(results: Results, console: Console) -> None:
                 f"{number(errors['readings'], 1)}",
                 markup=False,
             )
+        if (error := model.get("mesh_error")) is not None:
+            console.print(
+                f"{name}: the mesh answers where the segments touch as an infinitely fine one "
+                f"does, within {number(100.0 * error, 2)} % of what the walls give way",
+                markup=False,
+            )
     for caution in results.cautions():
         console.print(caution, markup=False)
 

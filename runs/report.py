@@ -109,5 +109,7 @@ def _costs(results: Results) -> Mapping[str, str]:
             f"{what.replace('_', ' ')} of the reduction {number(error, 2)}"
             for what, error in model.get("reduction_errors", {}).items()
         ]
+        if error := model.get("mesh_error"):
+            parts.append(f"local compliance of the mesh {number(error, 2)}")
         costs[name] = ", ".join(parts)
     return costs

@@ -27,7 +27,7 @@ CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
 
-# Relative error of a reduction beyond which a run says so.
+# Relative error of a reduction, or of a mesh, beyond which a run says so.
 POOR = 0.01
 
 
@@ -104,17 +104,26 @@ class Results:
         spans = [x for segment in self.case.segments for x in segment.span]
         length = max(spans) - min(spans)
         largest = np.abs(self.trajectories["tip"].values).max(axis=1)
-        return [
+        models = self.summary["models"].items()
+        far = [
             f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
             "boom's length: small displacements do not hold; check units and loads"
             for name, move in zip(self.trajectories["model"].values, largest, strict=True)
             if move > 0.1 * length
-        ] + [
+        ]
+        poor = [
             f"caution: the {model['modes']} coordinates of {name} err by {100.0 * error:.2g} % "
             "where the segments touch; allow more modes, or --modes auto"
-            for name, model in self.summary["models"].items()
-            if (error := model.get("reduction_errors", {}).get("contact_compliance", 0.0)) > POOR
+            for name, model in models
+            if (error := model.get("reduction_errors", {}).get("contact_compliance") or 0.0) > POOR
         ]
+        coarse = [
+            f"caution: the mesh of {name} errs by {100.0 * error:.2g} % of what the walls give way "
+            "where the segments touch; give a smaller mesh_size"
+            for name, model in models
+            if (error := model.get("mesh_error") or 0.0) > POOR
+        ]
+        return far + poor + coarse
 
     def broken_demands(self) -> list[Verdict]:
         """The verdicts that the case demands and that are not ``reproduced``."""

@@ -17,11 +17,17 @@ from mpi4py import MPI
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
-from geometry.boom import Boom, BoomError, Load
+from geometry.boom import Boom, BoomError, Direction, Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from shell_model.coordinates import BoomCoordinates
 from shell_model.fields import gather_fields
 from shell_model.joint_rows import contacts_and_frictions, ties
+from shell_model.local_compliance import (
+    compliance,
+    extrapolated_error,
+    full_compliance,
+    local_compliance,
+)
 from shell_model.outline import Outline, Reading, Row
 from shell_model.reduction import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
@@ -52,6 +58,11 @@ class ShellOptions:
     krylov: KrylovOptions = field(default_factory=KrylovOptions)
     mesh_folder: Path | None = None
 
+    @property
+    def coarser(self) -> ShellOptions:
+        """With edges of twice the length, beside which a mesh tells its own error."""
+        return replace(self, mesh_size=2.0 * self.mesh_size, mesh_folder=None)
+
 
 @dataclass(frozen=True, slots=True)
 class ReducedShell:
@@ -61,11 +72,15 @@ class ReducedShell:
         system: of all segments.
         num_dofs: of the shells before the reduction.
         fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
-        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` and
-            ``readings`` relative, and ``frequency_limit_in_hz`` up to which each mode is right in
-            itself.
+        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` as a
+            part of the local one, NaN where there is none, ``readings`` relative, and
+            ``frequency_limit_in_hz`` up to which each mode is right in itself.
+        local_compliance: (num_rows,) of the contacts in m/N, see
+            :func:`shell_model.local_compliance.local_compliance`.
+        mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
+            there is none.
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
-            values for each coordinate), reduction, fields (of displacement and stress).
+            values for each coordinate), reduction, fields (of displacement and stress), mesh error.
         meshes: of the segments, on rank 0.
     """
 
@@ -73,6 +88,8 @@ class ReducedShell:
     num_dofs: int
     fields: xr.Dataset | None
     errors: dict[str, float]
+    local_compliance: Array
+    mesh_error: float
     seconds: dict[str, float]
     meshes: Sequence[SegmentMesh]
 
@@ -99,6 +116,7 @@ def reduce_boom(
         BoomError: a segment has no box section, or the contact line does not suit the boom.
     """
     seconds = dict.fromkeys(("mesh", "assembly", "reduction"), 0.0)
+    planes: Mapping[Direction, Sequence[PowerContact]] = {"z": laws, "y": lateral_laws}
     shells: list[SegmentShell] = []
     meshes: list[SegmentMesh] = []
     tell = progress or (lambda stage, part: None)
@@ -116,7 +134,7 @@ def reduce_boom(
 
     start = perf_counter()
     contacts, frictions = contacts_and_frictions(
-        boom, shells, {"z": laws, "y": lateral_laws}, options.contact_line, options.surface
+        boom, shells, planes, options.contact_line, options.surface
     )
     tied = ties(boom, shells)
     own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
@@ -129,6 +147,7 @@ def reduce_boom(
     seconds["rows"] = perf_counter() - start
     start = perf_counter()
     reduced = []
+    lost = np.zeros(len(contacts))
     for number, shell in enumerate(shells):
         joined = [shell.row(reading[number]) for reading in readings if number in reading]
         inputs = [*joined, own_loads[number]]
@@ -140,6 +159,8 @@ def reduce_boom(
         if options.contact_line == "surface" and joined:
             own = without_stiff_modes(comm, own, np.column_stack(joined))
         reduced.append(own)
+        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        lost[touching] += own.lost_compliance[: len(touching)]
     seconds["reduction"] = perf_counter() - start
     start = perf_counter()
     coordinates = BoomCoordinates(comm, shells, reduced, tied)
@@ -168,15 +189,25 @@ def reduce_boom(
     if fields is not None:
         fields = coordinates.of_fields(fields)
     seconds["fields"] = perf_counter() - start
+    start = perf_counter()
+    apart = BoomCoordinates(comm, shells, reduced, ())
+    whole = compliance(apart.omega2, _stacked(apart, [contact.reading for contact in contacts]))
+    local = local_compliance(whole, contacts)
+    coarse = assemble_segments(boom, options.coarser, comm)
+    same, _ = contacts_and_frictions(boom, coarse, planes, options.contact_line, options.surface)
+    off = extrapolated_error(np.diag(whole), full_compliance(coarse, same))
+    seconds["mesh error"] = perf_counter() - start
     return ReducedShell(
         system=system,
         num_dofs=sum(shell.num_dofs for shell in shells),
         fields=fields,
         errors={
-            "contact_compliance": max(r.compliance_error for r in reduced),
+            "contact_compliance": _largest(lost / local),
             "readings": max(r.reading_error for r in reduced),
             "frequency_limit_in_hz": min(r.frequency_limit for r in reduced),
         },
+        local_compliance=local,
+        mesh_error=_largest(off / local),
         seconds=seconds,
         meshes=meshes,
     )
@@ -210,6 +241,15 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     )
 
 
+def assemble_segments(boom: Boom, options: ShellOptions, comm: MPI.Comm) -> list[SegmentShell]:
+    """The shells of all segments, not reduced. Collective."""
+    shells = []
+    for number, segment in enumerate(boom.segments):
+        mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
+        shells.append(assemble_segment(comm, segment, mesh))
+    return shells
+
+
 def own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
     """(num_owned,) the uniform loads of a segment that are applied at t = 0 and kept, in N."""
     segment = boom.segments[number]
@@ -232,6 +272,11 @@ def _timed_load(load: Load, shell: SegmentShell) -> Array:
         return force
     row = shell.outline(load.x).wall_deflection(load.direction)
     return load.magnitude * shell.row(row)
+
+
+def _largest(parts: Array) -> float:
+    """Of those that are known; NaN where none is."""
+    return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
 
 
 def _stacked(coordinates: BoomCoordinates, readings: Sequence[Reading]) -> Array:

@@ -26,11 +26,11 @@ from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
 from dynamics.resisting_rows import ResistingRows
 from geometry.boom import Boom, BoomError
-from shell_model.boom_shell import ShellOptions, own_load, segment_mesh
+from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
 from shell_model.generalised_alpha import GeneralisedAlpha, SegmentStepper
 from shell_model.joint_rows import Contact, Friction, contacts_and_frictions
 from shell_model.outline import Reading
-from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
 
@@ -114,10 +114,7 @@ def assemble_boom(
             "joint",
             "the unreduced shell moves in the plane, under constant loads, without tied joints",
         )
-    shells = []
-    for number, segment in enumerate(boom.segments):
-        mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
-        shells.append(assemble_segment(comm, segment, mesh))
+    shells = assemble_segments(boom, options, comm)
     contacts, frictions = contacts_and_frictions(
         boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
     )

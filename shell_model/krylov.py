@@ -70,7 +70,7 @@ class FamilyCoordinates(NamedTuple):
     Args:
         omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
         shapes: (num_rows, num_modes) in 1/√kg.
-        compliance_error, reading_error: see ``ReducedSegment``.
+        compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
         right: (num_modes,) whether some natural frequency is within 0.1 %.
     """
 
@@ -78,6 +78,7 @@ class FamilyCoordinates(NamedTuple):
     shapes: Array
     compliance_error: float
     reading_error: float
+    lost_compliance: Array
     right: npt.NDArray[np.bool_]
 
 
@@ -100,7 +101,8 @@ def reduce_family(
     Raises:
         NumericsError: a compliance is not finite, or the tolerance is not met.
     """
-    forces = _independent(inputs * shell.free[:, None])
+    inputs = inputs * shell.free[:, None]
+    forces = _independent(inputs)
     rows = readings * shell.free[:, None]
     rows = rows[:, rows.any(axis=0)]
     order, tests = list(options.order), options.tests
@@ -128,12 +130,13 @@ def reduce_family(
             f"of its planes, and {options.tolerance:.1e} is asked for; give a larger tolerance, or "
             "a coarser mesh, whose round-off is less"
         )
+    lost = basis.lost(full, forces.T @ inputs)
     omega2, shapes = basis.modes()
     solve.move(tests[-1])
     right = _right(shell, omega2, shapes, solve)
     solve.destroy()
     progress(1.0)
-    return FamilyCoordinates(omega2, shapes, *errors, right)
+    return FamilyCoordinates(omega2, shapes, *errors, lost, right)
 
 
 class _Full(NamedTuple):
@@ -204,6 +207,22 @@ class _Basis:
             off = np.abs(read.T @ moved - answer.transfer) / answer.transfer_scale
             transfer = float(np.maximum(transfer, off.max(initial=0.0)))
         return compliance, transfer
+
+    def lost(self, full: Sequence[_Full], parts: Array) -> Array:
+        """(num_inputs,) the most by which inputs give way less than in the full model, in m/N.
+
+        Args:
+            full: answers of the full model.
+            parts: (num_forces, num_inputs) of the forces in the inputs.
+        """
+        gains = self._vectors.T @ self._forces @ parts
+        lost = np.zeros(parts.shape[1])
+        for answer in full:
+            shifted = self._stiffness + answer.sigma * np.eye(self.size)
+            own = np.einsum("ij,ij->j", parts, answer.compliance @ parts)
+            reduced = np.einsum("ij,ij->j", gains, np.linalg.solve(shifted, gains))
+            lost = np.maximum(lost, own - reduced)
+        return lost
 
     def modes(self) -> tuple[Array, Array]:
         """ω² and shapes in the space, rigid motions first."""

@@ -46,6 +46,9 @@ class ReducedSegment:
             frequencies between the shifts, against full solves.
         reading_error: the same of what the inputs move at the readings, over the geometric mean of
             the compliances of both.
+        lost_compliance: (num_inputs,) the most by which each input gives way less than in the full
+            model at these frequencies, in m/N; no pair of them loses more than the geometric mean
+            of both, since the space is a part of the full one (Galerkin).
         frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
     """
 
@@ -53,6 +56,7 @@ class ReducedSegment:
     shapes: Array
     compliance_error: float
     reading_error: float
+    lost_compliance: Array
     frequency_limit: float
 
 
@@ -112,6 +116,7 @@ def reduce_segment(
         shapes=np.hstack(shapes)[:, order],
         compliance_error=max(part.compliance_error for part in parts),
         reading_error=max(part.reading_error for part in parts),
+        lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=_limit(omega2[order], right[order]),
     )
 

@@ -199,10 +199,12 @@ def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) ->
     shares = (above / above[:, :1]).max(axis=0)
     left = int(np.count_nonzero(shares >= STIFF))
     kept = int(np.count_nonzero(~elastic)) + left
-    lost = float(shares[left]) if left < shares.size else 0.0
+    lost = above[:, left] if left < shares.size else np.zeros(len(above))
     return replace(
         reduced,
         omega2=reduced.omega2[:kept],
         shapes=reduced.shapes[:, :kept],
-        compliance_error=max(reduced.compliance_error, lost),
+        compliance_error=max(reduced.compliance_error, float((lost / above[:, 0]).max())),
+        lost_compliance=reduced.lost_compliance
+        + np.pad(lost, (0, reduced.lost_compliance.size - lost.size)),
     )

@@ -76,14 +76,17 @@ def test_runs_without_a_series_judge_nothing() -> None:
 
 def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPatch) -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
-    summary = {"models": {"shell": {"modes": 110, "reduction_errors": errors}}}
+    shell = {"modes": 110, "reduction_errors": errors, "mesh_error": 0.0083}
+    summary = {"models": {"shell": shell}}
     results = replace(RUNS["paper"], summary=summary)
     monkeypatch.setattr("runs.printed.model_rows", lambda results: [])
     monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)
     print_models(results, console)
     assert isinstance(console.file, StringIO)
-    assert console.file.getvalue().splitlines()[-1] == (
+    assert console.file.getvalue().splitlines()[-2:] == [
         "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
-        "head within 8 × 10⁻⁷"
-    )
+        "head within 8 × 10⁻⁷",
+        "shell: the mesh answers where the segments touch as an infinitely fine one does, within "
+        "0.83 % of what the walls give way",
+    ]

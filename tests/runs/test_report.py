@@ -270,6 +270,19 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
         ]
 
 
+def test_cautions_against_a_poor_mesh(results: Results) -> None:
+    name = str(results.trajectories["model"].values[0])
+    for error, cautions in ((0.009, []), (0.34, [name]), (None, [])):
+        model = {**results.summary["models"][name], "mesh_error": error}
+        models = {**results.summary["models"], name: model}
+        poor = replace(results, summary={**results.summary, "models": models})
+        assert poor.cautions() == [
+            f"caution: the mesh of {name} errs by 34 % of what the walls give way where the "
+            "segments touch; give a smaller mesh_size"
+            for name in cautions
+        ]
+
+
 def test_judges_no_statements_of_the_paper_without_its_series(
     results: Results, figures: list[Figure]
 ) -> None:

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How much the walls give way where segments touch: what meshes and reductions are measured by.
+
+The compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a slow shift, is nearly all rigid motion: some
+1e-6 m/N around 3e-9 of wall. A squeeze of a station, equal and opposite forces on its two sides, is
+in balance. It moves no segment and bends no beam, and half of what the station opens is the *local
+compliance* of each side. Errors of the compliance are told as parts of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from shell_model.joint_rows import Contact
+from shell_model.segment_shell import SegmentShell
+from shell_model.shifted_solver import ShiftedSolver
+
+Array = npt.NDArray[np.float64]
+
+# Hz: above rigid motion, below all elastic motion.
+SLOW = 20.0
+
+# Of the compliance in the edge length, on meshes that resolve the contact.
+ORDER = 1.0
+
+
+def compliance(omega2: Array, rows: Array) -> Array:
+    """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)².
+
+    Args:
+        omega2: (num_modes,) in rad²/s².
+        rows: (num_rows, num_modes).
+    """
+    return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
+
+
+def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact]) -> Array:
+    """(num_contacts,) the diagonal of the same, of shells that are not reduced. Collective."""
+    found = np.zeros(len(contacts))
+    for number, shell in enumerate(shells):
+        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        parts = [shell.row(contacts[i].reading[number]) for i in touching]
+        rows = np.array(parts).reshape(-1, shell.free.size).T
+        solve = ShiftedSolver(shell, SLOW)
+        found[touching] += shell.comm.allreduce(np.einsum("ij,ij->j", rows, solve(rows)))
+        solve.destroy()
+    return found
+
+
+def local_compliance(whole: Array, contacts: Sequence[Contact]) -> Array:
+    """(num_contacts,) in m/N; NaN where nothing touches on the other side of the station.
+
+    Args:
+        whole: (num_contacts, num_contacts) the compliance.
+        contacts: its rows.
+    """
+    found = np.full(len(contacts), np.nan)
+    for up, down in _opposite(contacts):
+        opening = whole[up, up] + whole[down, down] - 2.0 * whole[up, down]
+        found[[up, down]] = 0.5 * opening
+    return found
+
+
+def extrapolated_error(fine: Array, coarse: Array) -> Array:
+    """How far values of a mesh are from the limit of finer ones (Richardson 1911).
+
+    Args:
+        fine, coarse: of the mesh, and of one with edges of twice the length.
+    """
+    return np.asarray(np.abs(fine - coarse) / (2.0**ORDER - 1.0))
+
+
+def _opposite(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
+    """Contacts that press up, and those that press down in the same place of their station."""
+    for station in {contact.station for contact in contacts}:
+        there = [i for i, contact in enumerate(contacts) if contact.station == station]
+        above = [i for i in there if contacts[i].law.below == 0.0]
+        below = [i for i in there if contacts[i].law.below > 0.0]
+        if len(above) == len(below):
+            yield from zip(above, below, strict=True)
