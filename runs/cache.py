@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Results kept under the content of what they depend on, for whoever asks for the same again.
 
-An entry is a folder that is renamed into its place when it is whole: whatever interrupts a run,
-and whoever shares the cache, there is no half of one. Nothing is ever changed in place, and what
-is out of date is never asked for again, so that it is the least recently used, and goes.
+An entry is a folder of files that is renamed into its place when it is whole: whatever interrupts a
+run, and whoever shares the cache, there is no half of one. Beside the files lie their checksums
+with the entry's own name, as ``sha256sum -c`` reads them in the cache's folder, so that a disk
+that forgets and a file that was copied from elsewhere are found out. Nothing is ever changed in
+place, and what is out of date is never asked for again, so that it is the least recently used, and
+goes.
 """
 
 from __future__ import annotations
@@ -12,20 +15,33 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-# Bytes that the entries may take together.
+from runs.notices import NOTICES
+from runs.shown import shown
+
+Kept = TypeVar("Kept")
+Files = Mapping[str, memoryview]
+
+# Bytes that the entries of a user may take together.
 ROOM = 4 * 1024**3
 
 # Where another folder than the user's own is to be taken.
 VARIABLE = "PROTRACTILE_CACHE"
+
+SUMS = "SHA256SUMS"
+
+# What is being filled or dropped, and its age in s from which nobody can be at it any more.
+_PART = ".part-"
+_ABANDONED = 3600.0
 
 
 def default_folder() -> Path:
@@ -47,57 +63,73 @@ def key(*content: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def sources(*folders: Path) -> str:
-    """SHA-256 of the Python files in folders."""
-    digest = hashlib.sha256()
-    for folder in folders:
-        for path in sorted(folder.glob("*.py")):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()
-
-
 @dataclass(frozen=True, slots=True)
 class Cache:
     """Entries by key.
 
     Args:
         folder: of the entries; made when the first one is kept.
-        room: bytes that they may take together; the least recently used go first.
     """
 
     folder: Path
-    room: int = ROOM
 
-    def find(self, key: str) -> Path | None:
-        """The folder of an entry, None where there is none."""
+    def load(self, key: str, read: Callable[[Files], Kept]) -> Kept | None:
+        """What an entry holds; None where there is none, or none that is as it was kept.
+
+        Args:
+            key: of the entry.
+            read: makes something of the entry's files.
+        """
+        entry = self.folder / key
+        # An entry of another user's can be read, too.
+        with suppress(OSError):
+            os.utime(entry)
+        try:
+            files = {path.name: _content(path) for path in entry.iterdir()}
+            if files.pop(SUMS) == _sums(key, {name: [data] for name, data in files.items()}):
+                return read(files)
+        except MemoryError:
+            raise
+        except Exception:
+            # Whatever has become of it on the disk, and whoever made it.
+            if not os.path.lexists(entry):
+                return None
+        NOTICES.warning(
+            "%s: is not as it was kept; it is dropped, and computed again", shown(str(entry))
+        )
+        self._drop(entry)
+        return None
+
+    def keep(self, key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> None:
+        """Keep an entry. Where another process has kept the same meanwhile, that one stays.
+
+        Args:
+            key: of the entry.
+            files: the parts of each file, by its name.
+
+        Raises:
+            OSError: it cannot be written; ``filename`` is the cache's folder.
+        """
         entry = self.folder / key
         try:
-            os.utime(entry)
-        except OSError:
-            return None
-        return entry
+            self.folder.mkdir(parents=True, exist_ok=True)
+            part = Path(mkdtemp(prefix=_PART, dir=self.folder))
+            try:
+                for name, content in {**files, SUMS: [_sums(key, files)]}.items():
+                    with (part / name).open("wb") as file:
+                        file.writelines(content)
+                try:
+                    part.rename(entry)
+                except OSError:
+                    if not entry.is_dir():
+                        raise
+            finally:
+                shutil.rmtree(part, ignore_errors=True)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self.folder)) from error
 
-    @contextmanager
-    def fill(self, key: str) -> Iterator[Path]:
-        """A folder to write to, which becomes the entry when it is whole.
-
-        Where another process has kept the same meanwhile, that one stays.
-        """
-        self.folder.mkdir(parents=True, exist_ok=True)
-        part = Path(mkdtemp(prefix=".part-", dir=self.folder))
-        try:
-            yield part
-            with suppress(OSError):
-                os.rename(part, self.folder / key)
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
-        self._make_room()
-
-    def drop(self, key: str) -> None:
-        """Forget an entry, if it is there."""
-        shutil.rmtree(self.folder / key, ignore_errors=True)
-
-    def _make_room(self) -> None:
+    def make_room(self, room: int = ROOM) -> None:
+        """Drop the least recently used entries until the others take ``room`` bytes together."""
         used: list[tuple[float, int, Path]] = []
         for entry in self.folder.iterdir():
             # Another process may take it away while it is looked at.
@@ -105,11 +137,36 @@ class Cache:
                 size = sum(path.stat().st_size for path in entry.iterdir())
                 used.append((entry.stat().st_mtime, size, entry))
         total = sum(size for _, size, _ in used)
-        for _, size, entry in sorted(used)[:-1]:
-            if total <= self.room:
-                return
-            shutil.rmtree(entry, ignore_errors=True)
-            total -= size
+        for last_use, size, entry in sorted(used)[:-1]:
+            abandoned = entry.name.startswith(_PART) and last_use < time.time() - _ABANDONED
+            if total > room or abandoned:
+                self._drop(entry)
+                total -= size
+
+    def _drop(self, entry: Path) -> None:
+        """Take an entry away at once, since others may be reading it."""
+        with suppress(OSError):
+            part = Path(mkdtemp(prefix=_PART, dir=self.folder))
+            with suppress(OSError):
+                os.rename(entry, part / entry.name)
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _content(path: Path) -> memoryview:
+    if not path.is_file():
+        raise ValueError(f"{path} is no file")
+    return np.fromfile(path, np.uint8).data
+
+
+def _sums(key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> bytes:
+    """A line for each file of an entry."""
+    lines = []
+    for name, content in sorted(files.items()):
+        digest = hashlib.sha256()
+        for part in content:
+            digest.update(part)
+        lines.append(f"{digest.hexdigest()}  {key}/{name}\n")
+    return "".join(lines).encode()
 
 
 def _canonical(thing: Any) -> Any:

@@ -19,7 +19,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from dynamics.failure import NumericsError
 from runs import case as case_file
-from runs import output, ranks, sweep_output, sweep_points, terminal
+from runs import notices, output, ranks, sweep_output, sweep_points, terminal
 from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
 from runs.cache import Cache, default_folder
@@ -194,6 +194,7 @@ def schema() -> int:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit; whatever the user can mend is one line on stderr."""
     terminal.prepare()
+    notices.show()
     command = typer.main.get_command(app)
     try:
         with terminal.flushed():

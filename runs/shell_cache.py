@@ -3,32 +3,25 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from runs.cache import Cache, key, sources
-from runs.versions import versions
+from runs import records
+from runs.cache import Cache, Files, key
+from runs.files import whole
+from runs.notices import NOTICES
+from runs.shown import shown
+from runs.versions import program
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
     from shell_model.boom_shell import ReducedShell
 
-_FILE = "shell.pickle"
-# What decides a reduction beside its data.
-_ROOMS = ("geometry", "dynamics", "shell_model")
-
-
-class _Kept(NamedTuple):
-    """A shell, and gmsh's files by their names: whole in one file, or damaged together."""
-
-    reduced: ReducedShell
-    meshes: dict[str, bytes]
+_MESH = ".msh"
 
 
 def remembered(
@@ -40,7 +33,7 @@ def remembered(
 ) -> ReducedShell:
     """A shell as ``compute`` gives it, from the cache if it is there. Collective.
 
-    A cache that cannot be read or written costs time and nothing else.
+    A cache that cannot be read or written costs time and a line to say so, and nothing else.
 
     Args:
         cache: of the user.
@@ -50,8 +43,7 @@ def remembered(
         compute: the shell. Collective.
     """
     start = perf_counter()
-    top = Path(__file__).parents[1]
-    name = key(list(content), sources(*(top / room for room in _ROOMS)), versions())
+    name = key(list(content), program())
     found = _load(cache, name, mesh_folder) if comm.rank == 0 else None
     # Fields and meshes are the first rank's alone.
     shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
@@ -59,28 +51,37 @@ def remembered(
         return replace(found or shared, seconds={"cache": perf_counter() - start})
     reduced = compute()
     if comm.rank == 0:
-        with suppress(OSError):
+        try:
             _keep(cache, name, mesh_folder, reduced)
+        except OSError as error:
+            NOTICES.warning(
+                "%s: the cache cannot be written (%s), and shells are reduced anew in every run; "
+                "give another folder in PROTRACTILE_CACHE, or --no-cache",
+                shown(error.filename),
+                error.strerror,
+            )
     return reduced
 
 
 def _load(cache: Cache, name: str, mesh_folder: Path) -> ReducedShell | None:
-    entry = cache.find(name)
-    if entry is None:
+    found = cache.load(name, _read)
+    if found is None:
         return None
-    try:
-        with (entry / _FILE).open("rb") as file:
-            kept: _Kept = pickle.load(file)
-    except Exception:
-        # Whatever has become of an entry on the disk: it is made again.
-        cache.drop(name)
-        return None
-    for file_name, content in kept.meshes.items():
-        (mesh_folder / file_name).write_bytes(content)
-    return kept.reduced
+    reduced, meshes = found
+    for file_name, content in meshes.items():
+        with whole(mesh_folder / file_name) as path:
+            path.write_bytes(content)
+    return reduced
+
+
+def _read(files: Files) -> tuple[ReducedShell, Files]:
+    from shell_model.boom_shell import ReducedShell
+
+    meshes = {name: content for name, content in files.items() if name.endswith(_MESH)}
+    return records.unpack(files, ReducedShell), meshes
 
 
 def _keep(cache: Cache, name: str, mesh_folder: Path, reduced: ReducedShell) -> None:
-    meshes = {path.name: path.read_bytes() for path in mesh_folder.glob("*.msh")}
-    with cache.fill(name) as folder, (folder / _FILE).open("wb") as file:
-        pickle.dump(_Kept(reduced, meshes), file, protocol=pickle.HIGHEST_PROTOCOL)
+    meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
+    cache.keep(name, records.pack(reduced) | meshes)
+    cache.make_room()

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Runs the points of a sweep on all cores or ranks, and keeps each one that is done.
 
-A point's file, ``points/HASH.json``, is there whole or not at all. Its name is the hash of the
-point's effective case and of the program's version, so what is done is not done again, whatever
-sweep of the folder asks for it.
+A point, ``points/HASH/point.json``, is there whole or not at all, with its checksum beside it. Its
+name is the hash of the point's effective case, of the program's sources and of the libraries, so
+what is done is not done again, whatever sweep of the folder asks for it.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import signal
@@ -17,27 +16,30 @@ from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from functools import partial
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread
 from typing import TYPE_CHECKING
 
+from pydantic import TypeAdapter
+
 from dynamics.failure import NumericsError
-from runs import members, ranks, toml
+from runs import members, notices, ranks, toml
 from runs.bad_input import BadInput
-from runs.cache import Cache
-from runs.files import whole
+from runs.cache import Cache, Files, key
 from runs.pipeline import Progress, run_case
 from runs.quantities import QUANTITIES, Measured, measure
 from runs.schema import Case, ShellTable
 from runs.sweep_points import Point
-from runs.versions import own_version
+from runs.versions import program
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
 POINTS = "points"
+_POINT = "point.json"
 
 # Libraries that would take all cores in each process.
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -145,8 +147,13 @@ def run_points(
     Raises:
         MemoryError: the system has killed a process.
     """
-    files = [folder / POINTS / f"{_key(point.case)}.json" for point in points]
-    outcomes = [_load(path) for path in files]
+    kept = Cache(folder / POINTS)
+    computed_by = program()
+    names = [key(toml.digest(point.case), computed_by) for point in points]
+    outcomes = [
+        kept.load(name, partial(_read, point.case))
+        for name, point in zip(names, points, strict=True)
+    ]
     stage = f"{len(points)} points"
     futures = {
         pool.submit(run_point, point.case, cache): i
@@ -159,7 +166,7 @@ def run_points(
         for future in as_completed(futures):
             i = futures[future]
             outcomes[i] = outcome = future.result()
-            _write(outcome, points[i], files[i])
+            kept.keep(names[i], _written(outcome, points[i]))
             done += 1
             progress("sweep", stage, done / len(points))
     except BrokenProcessPool:
@@ -195,6 +202,7 @@ def run_point(case: Case, cache: Cache | None = None) -> Outcome:
 def _start_worker() -> None:
     """A worker is no rank, ends without a word at Ctrl-C, and does not outlive its parent."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    notices.show()
     for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
         del os.environ[name]
     Thread(target=_end_with_parent, daemon=True).start()
@@ -207,30 +215,26 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _key(case: Case) -> str:
-    return hashlib.sha256(f"{toml.digest(case)} {own_version() or ''}".encode()).hexdigest()
-
-
-def _load(path: Path) -> Outcome | None:
-    """None where a point is not done, or its file is damaged."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        outcome = Outcome(data["models"], data["failures"])
-        complete = all(
-            quantity.name in model for model in outcome.models.values() for quantity in QUANTITIES
-        )
-    except (FileNotFoundError, ValueError, TypeError, KeyError, AttributeError):
-        return None
-    return outcome if complete else None
-
-
-def _write(outcome: Outcome, point: Point, path: Path) -> None:
+def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:
+    """The file of a point, for people too."""
     data = {"point": point.label, "case_hash": toml.digest(point.case), **asdict(outcome)}
-    with whole(path) as part:
-        part.write_text(
-            json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
-            encoding="utf-8",
-        )
+    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
+    return {_POINT: [f"{text}\n".encode()]}
+
+
+def _read(case: Case, files: Files) -> Outcome:
+    """What :func:`_written` has written of a case.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    outcome = TypeAdapter(Outcome).validate_json(bytes(files[_POINT]))
+    models = {model.name for model in case.models}
+    quantities = {quantity.name for quantity in QUANTITIES}
+    measured = all(numbers.keys() == quantities for numbers in outcome.models.values())
+    if not measured or outcome.models.keys() | outcome.failures.keys() != models:
+        raise ValueError(f"{_POINT} is not of the case's models")
+    return outcome
 
 
 def _silence(model: str, stage: str, part: float) -> None:

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import platform
 import sys
-from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution, version
+from pathlib import Path
 
 
 def own_version() -> str | None:
@@ -27,3 +30,37 @@ def versions() -> dict[str, str | None]:
         "python": platform.python_version(),
         **{name: getattr(sys.modules.get(name), "__version__", None) for name in modules},
     }
+
+
+@cache
+def packages() -> list[Path]:
+    """Folders of this program's packages: all in the tree of its sources, or those installed."""
+    top = Path(__file__).parents[1]
+    if (top / "pyproject.toml").is_file():
+        return [path.parent for path in sorted(top.glob("*/__init__.py"))]
+    installed = distribution("protractile").read_text("top_level.txt") or ""
+    return [top / name for name in installed.split()]
+
+
+def sources(folders: Iterable[Path]) -> str:
+    """SHA-256 of the Python files of packages and of the packages in them, with their places."""
+    digest = hashlib.sha256()
+    for folder in folders:
+        for path in _modules(folder):
+            content = path.read_bytes()
+            place = path.relative_to(folder.parent).as_posix()
+            digest.update(f"{place}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()
+
+
+def program() -> dict[str, str | None]:
+    """What decides a result beside its data: the sources, and the libraries that compute."""
+    # Ranks only share the work, and a beam's points do not load what asks for them.
+    libraries = {name: number for name, number in versions().items() if name != "mpi4py"}
+    return {"sources": sources(packages()), **libraries}
+
+
+def _modules(package: Path) -> Iterator[Path]:
+    yield from sorted(package.glob("*.py"))
+    for inner in sorted(package.glob("*/__init__.py")):
+        yield from _modules(inner.parent)

@@ -4,72 +4,148 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
+from typing import cast
 
 import numpy as np
 import pytest
 
 from geometry.boom import Boom
-from runs.cache import Cache, default_folder, key, sources
+from runs.cache import Cache, default_folder, key
+from runs.shown import shown
 
 pytestmark = pytest.mark.quick
 
 
-def fill(cache: Cache, name: str, text: str) -> None:
-    with cache.fill(name) as folder:
-        (folder / "text").write_text(text)
+TEXT = "text"
+
+
+def keep(cache: Cache, name: str, text: str) -> None:
+    cache.keep(name, {TEXT: [text.encode()]})
+
+
+def load(cache: Cache, name: str) -> str | None:
+    return cache.load(name, lambda files: bytes(files[TEXT]).decode())
 
 
 def test_an_entry_is_found_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
-    assert cache.find("a") is None
-    fill(cache, "a", "first")
-    entry = cache.find("a")
-    assert entry is not None
-    assert (entry / "text").read_text() == "first"
-    cache.drop("a")
-    assert cache.find("a") is None
+    assert load(cache, "a") is None
+    keep(cache, "a", "first")
+    assert load(cache, "a") == "first"
+    assert load(cache, "b") is None
 
 
 def test_an_interrupted_entry_leaves_nothing(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
-
-    def interrupted() -> None:
-        with cache.fill("a") as folder:
-            (folder / "text").write_text("half")
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
+    with pytest.raises(TypeError):
+        cache.keep("a", {"first": [b"whole"], "second": cast("list[bytes]", ["no bytes"])})
     assert list(tmp_path.iterdir()) == []
 
 
-def test_of_two_that_fill_the_same_entry_the_first_stays(tmp_path: Path) -> None:
+def test_a_full_disk_names_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "a").touch()
+    with pytest.raises(OSError, match="File exists") as caught:
+        keep(Cache(tmp_path / "a"), "b", "text")
+    assert caught.value.filename == str(tmp_path / "a")
+
+
+def test_of_two_that_keep_the_same_the_first_stays(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
-    with cache.fill("a") as slow:
-        (slow / "text").write_text("second")
-        fill(cache, "a", "first")
-    entry = cache.find("a")
-    assert entry is not None
-    assert (entry / "text").read_text() == "first"
+    keep(cache, "a", "first")
+    keep(cache, "a", "second")
+    assert load(cache, "a") == "first"
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
 def test_the_least_recently_used_goes(tmp_path: Path) -> None:
-    cache = Cache(tmp_path, room=250)
+    cache = Cache(tmp_path)
     for name, used in (("a", 10.0), ("b", 20.0)):
-        fill(cache, name, 100 * "x")
+        keep(cache, name, 100 * "x")
         os.utime(tmp_path / name, (used, used))
-    assert cache.find("a") is not None  # uses it
-    fill(cache, "c", 100 * "x")
+    assert load(cache, "a") is not None  # uses it
+    keep(cache, "c", 100 * "x")
+    cache.make_room(500)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "c"]
 
 
 def test_one_entry_may_be_larger_than_the_room(tmp_path: Path) -> None:
-    cache = Cache(tmp_path, room=10)
-    fill(cache, "a", 100 * "x")
-    assert cache.find("a") is not None
+    cache = Cache(tmp_path)
+    keep(cache, "a", 100 * "x")
+    cache.make_room(10)
+    assert load(cache, "a") is not None
+
+
+@pytest.mark.parametrize("file", [TEXT, "SHA256SUMS"])
+def test_every_flipped_bit_is_found(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, file: str
+) -> None:
+    cache = Cache(tmp_path)
+    keep(cache, "a", "1.5")
+    whole = (tmp_path / "a" / file).read_bytes()
+    bits = range(8 * len(whole))
+    for bit in bits:
+        damaged = bytearray(whole)
+        damaged[bit // 8] ^= 1 << bit % 8
+        (tmp_path / "a" / file).write_bytes(damaged)
+        assert load(cache, "a") is None
+        assert list(tmp_path.iterdir()) == []
+        keep(cache, "a", "1.5")
+    message = (
+        f"{shown(str(tmp_path / 'a'))}: is not as it was kept; it is dropped, and computed again"
+    )
+    assert [record.getMessage() for record in caplog.records] == [message for _ in bits]
+
+
+def longer(entry: Path) -> None:
+    with (entry / TEXT).open("a") as file:
+        file.write("more")
+
+
+def of_another_entry(entry: Path) -> None:
+    cache = Cache(entry.parent)
+    keep(cache, "b", "another")
+    rmtree(entry)
+    (entry.parent / "b").rename(entry)
+
+
+def a_file(entry: Path) -> None:
+    rmtree(entry)
+    entry.write_text("file")
+
+
+def no_text(entry: Path) -> None:
+    rmtree(entry)
+    Cache(entry.parent).keep(entry.name, {TEXT: [b"\xff"]})
+
+
+@pytest.mark.parametrize(
+    "become",
+    [
+        longer,
+        of_another_entry,
+        a_file,
+        no_text,
+        lambda entry: (entry / TEXT).unlink(),
+        lambda entry: (entry / "more").touch(),
+        lambda entry: os.mkfifo(entry / "pipe"),
+        lambda entry: [path.unlink() for path in entry.iterdir()],
+    ],
+)
+def test_what_was_not_kept_there_is_dropped(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, become: Callable[[Path], object]
+) -> None:
+    cache = Cache(tmp_path)
+    keep(cache, "a", "first")
+    become(tmp_path / "a")
+    assert load(cache, "a") is None
+    assert len(caplog.records) == 1
+    assert list(tmp_path.iterdir()) == []
+    keep(cache, "a", "second")
+    assert load(cache, "a") == "second"
 
 
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
@@ -82,16 +158,7 @@ def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
     assert len({key(paper_boom, 0.1), key(changed, 0.1), key(paper_boom, 0.2)}) == 3
     assert key(np.arange(3.0)) != key(np.arange(3)) != key(np.arange(3).reshape(3, 1))
     with pytest.raises(TypeError, match="function has no content to tell it by"):
-        key(fill)
-
-
-def test_sources_count(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text("x = 1\n")
-    before = sources(tmp_path)
-    (tmp_path / "a.txt").write_text("no source")
-    assert sources(tmp_path) == before
-    (tmp_path / "a.py").write_text("x = 2\n")
-    assert sources(tmp_path) != before
+        key(keep)
 
 
 def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shutil import rmtree
 
 import numpy as np
 import pytest
@@ -13,9 +14,11 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from mpi4py import MPI
 
 from runs import case as case_file
+from runs import records
 from runs.build import build_boom
 from runs.cache import Cache
 from runs.schema import Case, ShellTable
+from runs.shown import shown
 from runs.systems import reduce_shell
 from shell_model.boom_shell import ReducedShell
 from tests.runs.coarse_case import CASES
@@ -60,19 +63,46 @@ def test_another_mesh_is_another_entry(case: Case, tmp_path: Path) -> None:
     assert len(list(cache.folder.iterdir())) == 2
 
 
-def test_a_damaged_entry_is_made_again(case: Case, tmp_path: Path) -> None:
+def test_a_damaged_entry_is_made_again(
+    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     cache = Cache(tmp_path / "cache")
     whole = reduce(case, cache, tmp_path / "first")
     (entry,) = cache.folder.iterdir()
-    file = entry / "shell.pickle"
-    file.write_bytes(file.read_bytes()[:1000])
-    again = reduce(case, cache, tmp_path / "second")
-    assert "reduction" in again.seconds
-    assert np.array_equal(again.system.omega2, whole.system.omega2)
-    assert list(reduce(case, cache, tmp_path / "third").seconds) == ["cache"]
+    for number, path in enumerate(sorted(entry.iterdir())):
+        content = bytearray(path.read_bytes())
+        content[len(content) // 2] ^= 1
+        path.write_bytes(content)
+        again = reduce(case, cache, tmp_path / str(number))
+        assert "reduction" in again.seconds
+        assert np.array_equal(again.system.omega2, whole.system.omega2)
+    assert number == 4
+    message = f"{shown(str(entry))}: is not as it was kept; it is dropped, and computed again"
+    assert [record.getMessage() for record in caplog.records] == 5 * [message]
+    assert list(reduce(case, cache, tmp_path / "last").seconds) == ["cache"]
 
 
-def test_a_cache_that_cannot_be_written_costs_nothing_but_time(case: Case, tmp_path: Path) -> None:
-    (tmp_path / "cache").write_text("a file where the folder should be")
-    found = reduce(case, Cache(tmp_path / "cache"), tmp_path / "first")
+def test_what_is_no_shell_is_made_again(
+    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Though its checksum is right."""
+    cache = Cache(tmp_path / "cache")
+    reduce(case, cache, tmp_path / "first")
+    (entry,) = cache.folder.iterdir()
+    rmtree(entry)
+    cache.keep(entry.name, records.pack(build_boom(case)))
+    assert "reduction" in reduce(case, cache, tmp_path / "second").seconds
+    assert len(caplog.records) == 1
+
+
+def test_a_cache_that_cannot_be_written_costs_time_and_a_line(
+    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    folder = tmp_path / "cache"
+    folder.write_text("a file where the folder should be")
+    found = reduce(case, Cache(folder), tmp_path / "first")
     assert found.system.num_modes > 0
+    assert [record.getMessage() for record in caplog.records] == [
+        f"{shown(str(folder))}: the cache cannot be written (File exists), and shells are reduced "
+        "anew in every run; give another folder in PROTRACTILE_CACHE, or --no-cache"
+    ]

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import csv
-import json
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 
 import numpy as np
 import pytest
@@ -21,9 +21,11 @@ from runs import case as case_file
 from runs import sweep, sweep_output, theme
 from runs.bad_input import BadInput
 from runs.build import build_boom
+from runs.cache import Cache
 from runs.pipeline import run_case
 from runs.quantities import QUANTITIES, measure, settling_time
 from runs.schema import Case
+from runs.shown import shown
 from runs.sweep import Outcome
 from runs.sweep_points import Plan, plan
 
@@ -304,14 +306,56 @@ def test_another_case_is_another_point(planned: Planned, ran: list[Case]) -> Non
     assert len(ran) == 4
 
 
-def test_a_damaged_file_is_done_again(planned: Planned, ran: list[Case]) -> None:
+def test_a_damaged_point_is_done_again(
+    planned: Planned, ran: list[Case], caplog: pytest.LogCaptureFixture
+) -> None:
     outcomes = run(planned("joint.play=0,0.01"))
-    damaged, other = Path("out/points").iterdir()
-    damaged.write_text(damaged.read_text(encoding="utf-8")[:40], encoding="utf-8")
-    other.write_text("[]", encoding="utf-8")
+    damaged, other = sorted(Path("out/points").iterdir())
+    file = damaged / "point.json"
+    file.write_text(
+        file.read_text(encoding="utf-8").replace('"tip_amplitude": 0', '"tip_amplitude": 1')
+    )
+    (other / "point.json").unlink()
     assert run(planned("joint.play=0,0.01")) == outcomes
     assert len(ran) == 4
-    assert all(json.loads(path.read_text()) for path in Path("out/points").iterdir())
+    assert {record.getMessage() for record in caplog.records} == {
+        f"{shown(str(entry))}: is not as it was kept; it is dropped, and computed again"
+        for entry in (damaged, other)
+    }
+    assert run(planned("joint.play=0,0.01")) == outcomes
+    assert len(ran) == 4
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"models": {}}',
+        '{"models": {}, "failures": {}}',
+        '{"models": {"kantorovich-4": {}}, "failures": {"beam-fe-tied": "no number is finite"}}',
+        '{"models": {}, "failures": {"kantorovich-4": "no", "beam-fe-tied": 5}}',
+        '{"models": {}, "failures": {"kantorovich-4": "no", "beam-fe": "no"}}',
+        "[]",
+    ],
+)
+def test_what_is_no_point_is_not_done(planned: Planned, ran: list[Case], text: str) -> None:
+    """Though its checksum is right."""
+    sweeping = planned("joint.play=0,0.01")
+    outcomes = run(sweeping)
+    kept = Cache(Path("out/points"))
+    entry = next(kept.folder.iterdir())
+    rmtree(entry)
+    kept.keep(entry.name, {"point.json": [text.encode()]})
+    assert run(sweeping) == outcomes
+    assert len(ran) == 3
+
+
+def test_other_sources_are_other_points(
+    planned: Planned, ran: list[Case], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(planned("joint.play=0,0.01"))
+    monkeypatch.setattr(sweep, "program", lambda: {"sources": "changed"})
+    run(planned("joint.play=0,0.01"))
+    assert len(ran) == 4
 
 
 def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:

@@ -33,7 +33,7 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def stamps(folder: str) -> dict[str, int]:
     """When each point was written."""
-    return {path.name: path.stat().st_mtime_ns for path in Path(folder, "points").iterdir()}
+    return {path.name: path.stat().st_mtime_ns for path in Path(folder, "points").glob("[!.]*")}
 
 
 def test_a_sweep_leaves_its_files_and_is_taken_up(
@@ -46,7 +46,8 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     before = stamps("out")
     assert len(before) == 3
     expected = {"sweep.nc", "sweep.csv", "figures/sweep-lines.png"}
-    assert files(Path("out")) == expected | {f"points/{name}" for name in before}
+    point = {"point.json", "SHA256SUMS"}
+    assert files(Path("out")) == expected | {f"points/{k}/{name}" for k in before for name in point}
     with Image.open("out/figures/sweep-lines.png") as image:
         image.verify()
     more = "--vary", "joint.play=0.006:0.014:5"
@@ -97,7 +98,7 @@ def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
         stderr=subprocess.DEVNULL,
     )
     points = Path("out/points")
-    while not list(points.glob("*.json")):
+    while not list(points.glob("[!.]*")):
         assert process.poll() is None
         time.sleep(0.01)
     process.kill()
@@ -105,7 +106,7 @@ def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
     before = stamps("out")
     assert len(before) > 0
     for name in before:
-        assert json.loads((points / name).read_text(encoding="utf-8"))["models"]
+        assert json.loads((points / name / "point.json").read_text(encoding="utf-8"))["models"]
     assert not Path("out/sweep.csv").exists()
     assert protractile(*arguments) == 0
     after = stamps("out")
