@@ -38,17 +38,18 @@ def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array
         cutoff: of the slow motion in Hz.
 
     Returns:
-        (num_peaks,) time in s at which the first model has the peak, and (num_peaks,) distance.
+        (num_peaks,) time in s at which the first model has the peak, and (num_peaks,) distance;
+        peaks that only some models have are among them.
     """
     found = [slow_peaks(curve, time, cutoff) for curve in curves]
     many = [np.diff(times) for times, _ in found if times.size > 1]
     period = float(np.concatenate(many).mean()) if many else np.inf
-    shared = min(times.size for times, _ in found)
-    t = np.array([times[:shared] for times, _ in found])
-    h = np.array([heights[:shared] for _, heights in found])
-    first = t.min(axis=0)
-    apart = np.maximum(np.ptp(t, axis=0) / period, np.ptp(h, axis=0) / np.abs(h).max(axis=0))
-    missed = [times[shared] for times, _ in found if times.size > shared]
-    if missed and min(missed) < time[-1] - NEXT_PEAK * period:
-        first, apart = np.append(first, min(missed)), np.append(apart, np.inf)
-    return first, apart
+    t, h = np.full((2, len(found), max(times.size for times, _ in found)), np.nan)
+    for model, (times, heights) in enumerate(found):
+        t[model, : times.size], h[model, : times.size] = times, heights
+    first = np.nanmin(t, axis=0)
+    shared = np.isfinite(t).all(axis=0)
+    late, lower = np.ptp(t, axis=0) / period, np.ptp(h, axis=0) / np.nanmax(np.abs(h), axis=0)
+    apart = np.where(shared, np.maximum(late, lower), np.inf)
+    counts = shared | (first < time[-1] - NEXT_PEAK * period)
+    return first[counts], apart[counts]

@@ -163,7 +163,8 @@ def test_s1_needs_a_contact(case: Case) -> None:
 @pytest.mark.parametrize(
     ("share", "expected"), [(1.0, "reproduced"), (0.5, "undecided"), (0.0, "contradicted")]
 )
-def test_s2_asks_for_most_members(case: Case, share: float, expected: str) -> None:
+def test_s2_asks_for_the_mean_of_the_members(case: Case, share: float, expected: str) -> None:
+    """Reference: analytic. Some members are 0.3 of the range apart, the others 0.1."""
     motion = curves()
     five = np.tile(motion["kantorovich-5"]["tip"], (32, 1))
     four = five.copy()
@@ -173,9 +174,39 @@ def test_s2_asks_for_most_members(case: Case, share: float, expected: str) -> No
     tips = stratifying(0.0) | {"kantorovich-4": four, "kantorovich-5": five}
     verdict = verdicts(case, motion, ensembles=members(tips))["S2"]
     assert verdict.verdict == expected
-    assert verdict.measured == share
-    low, high = (10 if share < 1.0 else 30, 30 if share > 0.0 else 10)
-    assert f"from {low} to {high} %" in verdict.why
+    assert verdict.measured == pytest.approx(0.1 + 0.2 * share, rel=1e-3)
+    # Student's quantile of 31 degrees of freedom, 2.040, times 0.1 / √31 for halves.
+    doubt = "0.04" if share == 0.5 else "0.00"
+    assert f"of 32 members, which is known to within {doubt}; from " in verdict.why
+
+
+def test_s3_does_not_hang_on_a_member_without_late_peaks(case: Case) -> None:
+    tips = stratifying(0.3)
+    time = np.arange(10_001) / 1000
+    for model in tips:
+        tips[model][5, time > 5.5] = 0.0
+    verdict = verdicts(case, curves(), ensembles=members(tips))["S3"]
+    assert (verdict.verdict, verdict.measured) == ("reproduced", 1.0)
+    assert "100 % of 31 have peaks further apart later" in verdict.why
+
+
+def test_s3_counts_a_member_in_which_a_model_stops(case: Case) -> None:
+    """One model without peaks that the others have parts from them, before and after."""
+    tips = stratifying(0.0)
+    tips["shell"][:, np.arange(10_001) > 4000] = 0.0
+    verdict = verdicts(case, curves(), ensembles=members(tips))["S3"]
+    assert (verdict.verdict, verdict.measured) == ("contradicted", 0.0)
+    assert "100 % of 32 have peaks further apart later" in verdict.why
+
+
+@pytest.mark.parametrize(("still", "when"), [(slice(None), "within"), (slice(5500, None), "after")])
+def test_s3_needs_peaks(case: Case, still: slice, when: str) -> None:
+    tips = stratifying(0.0)
+    for model in tips:
+        tips[model][:, still] = 1.0e-6 * np.arange(10_001)[still]
+    verdict = verdicts(case, curves(), ensembles=members(tips))["S3"]
+    assert verdict.verdict == "undecided"
+    assert verdict.why == f"No member has a peak {when} 6 s."
 
 
 def test_few_members_decide_nothing(case: Case) -> None:

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What is judged does not hang on round-off, which another machine does otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from runs import case as case_file
+from runs.pipeline import run_case
+from runs.results import Results
+from runs.schema import Case
+
+PAPER = Path(case_file.__file__).parent / "cases" / "paper.toml"
+DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "reproduced"}
+
+
+def chaotic() -> Case:
+    """The paper's case for its whole length, with models that are quick to run."""
+    names = ["kantorovich-4", "kantorovich-5", "kantorovich-5-linear", "beam-fe-tied"]
+    case = case_file.select(case_file.load(str(PAPER)), str(PAPER), names, members=16)
+    four, five, linear, without = case.models
+    longer = linear.model_copy(update={"terms": (5, 5), "base": "complete"})
+    return case.model_copy(update={"models": (four, five, longer, without)})
+
+
+def run(change: float, scratch: Path) -> Results:
+    """Results with E changed in relative terms."""
+    case = chaotic()
+    modulus = case.material.youngs_modulus * (1.0 + change)
+    material = case.material.model_copy(update={"youngs_modulus": modulus})
+    case = case.model_copy(update={"material": material})
+    found = run_case(case, "", None, scratch, lambda *_: None)
+    assert found is not None
+    return found.results
+
+
+def test_verdicts_are_the_same_for_any_round_off(tmp_path: Path) -> None:
+    """Reference: the case itself, which a relative change of E of 1e-12 makes another sample of."""
+    one, *others = (run(change, tmp_path) for change in (0.0, 1.0e-12, -1.0e-12))
+    assert {v.id: v.verdict for v in one.verdicts if v.id in DECIDED} == DECIDED
+    tip = one.trajectories["tip"].sel(model="kantorovich-5").values
+    for other in others:
+        assert [v.verdict for v in other.verdicts] == [v.verdict for v in one.verdicts]
+        apart = other.trajectories["tip"].sel(model="kantorovich-5").values - tip
+        assert np.abs(apart).max() > 0.1 * np.ptp(tip)
