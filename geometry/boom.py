@@ -42,6 +42,9 @@ __all__ = [
 
 Direction = Literal["z", "y"]
 
+# Along x in m, as slide pads are long: what stations and stops press of a segment's corners.
+CONTACT_LENGTH = 0.1
+
 
 @dataclass(frozen=True, slots=True)
 class PadSize:
@@ -68,6 +71,8 @@ class Joint:
             is the contact force of the other plane.
         tied: the segments deflect (and in space twist) alike at the stations, without play.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
+        contact_length: of these in m; unless given it is ``CONTACT_LENGTH``, or the overlap where
+            that is shorter.
     """
 
     outer: int
@@ -82,6 +87,7 @@ class Joint:
     normal_forces: tuple[float, ...] = ()
     tied: bool = False
     pad: PadSize | None = None
+    contact_length: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +123,8 @@ class Stop:
         stiffness: k of (4) in N/mⁿ against a deflection upwards; 0 where nothing is above.
         stiffness_below: k against a deflection downwards.
         exponent: n of (4).
+        contact_length: of the segment's corners that it presses, in m; unless given it is
+            ``CONTACT_LENGTH``, or the segment's where that is shorter.
     """
 
     segment: int
@@ -125,6 +133,7 @@ class Stop:
     stiffness: float
     stiffness_below: float
     exponent: float
+    contact_length: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +167,8 @@ class Boom:
             _check_friction(f"joint[{number}]", joint, self.spatial)
             if joint.pad is not None:
                 _check_pad(f"joint[{number}]", joint, joint.pad, self)
+        for number, joint in enumerate(self.joints, start=1):
+            self._check_contact_length(f"joint[{number}]", joint)
         self._check_loads()
         self._check_stops()
 
@@ -208,6 +219,19 @@ class Boom:
     def overlap(self, joint: Joint) -> tuple[float, float]:
         """x in m between which both segments of a joint are."""
         return _overlap(joint, self.segments)
+
+    def contact_length(self, place: Joint | Stop) -> float:
+        """What a joint's stations or a stop press along the corners, in m."""
+        if place.contact_length is not None:
+            return place.contact_length
+        return min(CONTACT_LENGTH, self._room(place))
+
+    def _room(self, place: Joint | Stop) -> float:
+        """Length in m on which they may press."""
+        if isinstance(place, Stop):
+            return self.segments[place.segment].length
+        start, end = self.overlap(place)
+        return end - start
 
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
@@ -286,6 +310,19 @@ class Boom:
                         f"missing; with lateral play the segments {use}",
                     )
 
+    def _check_contact_length(self, where: str, place: Joint | Stop) -> None:
+        length, room = place.contact_length, self._room(place)
+        if length is not None and isinstance(place, Joint) and place.tied:
+            raise BoomError(
+                f"{where}.contact_length", "the joint is tied, and nothing touches; leave it out"
+            )
+        if length is not None and not 0.0 < length <= room:
+            what = "segment" if isinstance(place, Stop) else "overlap"
+            raise BoomError(
+                f"{where}.contact_length",
+                f"must be above 0 and not above the {what}'s {room:g} m, got {length:g} m",
+            )
+
     def _check_loads(self) -> None:
         for number, load in enumerate(self.loads, start=1):
             if load.x is not None:
@@ -301,6 +338,7 @@ class Boom:
         for number, stop in enumerate(self.stops, start=1):
             segment = self.segments[stop.segment]
             _check_place(f"stop[{number}].x", stop.x, segment)
+            self._check_contact_length(f"stop[{number}]", stop)
             for support in segment.supports:
                 near = SAME_PLACE * segment.length
                 if support.stiffness is None and abs(support.x - stop.x) <= near:

@@ -13,7 +13,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+import numpy.typing as npt
+
 from geometry.boom import Boom, Direction, Joint
+from geometry.segment import Segment
+
+Array = npt.NDArray[np.float64]
 
 Side = Literal[-1, 0, 1]
 Offset = tuple[float, float]
@@ -32,6 +38,36 @@ class Patch:
     end: float
     near: float
     far: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """What a station presses of a segment's corners.
+
+    Args:
+        start, end: x in m.
+        station: x in m through which the resultant goes.
+    """
+
+    start: float
+    end: float
+    station: float
+
+    @classmethod
+    def on(cls, segment: Segment, station: float, length: float) -> Stretch:
+        """Centred at a station, but moved inwards where the segment ends."""
+        start = min(max(station - 0.5 * length, segment.start), segment.end - length)
+        return cls(start, start + length, station)
+
+    def density(self, x: Array) -> Array:
+        """(num_places,) a unit force per length in 1/m.
+
+        Even where the station is in the middle, else the line whose resultant is at the station:
+        read the other way round, the deflection at the station of the straight line that fits
+        that of the stretch best.
+        """
+        length, middle = self.end - self.start, 0.5 * (self.start + self.end)
+        return 1.0 / length + 12.0 * (self.station - middle) * (x - middle) / length**3
 
 
 @dataclass(frozen=True, slots=True)

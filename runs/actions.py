@@ -103,6 +103,7 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
                 table.stiffness if table.stiffness_below is None else table.stiffness_below
             ),
             exponent=table.exponent,
+            contact_length=table.contact_length,
         )
         for number, table in enumerate(case.stops, start=1)
     )

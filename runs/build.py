@@ -141,6 +141,7 @@ def _joint(case: Case, index: int) -> Joint:
         normal_forces=table.normal_forces,
         tied=table.tied,
         pad=None if table.pad is None else PadSize(table.pad.length, table.pad.width),
+        contact_length=table.contact_length,
     )
 
 

@@ -252,8 +252,14 @@ class JointTable(Table):
     )
     pad: PadTable | None = Field(
         None,
-        description="the table of the slide pads' size, which shells alone heed; points in the "
-        "corners unless given",
+        description="the table of the slide pads' size, which shells alone heed; the corners of "
+        "the boxes along contact_length unless given",
+    )
+    contact_length: Positive | None = Field(
+        None,
+        description="the length along x in m on which stations press the corners, which shells "
+        "alone heed; 0.1, as slide pads are long, or the overlap where that is shorter, unless "
+        "given",
     )
 
 
@@ -283,6 +289,11 @@ class StopTable(Table):
         None, description="the same where it presses down; the same unless given"
     )
     exponent: Exponent = Field(1.0, description="the exponent n of the contact law")
+    contact_length: Positive | None = Field(
+        None,
+        description="the length along x in m on which it presses the corners, which shells alone "
+        "heed; 0.1, or the segment's where that is shorter, unless given",
+    )
 
 
 Times = tuple[tuple[Number, Number], ...]

@@ -15,18 +15,20 @@ from typing import NamedTuple
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from geometry.boom import Boom, BoomError, Direction
-from geometry.pads import Pad, pads, patch
+from geometry.pads import Pad, Stretch, pads, patch
+from shell_model.corner_lines import CornerLines
 from shell_model.outline import Reading, relative
 from shell_model.segment_shell import SegmentShell
 from shell_model.surface_contact import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.touches import (
     ContactLine,
     Touch,
+    across,
     corner,
     corner_patch,
     flange_patches,
-    flanges,
     half_of,
+    near_webs,
 )
 from shell_model.wall_points import WallPoints
 
@@ -69,9 +71,11 @@ def contacts_and_frictions(
     points = surface_points(boom, shells, laws, surface) if line == "surface" else []
     contacts = [Contact(point.reading, point.law, point.station) for point in points]
     frictions: list[Friction] = []
-    walls = [WallPoints(shell) for shell in shells] if any(j.pad for j in boom.joints) else []
+    corners = [CornerLines(shell) for shell in shells]
+    by_points = line == "across" or any(joint.pad for joint in boom.joints)
+    walls = [WallPoints(shell) for shell in shells] if by_points else []
     for pad in pads(boom):
-        touch = _touch(boom, pad, shells, walls, line)
+        touch = _touch(boom, pad, corners, walls, line)
         if line == "surface":
             pressing = tuple(i for i, point in enumerate(points) if _presses(point, pad))
         else:
@@ -86,7 +90,7 @@ def contacts_and_frictions(
             pressed_by = () if pad.joint.normal_forces else pressing
             friction = DryFriction(pad.joint.friction, pad.station, pad.prescribed, pressed_by)
             frictions.append(Friction(touch.slide, friction))
-    return contacts + _stop_contacts(boom, shells), frictions
+    return contacts + _stop_contacts(boom, corners), frictions
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
@@ -111,16 +115,16 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
     return found
 
 
-def _stop_contacts(boom: Boom, shells: Sequence[SegmentShell]) -> list[Contact]:
+def _stop_contacts(boom: Boom, corners: Sequence[CornerLines]) -> list[Contact]:
     """A stop meets a flange above its webs, both at once."""
     contacts = []
     for station, stop in enumerate(boom.stops, start=len(boom.stations) - len(boom.stops)):
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        outline = shells[stop.segment].outline(stop.x)
+        stretch = Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop))
         for side in (1, -1):
             one_sided = law.one_sided(side)
             if one_sided is not None:
-                row = outline.flange_deflection(side, 0.5 * outline.section.width)
+                row = corners[stop.segment].deflection(stretch, "z", 0.0, side)
                 contacts.append(Contact({stop.segment: row}, one_sided, station))
     return contacts
 
@@ -128,7 +132,7 @@ def _stop_contacts(boom: Boom, shells: Sequence[SegmentShell]) -> list[Contact]:
 def _touch(
     boom: Boom,
     pad: Pad,
-    shells: Sequence[SegmentShell],
+    corners: Sequence[CornerLines],
     walls: Sequence[WallPoints],
     line: ContactLine,
 ) -> Touch:
@@ -137,13 +141,21 @@ def _touch(
     covered = patch(boom, pad)
     if not boom.spatial and covered is not None:
         return flange_patches(pad, covered, walls[inner], walls[outer])
-    outlines = shells[inner].outline(pad.x), shells[outer].outline(pad.x)
-    if not boom.spatial:
-        return flanges(pad, *outlines, line)
-    touch = corner(pad, *outlines)
-    if covered is None:
-        return touch
-    return corner_patch(pad, covered, touch, walls[inner], walls[outer])
+    length = boom.contact_length(pad.joint)
+    pressed = (
+        Stretch.on(boom.segments[inner], pad.x, length),
+        Stretch.on(boom.segments[outer], pad.x, length),
+    )
+    if boom.spatial:
+        touch = corner(pad, corners[inner], corners[outer], pressed)
+        if covered is None:
+            return touch
+        return corner_patch(pad, covered, touch, walls[inner], walls[outer])
+    section = boom.segments[inner].section
+    assert section is not None
+    if line == "across":
+        return across(pad, walls[inner], walls[outer], pressed, section.width)
+    return near_webs(pad, corners[inner], corners[outer], pressed)
 
 
 def _presses(point: SurfacePoint, pad: Pad) -> bool:

@@ -44,6 +44,16 @@ def relative(inner: tuple[int, Row], outer: tuple[int, Row]) -> Reading:
     return {inner[0]: inner[1], outer[0]: combine((-1.0, outer[1]))}
 
 
+def row_of(dofs: npt.NDArray[np.int64], weights: Array) -> Row:
+    """The sum of degrees of freedom, each with its weight; one may come twice."""
+    return combine(*((w, {d: 1.0}) for d, w in zip(dofs.tolist(), weights.tolist(), strict=True)))
+
+
+def quadratic(s: Array) -> Array:
+    """(..., 3) shape functions of an edge's first end, middle and last end at the parts s of it."""
+    return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
+
+
 def combine_readings(terms: Sequence[tuple[float, Reading]]) -> Reading:
     """Readings of the same segments, each with its factor."""
     numbers = terms[0][1]
@@ -76,13 +86,13 @@ class Outline:
     def mean_displacement(self, component: int) -> Row:
         """One displacement component averaged over the section's area, in m."""
         nodes, areas = self._area_weights()
-        return _row(self.dofs[nodes, component], areas / areas.sum())
+        return row_of(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self) -> Row:
         """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, 2]
-        return _row(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
+        return row_of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
         """How much taller the section has become: mean u_z of the top less the bottom, in m."""
@@ -117,25 +127,6 @@ class Outline:
         nodes = self._along("y", side)
         return combine(*((0.5, self._interpolated(nodes, place, "z")) for place in (y, -y)))
 
-    def point(self, direction: Direction, y: float, z: float) -> Row:
-        """u_z of a flange or u_y of a web in m, on the straight line through its two corners.
-
-        A force there goes to the corners by the law of the lever, as through a flange that its
-        webs carry; no plate bows under it, and a turn of the section is read exactly.
-
-        Args:
-            direction: what is read.
-            y, z: offsets from the axis in m. Along z the sign of ``z`` tells which flange is read,
-                along y the sign of ``y`` tells which web.
-        """
-        b, h = 0.5 * self.section.width, 0.5 * self.section.height
-        if direction == "z":
-            nodes, along = self._along("y", np.sign(z)), y / b
-        else:
-            nodes, along = self._along("z", np.sign(y)), z / h
-        first, last = self.dofs[nodes[[0, -1]], COMPONENT[direction]].tolist()
-        return {first: 0.5 * (1.0 - along), last: 0.5 * (1.0 + along)}
-
     def _interpolated(self, nodes: npt.NDArray[np.int64], y: float, direction: Direction) -> Row:
         """A displacement at one point of a flange."""
         along = self.places[nodes, 1]
@@ -143,14 +134,13 @@ class Outline:
         edge = int(np.clip(np.searchsorted(along[::2], y) - 1, 0, nodes.size // 2 - 1))
         ends = nodes[2 * edge : 2 * edge + 3]
         left, _, right = self.places[ends, 1]
-        s = (y - left) / (right - left)
-        shapes = np.array([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)])
-        return _row(self.dofs[ends, COMPONENT[direction]], shapes)
+        shapes = quadratic(np.asarray((y - left) / (right - left)))
+        return row_of(self.dofs[ends, COMPONENT[direction]], shapes)
 
     def _wall(self, axis: Direction, side: float, direction: Direction) -> Row:
         """Mean displacement over one wall's line, in m."""
         nodes, lengths = self._simpson(axis, side)
-        return _row(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
+        return row_of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, axis: Direction, side: float) -> npt.NDArray[np.int64]:
         """Nodes of one wall's line, rising along the axis, ends and middles in turn."""
@@ -182,7 +172,3 @@ class Outline:
             np.concatenate([nodes for nodes, _, _ in parts]),
             np.concatenate([wall * weights for _, weights, wall in parts]),
         )
-
-
-def _row(dofs: npt.NDArray[np.int64], weights: Array) -> Row:
-    return combine(*((w, {d: 1.0}) for d, w in zip(dofs.tolist(), weights.tolist(), strict=True)))

@@ -11,98 +11,89 @@ from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry.boom import Direction
-from geometry.pads import Pad, Patch, Side
-from geometry.section import BoxSection
-from shell_model.outline import Outline, Reading, Row, combine_readings, relative
+from geometry.pads import Pad, Patch, Side, Stretch
+from shell_model.corner_lines import CornerLines
+from shell_model.outline import Reading, Row, combine_readings, relative
 from shell_model.surface_contact import gauss
 from shell_model.wall_points import Wall, WallPoints
 
+Array = npt.NDArray[np.float64]
+
 ContactLine = Literal["near webs", "across", "surface"]
 
+_SIDES: tuple[Side, Side] = (1, -1)
+
 # Gauss's rule over a patch, along x and across.
-_PATCH_POINTS = 4
+_POINTS = 4
+
+# What a station presses of the inner and of the outer segment's corners.
+Pressed = tuple[Stretch, Stretch]
 
 
 class Touch(NamedTuple):
     """Side, weight and approach of each pair of points of a pad, and how the pad slides."""
 
-    points: Sequence[tuple[int, float, Reading]]
+    points: Sequence[tuple[Side, float, Reading]]
     slide: Reading
 
 
-class ContactPoint(NamedTuple):
-    """A mirrored pair of points on facing flanges, with the part of the force it carries.
+def near_webs(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
+    """A station of a flat boom, from web to web; both flanges together slide as their mean does."""
 
-    ``inner`` and ``outer`` are the distances in m from the middle of each flange.
-    """
-
-    inner: float
-    outer: float
-    weight: float
-
-
-def contact_points(line: ContactLine, inner: BoxSection, outer: BoxSection) -> list[ContactPoint]:
-    """Where facing flanges of a flat boom touch at a station; the weights sum to one.
-
-    Args:
-        line: ``across`` takes Gauss's rule with eight points over the inner flange; all others
-            pass the force from web to web, at a surface that of friction.
-        inner, outer: the sections of the joint's segments.
-    """
-    if line != "across":
-        return [ContactPoint(0.5 * inner.width, 0.5 * outer.width, 1.0)]
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    places = 0.5 * inner.width * nodes[nodes > 0.0]
-    return [
-        ContactPoint(float(y), float(y), float(w))
-        for y, w in zip(places, weights[nodes > 0.0], strict=True)
-    ]
-
-
-def flanges(pad: Pad, inner: Outline, outer: Outline, line: ContactLine) -> Touch:
-    """A station of a flat boom; both flanges together slide as their mean does."""
-    points = [
-        (
-            side,
-            point.weight,
-            _approach(
-                pad,
-                inner.flange_deflection(side, point.inner),
-                outer.flange_deflection(side, point.outer),
-            ),
+    def along(side: Side) -> Reading:
+        rows = (
+            lines.deflection(stretch, "z", 0.0, side)
+            for lines, stretch in zip((inner, outer), pressed, strict=True)
         )
-        for side in (1, -1)
-        for point in contact_points(line, inner.section, outer.section)
-    ]
-    return Touch(points, combine_readings([(0.5 * weight, row) for _, weight, row in points]))
+        return _approach(pad, *rows)
+
+    return _sliding_as_its_mean([(side, 1.0, along(side)) for side in _SIDES])
 
 
-def corner(pad: Pad, inner: Outline, outer: Outline) -> Touch:
+def across(pad: Pad, inner: WallPoints, outer: WallPoints, pressed: Pressed, width: float) -> Touch:
+    """A station of a flat boom over the width of the inner flanges. Collective."""
+    points = []
+    for side in _SIDES:
+        for y, weight in zip(*_half_gauss(width), strict=True):
+            rows = (
+                walls.mean(Wall("z", side), *_line(stretch, y), "z")
+                for walls, stretch in zip((inner, outer), pressed, strict=True)
+            )
+            points.append((side, weight, _approach(pad, *rows)))
+    return _sliding_as_its_mean(points)
+
+
+def corner(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
     """A pad of a boom in space."""
 
     def along(direction: Direction) -> Reading:
-        rows = inner.point(direction, *pad.inner), outer.point(direction, *pad.outer)
+        rows = (
+            lines.deflection(stretch, direction, *offset)
+            for lines, stretch, offset in zip(
+                (inner, outer), pressed, (pad.inner, pad.outer), strict=True
+            )
+        )
         return _approach(pad, *rows)
 
     return Touch([(pad.side, pad.weight, along(pad.direction))], along(pad.rubs))
 
 
 def flange_patches(pad: Pad, patch: Patch, inner: WallPoints, outer: WallPoints) -> Touch:
-    """A station of a flat boom with pads of a size; it slides as :func:`flanges`. Collective."""
-    sides: tuple[Side, Side] = (1, -1)
+    """A station of a flat boom with pads of a size; it slides as :func:`near_webs`. Collective."""
     points = [
         (
-            int(side),
+            side,
             1.0,
             combine_readings(
                 [(0.5, _mean_approach(pad, patch, side, half, inner, outer)) for half in (1, -1)]
             ),
         )
-        for side in sides
+        for side in _SIDES
     ]
-    return Touch(points, combine_readings([(0.5, row) for _, _, row in points]))
+    return _sliding_as_its_mean(points)
 
 
 def corner_patch(
@@ -122,9 +113,9 @@ def _mean_approach(
     pad: Pad, patch: Patch, side: Side, half: int, inner: WallPoints, outer: WallPoints
 ) -> Reading:
     """Mean of u − w over a patch: read the other way round, a uniform pressure on both walls."""
-    x, along = gauss(patch.start, patch.end, _PATCH_POINTS)
-    across, over = gauss(half * patch.near, half * patch.far, _PATCH_POINTS)
-    places = np.column_stack([np.repeat(x, across.size), np.tile(across, x.size)])
+    x, along = gauss(patch.start, patch.end, _POINTS)
+    y, over = gauss(half * patch.near, half * patch.far, _POINTS)
+    places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
     weights = np.outer(along, over).ravel()
     wall = Wall(pad.direction, side)
     return _approach(
@@ -132,6 +123,24 @@ def _mean_approach(
         inner.mean(wall, places, weights, pad.direction),
         outer.mean(wall, places, weights, pad.direction),
     )
+
+
+def _sliding_as_its_mean(points: Sequence[tuple[Side, float, Reading]]) -> Touch:
+    return Touch(points, combine_readings([(0.5 * weight, row) for _, weight, row in points]))
+
+
+def _half_gauss(width: float) -> tuple[Array, Array]:
+    """Places at positive y of Gauss's rule with eight points over a width; weights sum to one."""
+    y, weights = gauss(-0.5 * width, 0.5 * width, 8)
+    return y[y > 0.0], 2.0 * weights[y > 0.0]
+
+
+def _line(stretch: Stretch, y: float) -> tuple[Array, Array]:
+    """Places (num_places, 2) at ±y along a stretch, and their weights, which sum to one."""
+    x, weights = gauss(stretch.start, stretch.end, _POINTS)
+    forces = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
+    places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
+    return places, np.tile(forces, 2)
 
 
 def _approach(pad: Pad, inner: Row, outer: Row) -> Reading:

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from geometry.boom import Boom, Stop
-from geometry.pads import Pad, pads
+from geometry.pads import Pad, Stretch, pads
 
 pytestmark = pytest.mark.quick
 
@@ -102,3 +103,22 @@ def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
         for side in (1, -1):
             assert sum(pad.weight for pad in here if pad.side == side) == 1.0
         assert sum(pad.prescribed for pad in here) == force
+
+
+@pytest.mark.parametrize(
+    ("station", "start", "ends"),
+    [(4.0, 3.95, (10.0, 10.0)), (10.0, 9.9, (-20.0, 40.0)), (0.02, 0.0, (28.0, -8.0))],
+)
+def test_a_station_presses_corners_evenly_or_about_itself(
+    paper_boom: Boom, station: float, start: float, ends: tuple[float, float]
+) -> None:
+    """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre
+    of the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end.
+    """
+    stretch = Stretch.on(paper_boom.segments[0], station, 0.1)
+    assert (stretch.start, stretch.end) == pytest.approx((start, start + 0.1))
+    assert stretch.density(np.array([start, start + 0.1])) == pytest.approx(ends)
+    x, weights = np.polynomial.legendre.leggauss(2)
+    x = start + 0.05 + 0.05 * x
+    forces = 0.05 * weights * stretch.density(x)
+    assert [forces.sum(), forces @ x] == pytest.approx([1.0, station])

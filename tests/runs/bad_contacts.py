@@ -59,6 +59,21 @@ CONTACTS = {
         "exponent = 2.0\ntied = true\npad = { length = 0.1, width = 0.06 }\n",
         "joint[1].pad: the joint is tied, and nothing touches; leave it out",
     ),
+    "contact longer than the overlap": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ncontact_length = 1.5\n",
+        "joint[1].contact_length: must be above 0 and not above the overlap's 1 m, got 1.5 m",
+    ),
+    "contact along no length": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ncontact_length = 0.0\n",
+        "joint[1].contact_length: must be a number greater than 0, got 0.0",
+    ),
+    "a length of a tied joint's contact": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\ncontact_length = 0.1\n",
+        "joint[1].contact_length: the joint is tied, and nothing touches; leave it out",
+    ),
     "pads across the flanges": (
         FROM_EXPONENT,
         FROM_EXPONENT.replace(

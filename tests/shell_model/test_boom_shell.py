@@ -14,7 +14,7 @@ from dynamics.splitting import integrate
 from geometry.boom import BoomError
 from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
 from shell_model.reduction import KrylovOptions
-from shell_model.touches import ContactLine, contact_points
+from shell_model.touches import ContactLine
 from tests.shell_model.booms import LAW, flat_boom
 
 
@@ -41,17 +41,6 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
         for station in (0, 1):
             total = forces[system.station_of_row == station].sum()
             assert total == pytest.approx(np.sign(lift) * 1.0e13 * 0.3e-3**2, rel=1.0e-9)
-
-
-@pytest.mark.quick
-@pytest.mark.parametrize("line", ["near webs", "across"])
-def test_weights_of_a_flange_sum_to_one(line: ContactLine) -> None:
-    outer, inner = (segment.section for segment in flat_boom().segments)
-    assert outer is not None
-    assert inner is not None
-    points = contact_points(line, inner, outer)
-    assert sum(point.weight for point in points) == pytest.approx(1.0, rel=1.0e-12)
-    assert all(0.0 < point.inner <= 0.5 * inner.width for point in points)
 
 
 def test_the_load_lifts_the_boom_by_its_weight() -> None:

@@ -10,7 +10,11 @@ import pytest
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
+from geometry.pads import Stretch
+from geometry.section import BoxSection
+from shell_model.corner_lines import CornerLines
 from shell_model.eigenmodes import natural_frequencies
+from shell_model.outline import combine
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
@@ -105,7 +109,8 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     rolled one out of it, where a point (y, z) moves by φ (−z, y).
     """
     shell = box_shell(0.25)
-    outline = shell.outline(10.0)
+    outline, corners = shell.outline(10.0), CornerLines(shell)
+    at_end, within = (Stretch.on(shell.segment, x, 0.1) for x in (10.0, 7.3))
     in_plane = np.array([0.0, 0.0, 0.03, 0.0, -0.002, 0.0])
     lifted = 0.03 + 0.002 * 5.0
     rows = (
@@ -128,10 +133,33 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
         outline.wall_deflection("y"),
         outline.twist(),
         outline.mean_deflection(),
-        outline.point("z", 0.1, -0.3),
-        outline.point("y", -0.1, 0.3),
-        outline.point("y", 0.1, 0.1),
+        corners.deflection(at_end, "z", 0.1, -0.3),
+        corners.deflection(at_end, "y", -0.1, 0.3),
+        corners.deflection(within, "y", 0.1, 0.1),
     )
     readings = [shell.row(row) @ shell.rigid_motions() @ sideways for row in rows]
-    expected = [shifted, shifted, 0.004, 0.0, 4.0e-4, shifted - 1.2e-3, shifted - 4.0e-4]
+    within_shifted = 0.01 + 0.003 * 2.3
+    expected = [shifted, shifted, 0.004, 0.0, 4.0e-4, shifted - 1.2e-3, within_shifted - 4.0e-4]
     assert readings == pytest.approx(expected, abs=1.0e-12)
+
+
+def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
+    """Reference: analytic. With every halving of the mesh the compliance, less that of the same
+    force spread over the webs, changes by less than a third of the change before; that of a force
+    at one point grows with the logarithm of the mesh, by as much each time.
+    """
+    section = BoxSection(0.2, 0.2, 0.006, 0.006)
+
+    def local(size: float, length: float) -> float:
+        shell = box_shell(size, 0.4, section=section)
+        stretch = Stretch.on(shell.segment, 0.2, length)
+        pressed = CornerLines(shell).deflection(stretch, "z", 0.0, 1.0)
+        spread = shell.outline(0.4).wall_deflection("z"), shell.outline(0.0).wall_deflection("z")
+        return compliance(shell, combine((1.0, pressed), *((-0.5, row) for row in spread)))
+
+    lengths = {}
+    for length in (0.1, 1.0e-4):
+        values = [local(size, length) for size in (0.1, 0.05, 0.025, 0.0125)]
+        lengths[length] = np.diff(values)
+    assert (lengths[0.1][1:] < lengths[0.1][:-1] / 3.0).all()
+    assert (lengths[1.0e-4][1:] > 0.7 * lengths[1.0e-4][:-1]).all()
