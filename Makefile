@@ -6,8 +6,9 @@
 
 VERIFY_CASES := paper paper-friction three-segments spatial
 
-ROOMS := geometry dynamics beam_model shell_model runs
-SOURCES := pyproject.toml $(foreach room,$(ROOMS),$(wildcard $(room)/*.py)) $(wildcard runs/templates/*)
+ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
+SOURCES := pyproject.toml $(wildcard runs/templates/*) \
+    $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 READINGS := runs/out/readings/readings.json
 

@@ -11,8 +11,10 @@ with the walls: there an edge has three triangles.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+import errno
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -78,6 +80,7 @@ def mesh_segment(
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
+        OSError: gmsh's file cannot be written.
     """
     if not (np.isfinite(size) and size > 0.0):
         raise ValueError(f"mesh size must be a positive number of m, got {size}")
@@ -101,7 +104,7 @@ def mesh_segment(
                 gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{wall}")
         gmsh.model.mesh.generate(2)
         if msh is not None:
-            gmsh.write(str(msh))
+            _write(msh)
         return _extract(plates)
 
 
@@ -167,6 +170,31 @@ def _gmsh_model() -> Iterator[None]:
         yield
     finally:
         gmsh.finalize()
+
+
+def _write(msh: Path) -> None:
+    """Write gmsh's own file; gmsh itself says nothing of a disk that is full."""
+    with suppress(Exception):
+        # Of a file that it cannot open it says it in an exception of no class.
+        gmsh.write(str(msh))
+    if not (msh.is_file() and _is_whole(msh.read_text())):
+        raise OSError(errno.EIO, "gmsh could not write all of it; is the disk full?", str(msh))
+
+
+def _is_whole(text: str) -> bool:
+    """Whether each section in gmsh's format 4.1 has as many lines as its first one tells."""
+    told: dict[str, Callable[..., int]] = {
+        "MeshFormat": lambda *_: 0,
+        "PhysicalNames": lambda names: names,
+        "Entities": lambda *of_dimension: sum(of_dimension),
+        "Nodes": lambda blocks, nodes, *_: blocks + 2 * nodes,
+        "Elements": lambda blocks, elements, *_: blocks + elements,
+    }
+    sections = re.findall(r"^\$(\w+)\n(.*)\n((?:[^$].*\n)*)\$End\1$", text, re.MULTILINE)
+    return [name for name, _, _ in sections] == list(told) and all(
+        lines.count("\n") == told[name](*(int(float(number)) for number in first.split()))
+        for name, first, lines in sections
+    )
 
 
 class _Ring(NamedTuple):

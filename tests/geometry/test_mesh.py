@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import re
+import resource
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -20,6 +23,7 @@ from geometry.boom import Collar, Diaphragm
 from geometry.mesh import (
     WALLS,
     SegmentMesh,
+    _is_whole,
     collar_breaks,
     diaphragm_breaks,
     mesh_segment,
@@ -269,6 +273,49 @@ def test_lines_that_share_a_place_are_both_in_the_gmsh_file(tmp_path: Path) -> N
     for name in ("station", "head"):
         for wall in WALLS:
             assert f'"{name}:{wall}"' in text
+
+
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """As on a disk that is nearly full: bytes beyond ``size`` cannot be written."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("room", [0, 4_000])
+def test_a_full_disk_is_noticed(tmp_path: Path, room: int) -> None:
+    breaks = {"tail": 0.0, "head": 1.0}
+    path = tmp_path / "m.msh"
+    mesh_segment(BOX, breaks, 0.2, msh=path)
+    assert path.stat().st_size > room
+    with (
+        files_of_at_most(room),
+        pytest.raises(OSError, match="gmsh could not write all of it; is the disk full") as caught,
+    ):
+        mesh_segment(BOX, breaks, 0.2, msh=path)
+    assert caught.value.filename == str(path)
+
+
+@pytest.mark.quick
+def test_a_folder_that_has_gone_is_noticed(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="gmsh could not write all of it"):
+        mesh_segment(BOX, {"tail": 0.0, "head": 1.0}, 0.5, msh=tmp_path / "gone" / "m.msh")
+
+
+@pytest.mark.quick
+def test_a_hole_in_a_gmsh_file_is_noticed(tmp_path: Path) -> None:
+    """Where one of several writes failed, wherever it was."""
+    path = tmp_path / "m.msh"
+    mesh_segment(BOX, BREAKS, 0.2, msh=path)
+    text = path.read_text()
+    assert _is_whole(text)
+    for begin in range(0, len(text), 4096):
+        assert not _is_whole(text[:begin] + text[begin + 4096 :])
 
 
 def grouped(read: meshio.Mesh, kind: str, name: str) -> npt.NDArray[np.float64]:

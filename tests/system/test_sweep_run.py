@@ -33,7 +33,8 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def stamps(folder: str) -> dict[str, int]:
     """When each point was written."""
-    return {path.name: path.stat().st_mtime_ns for path in Path(folder, "points").glob("[!.]*")}
+    points = Path(folder, "points").glob("[!.]*")
+    return {path.name: (path / "point.json").stat().st_mtime_ns for path in points}
 
 
 def test_a_sweep_leaves_its_files_and_is_taken_up(
@@ -46,8 +47,8 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     before = stamps("out")
     assert len(before) == 3
     expected = {"sweep.nc", "sweep.csv", "figures/sweep-lines.png"}
-    point = {"point.json", "SHA256SUMS"}
-    assert files(Path("out")) == expected | {f"points/{k}/{name}" for k in before for name in point}
+    expected |= {f"points/{k}/{name}" for k in before for name in ("point.json", "SHA256SUMS")}
+    assert files(Path("out")) == expected
     with Image.open("out/figures/sweep-lines.png") as image:
         image.verify()
     more = "--vary", "joint.play=0.006:0.014:5"

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Bits that a disk has flipped, in the cache of shells and in the points of a sweep.
+
+Of each file as many as of any other, so that names and checksums are hit as often as numbers. What
+comes of it must be what comes without, to the last bit, and a notice must say that an entry was
+made again, once.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from mpi4py import MPI
+
+from runs import case as case_file
+from runs import sweep
+from runs.cache import Cache
+from runs.notices import NOTICES
+from runs.pipeline import run_case
+from runs.sweep_points import plan
+
+Row = tuple[str, int, int, str]
+
+_COARSE = str(Path(case_file.__file__).parent / "cases" / "coarse.toml")
+_SEED = 20
+
+
+class _Count(logging.Handler):
+    """Of notices."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told = 0
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.told += 1
+
+
+def rows(folder: Path, tries: int = 100) -> Iterator[Row]:
+    """What came of flips, one after the other; a breach is one that was believed or not told.
+
+    Args:
+        folder: an empty one to work in.
+        tries: bits to flip in each place.
+    """
+    cache = Cache(folder / "cache")
+    yield "a bit of the cache", *_flip(cache.folder, tries, lambda: _shell(cache))
+    sweeping = folder / "sweep"
+    sweep.prepare(sweeping, _COARSE)
+    yield "a bit of a point", *_flip(sweeping / sweep.POINTS, tries, lambda: _points(sweeping))
+
+
+def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int, int, str]:
+    undisturbed = compute()
+    random = np.random.default_rng(_SEED)
+    count = _Count()
+    NOTICES.addHandler(count)
+    wrong = untold = 0
+    for _ in range(tries):
+        path = random.choice(np.array(sorted(entries.glob("*/*"))))
+        content = bytearray(path.read_bytes())
+        bit = int(random.integers(8 * len(content)))
+        content[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(content)
+        count.told = 0
+        wrong += compute() != undisturbed
+        untold += count.told != 1
+    NOTICES.removeHandler(count)
+    return tries, wrong + untold, f"{wrong} results differ, {untold} were not told"
+
+
+def _shell(cache: Cache) -> bytes:
+    """A shell's motion until shortly after its first contact."""
+    case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
+    short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
+    with TemporaryDirectory() as scratch:
+        run = run_case(short, "", MPI.COMM_SELF, Path(scratch), lambda *_: None, cache)
+    assert run is not None
+    left = run.results.trajectories, run.shells["shell"].fields
+    return b"".join(bytes(data.to_netcdf(engine="scipy")) for data in left)
+
+
+def _points(folder: Path) -> bytes:
+    """Three points of the fastest model."""
+    points = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-tied"], None).points
+    with ThreadPoolExecutor(1) as pool:
+        return repr(sweep.run_points(points, folder, pool, lambda *_: None)).encode()
