@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -19,10 +18,11 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from dynamics.failure import NumericsError
 from runs import case as case_file
-from runs import notices, output, ranks, sweep_output, sweep_points, terminal
+from runs import notices, output, ranks, readings, sweep_output, sweep_points, terminal
 from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
 from runs.cache import Cache, default_folder
+from runs.files import alone, beside, changed_folder, whole_folder
 from runs.inferred import print_inferred
 from runs.pipeline import Progress as Tell
 from runs.pipeline import run_case
@@ -83,16 +83,17 @@ def run(
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
         comm = sweep_runs.launched_world(case)
-    with _all_ranks_end_together(comm), TemporaryDirectory(prefix="protractile-") as scratch:
+    with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                run_case(effective, case, comm, Path(scratch), _silence, cache)
+                run_case(effective, case, comm, Path(), _silence, cache)
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
-        with _progress_bars() as tell:
-            finished = run_case(effective, case, comm, Path(scratch), tell, cache)
-        assert finished is not None
-        output.write(finished, folder, Path(scratch))
+        with whole_folder(folder, [readings.FILE]) as part, beside(folder) as scratch:
+            with _progress_bars() as tell:
+                finished = run_case(effective, case, comm, scratch, tell, cache)
+            assert finished is not None
+            output.write(finished, part, scratch)
         print(printable(str(folder / output.REPORT)))
         return _show({case: finished.results})
 
@@ -102,9 +103,13 @@ def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
-    runs = {folder: Results.load(Path(folder)) for folder in folders}
-    for folder, results in runs.items():
-        output.write_report(results, Path(folder))
+    runs = {}
+    for folder in folders:
+        with alone(Path(folder)):
+            runs[folder] = results = Results.load(Path(folder))
+            surveyed = readings.load(Path(folder), results.case)
+            with changed_folder(Path(folder)) as part:
+                output.write_report(results, part, surveyed)
     return _show(runs)
 
 
@@ -116,19 +121,22 @@ def snapshot(
     ] = None,
 ) -> int:
     """Render the deformed shells of a run, and its report again with the pictures."""
-    results = Results.load(Path(folder))
-    last = results.case.time.duration
-    for t in time or []:
-        if not 0.0 <= t <= last:
-            raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
-    if not list(Path(folder).glob(f"*{FIELDS}")):
-        raise BadInput(folder, FIELDS, "missing; give the folder of a run with a shell")
-    try:
-        output.write_snapshots(results, Path(folder), sorted(set(time)) if time else None)
-    except RenderingUnavailable as reason:
-        raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
-    output.write_report(results, Path(folder))
-    for name in results.summary["snapshots"]["written"]:
+    with alone(Path(folder)):
+        results = Results.load(Path(folder))
+        surveyed = readings.load(Path(folder), results.case)
+        last = results.case.time.duration
+        for t in time or []:
+            if not 0.0 <= t <= last:
+                raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
+        if not list(Path(folder).glob(f"*{FIELDS}")):
+            raise BadInput(folder, FIELDS, "missing; give the folder of a run with a shell")
+        with changed_folder(Path(folder)) as part:
+            try:
+                drawn = output.write_snapshots(results, part, sorted(set(time)) if time else None)
+            except RenderingUnavailable as reason:
+                raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
+            output.write_report(results, part, surveyed)
+    for name in drawn:
         print(printable(str(Path(folder) / output.SNAPSHOTS / name)))
     return 0
 
@@ -167,10 +175,9 @@ def sweep(
         with sweep_runs.workers(comm) as pool:
             if pool is None:
                 return 0
-            with _progress_bars() as tell:
-                outcomes = sweep_runs.run_points(
-                    plan.points, folder, pool, tell, None if no_cache else Cache(default_folder())
-                )
+            with beside(folder) as scratch, _progress_bars() as tell:
+                cache = None if no_cache else Cache(default_folder())
+                outcomes = sweep_runs.run_points(plan.points, folder, pool, scratch, tell, cache)
         data = sweep_output.write(plan, outcomes, folder)
         print(printable(str(folder / sweep_output.CSV)))
         sweep_output.show(data, Terminal())
@@ -199,8 +206,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         with terminal.flushed():
             status = command.main(arguments, prog_name="protractile", standalone_mode=False)
-    except typer.Abort:
-        ranks.fail(message("interrupted"), 130, None)
     except Exception as error:
         known = _explain(error)
         if known is None:
@@ -317,7 +322,3 @@ def _show_failures(plan: sweep_points.Plan, outcomes: Sequence[sweep_runs.Outcom
         for model, why in outcome.failures.items():
             say(message(f"{shown(plan.file)}: --vary {point.label}: {model}: {why}"))
     return 0 if any(outcome.models for outcome in outcomes) else 3
-
-
-if __name__ == "__main__":
-    main()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A run's folder. Each file is there whole or not at all, and ``report.html`` comes last."""
+"""A run's folder, which takes the place of an earlier one when all its files are there."""
 
 from __future__ import annotations
 
@@ -7,18 +7,17 @@ import csv
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from runs import readings, snapshots, toml
+from runs import snapshots, toml
 from runs.bad_input import BadInput
 from runs.figures import draw
-from runs.files import whole, whole_folder
+from runs.files import beside, whole
 from runs.pipeline import Run
 from runs.report import render
 from runs.results import (
@@ -31,6 +30,7 @@ from runs.results import (
     Results,
     read_netcdf,
 )
+from runs.tables import TextTable
 from shell_model.field_series import write_field_series
 from shell_model.rendering import RenderingUnavailable, render_snapshots
 
@@ -38,6 +38,7 @@ REPORT = "report.html"
 SNAPSHOTS = "snapshots"
 STRESSES = "stress.nc"
 SERIES = "fields"
+FIGURES = "figures"
 
 # The time series of fields has so many frames at most, and fewer of a fine mesh: all triangles of
 # all frames, of about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
@@ -45,24 +46,26 @@ FRAMES, TRIANGLES = 51, 1_000_000
 
 
 def prepare(out: str, file: str) -> Path:
-    """Make the folder of a run, or take an earlier run's.
+    """The folder of a run, which may be an earlier run's.
 
     Args:
         out: the folder as the user gave it.
         file: the case file, for messages.
 
     Raises:
-        BadInput: it cannot be made or written, or holds something else.
+        BadInput: it cannot be made or replaced, or holds something else.
     """
     folder = Path(out)
     key = f"--out {out}"
     if folder.exists() and not folder.is_dir():
         raise BadInput(file, key, "is a file; give a folder")
+    if folder.resolve().is_mount():
+        raise BadInput(
+            file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
+        )
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(dir=folder, prefix=".probe-"):
-            pass
-        names = [path.name for path in folder.iterdir() if not path.name.startswith(".")]
+        with beside(folder):
+            names = [path.name for path in folder.glob("*") if not path.name.startswith(".")]
     except OSError as error:
         raise BadInput(
             file, key, f"cannot be written ({error.strerror}); give a folder that can"
@@ -75,47 +78,37 @@ def prepare(out: str, file: str) -> Path:
 
 
 def write(run: Run, folder: Path, mesh_folder: Path) -> None:
-    """Write everything that a run leaves; what an earlier one left goes.
+    """Write everything that a run leaves.
 
     Args:
         run: a finished one.
-        folder: made by :func:`prepare`.
+        folder: an empty one.
         mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
     """
     results = run.results
-    (folder / REPORT).unlink(missing_ok=True)
-    for kind in (FIELDS, STRESSES):
-        for path in folder.glob(f"*{kind}"):
-            path.unlink()
-    (folder / ENSEMBLES).unlink(missing_ok=True)
-    (folder / readings.FILE).unlink(missing_ok=True)
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
     empty = [name for name, size in results.trajectories.sizes.items() if size == 0]
-    with whole(folder / TRAJECTORIES) as path:
-        results.trajectories.drop_dims(empty).to_netcdf(path, engine="scipy")
+    results.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
     if results.ensembles is not None:
-        with whole(folder / ENSEMBLES) as path:
-            results.ensembles.to_netcdf(path, engine="scipy")
-    with whole(folder / "trajectories.csv") as path:
-        _write_csv(results.trajectories, path)
+        results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
+    _write_csv(results.trajectories, folder / "trajectories.csv")
     _write_text(folder / CASE, toml.dumps(results.case))
-    with whole_folder(folder / "mesh") as meshes, whole_folder(folder / SERIES) as series:
-        for name, shell in run.shells.items():
-            prefix = f"{name}-" if len(run.shells) > 1 else ""
-            with whole(folder / f"{prefix}{FIELDS}") as path:
-                shell.fields.to_netcdf(path, engine="scipy")
-            with whole(folder / f"{prefix}{STRESSES}") as path:
-                shell.stresses.to_netcdf(path, engine="scipy")
-            write_field_series(shell.fields, series, _series_times(shell.fields))
-            for segment, mesh in shell.meshes.items():
-                mesh.write(meshes / f"{prefix}{segment}.vtu")
-                gmsh_file = mesh_folder / name / f"{segment}.msh"
-                shutil.copyfile(gmsh_file, meshes / f"{prefix}{segment}.msh")
+    for name, shell in run.shells.items():
+        prefix = f"{name}-" if len(run.shells) > 1 else ""
+        shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
+        shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
+        meshes, series = folder / "mesh", folder / SERIES
+        for place in (meshes, series):
+            place.mkdir(exist_ok=True)
+        write_field_series(shell.fields, series, _series_times(shell.fields))
+        for segment, mesh in shell.meshes.items():
+            mesh.write(meshes / f"{prefix}{segment}.vtu")
+            gmsh_file = mesh_folder / name / f"{segment}.msh"
+            shutil.copyfile(gmsh_file, meshes / f"{prefix}{segment}.msh")
     try:
         write_snapshots(results, folder)
     except RenderingUnavailable as reason:
-        with whole_folder(folder / SNAPSHOTS):
-            results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
+        results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
     write_report(results, folder)
 
 
@@ -126,42 +119,53 @@ def _series_times(fields: xr.Dataset) -> list[float]:
     return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
-def write_snapshots(results: Results, folder: Path, times: Sequence[float] | None = None) -> None:
+def write_snapshots(
+    results: Results, folder: Path, times: Sequence[float] | None = None
+) -> list[str]:
     """Render the deformed shells of a run's folder, and note it in the summary.
 
     Args:
         results: of the folder.
-        folder: with the shells' fields.
+        folder: with the shells' fields; pictures of other instants stay in it.
         times: in s; the telling ones unless given.
+
+    Returns:
+        The names of the pictures.
 
     Raises:
         RenderingUnavailable: no picture can be made here.
     """
     written = []
-    with whole_folder(folder / SNAPSHOTS) as pictures:
+    pictures = folder / SNAPSHOTS
+    with beside(pictures) as easel:
         for path in sorted(folder.glob(f"*{FIELDS}")):
             fields = read_netcdf(path)
             model = fields.attrs["model"]
             prefix = path.name.removesuffix(FIELDS)
-            for drawn in render_snapshots(fields, results.trajectories, model, pictures, times):
-                written.append(drawn.rename(pictures / f"{prefix}{drawn.name}").name)
-    results.summary["snapshots"] = {"written": written, "skipped": None}
+            for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
+                pictures.mkdir(exist_ok=True)
+                written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
+    earlier = results.summary.get("snapshots", {}).get("written", [])
+    results.summary["snapshots"] = {
+        "written": list(dict.fromkeys([*earlier, *written])),
+        "skipped": None,
+    }
+    return written
 
 
-def write_report(results: Results, folder: Path) -> None:
+def write_report(results: Results, folder: Path, surveyed: Sequence[TextTable] = ()) -> None:
     """Write what is derived from the trajectories: summary, verdicts, figures, report.
 
-    A survey of the case's readings that lies in the folder is shown, too.
-
-    Raises:
-        BadInput: the survey is damaged, or of another case.
+    Args:
+        results: of the folder.
+        folder: gets them.
+        surveyed: what a survey of the case's readings has found.
     """
-    surveyed = readings.load(folder, results.case)
     _write_text(folder / SUMMARY, _json(results.summary))
     _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in results.verdicts]))
-    with whole_folder(folder / "figures") as part:
-        drawn = draw(results, part)
-    figures = [replace(figure, path=folder / "figures" / figure.path.name) for figure in drawn]
+    shutil.rmtree(folder / FIGURES, ignore_errors=True)
+    (folder / FIGURES).mkdir()
+    figures = draw(results, folder / FIGURES)
     pictures = [
         snapshots.describe(results, folder / SNAPSHOTS / name)
         for name in results.summary["snapshots"]["written"]

@@ -29,6 +29,7 @@ from dynamics.failure import NumericsError
 from runs import members, notices, ranks, toml
 from runs.bad_input import BadInput
 from runs.cache import Cache, Files, key
+from runs.interruption import undone
 from runs.pipeline import Progress, run_case
 from runs.quantities import QUANTITIES, Measured, measure
 from runs.schema import Case, ShellTable
@@ -41,8 +42,11 @@ if TYPE_CHECKING:
 POINTS = "points"
 _POINT = "point.json"
 
-# Libraries that would take all cores in each process.
-_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+# A process has one thread, though its libraries would take all cores; and the one that counts what
+# processes share says nothing when all are killed.
+_OF_WORKERS = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+) | {"PYTHONWARNINGS": "ignore::UserWarning:multiprocessing.resource_tracker"}
 # What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
@@ -109,29 +113,30 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
         with members.workers(comm) as others:
             yield others
         return
-    # A process takes the number of its threads from here when it starts.
-    outside = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    # A process takes these from here when it starts.
+    outside = {name: os.environ.get(name) for name in _OF_WORKERS}
+    os.environ.update(_OF_WORKERS)
     pool = ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), _start_worker)
     try:
-        yield pool
+        with undone(_end_workers):
+            yield pool
     except BaseException:
-        for process in active_children():
-            process.terminate()
+        _end_workers()
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-        for name, threads in outside.items():
-            if threads is None:
+        for name, value in outside.items():
+            if value is None:
                 del os.environ[name]
             else:
-                os.environ[name] = threads
+                os.environ[name] = value
 
 
 def run_points(
     points: Sequence[Point],
     folder: Path,
     pool: Executor,
+    scratch: Path,
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
@@ -141,6 +146,7 @@ def run_points(
         points: of a sweep.
         folder: made by :func:`prepare`.
         pool: of :func:`workers`.
+        scratch: for what is in the making, on the disk of the folder.
         progress: told about every finished point.
         cache: of reduced shells.
 
@@ -155,11 +161,12 @@ def run_points(
         for name, point in zip(names, points, strict=True)
     ]
     stage = f"{len(points)} points"
-    futures = {
-        pool.submit(run_point, point.case, cache): i
-        for i, point in enumerate(points)
-        if outcomes[i] is None
-    }
+    with _deaf_children():
+        futures = {
+            pool.submit(run_point, point.case, scratch, cache): i
+            for i, point in enumerate(points)
+            if outcomes[i] is None
+        }
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
@@ -177,7 +184,7 @@ def run_points(
     return [outcome for outcome in outcomes if outcome is not None]
 
 
-def run_point(case: Case, cache: Cache | None = None) -> Outcome:
+def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
     outcome = Outcome({}, {})
     for model in case.models:
@@ -187,9 +194,9 @@ def run_point(case: Case, cache: Cache | None = None) -> Outcome:
 
             comm = MPI.COMM_SELF
         alone = case.model_copy(update={"models": (model,)})
-        with TemporaryDirectory(prefix="protractile-") as scratch:
+        with TemporaryDirectory(dir=scratch) as meshes:
             try:
-                finished = run_case(alone, "", comm, Path(scratch), _silence, cache)
+                finished = run_case(alone, "", comm, Path(meshes), _silence, cache)
             except NumericsError as error:
                 # The file, the point and the model's name stand before it where it is shown.
                 outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
@@ -200,12 +207,27 @@ def run_point(case: Case, cache: Cache | None = None) -> Outcome:
 
 
 def _start_worker() -> None:
-    """A worker is no rank, ends without a word at Ctrl-C, and does not outlive its parent."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    """A worker is no rank, and does not outlive its parent, which ends it when interrupted."""
     notices.show()
     for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
         del os.environ[name]
     Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_workers() -> None:
+    for process in active_children():
+        process.kill()
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Processes that start meanwhile never hear signals to all of a group, as Ctrl-C is one."""
+    signals = {signal.SIGINT, signal.SIGTERM}
+    signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
 
 
 def _end_with_parent() -> None:

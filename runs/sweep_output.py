@@ -63,13 +63,15 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
-    """Write ``sweep.nc``, ``sweep.csv`` and the figures, each whole or not at all."""
+    """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones in the end."""
     data = gather(plan, outcomes)
-    with whole(folder / NETCDF) as path:
-        data.to_netcdf(path, engine="scipy")
-    with whole(folder / CSV) as path:
-        _write_csv(plan, outcomes, path)
-    with whole_folder(folder / "figures") as figures:
+    with (
+        whole(folder / NETCDF) as netcdf,
+        whole(folder / CSV) as table,
+        whole_folder(folder / "figures") as figures,
+    ):
+        data.to_netcdf(netcdf, engine="scipy")
+        _write_csv(plan, outcomes, table)
         draw(data, plan.play_free, figures)
     return data
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from runs.files import whole, whole_folder
+from runs.files import MANIFEST, alone, changed_folder, whole, whole_folder
 
 pytestmark = pytest.mark.quick
 
@@ -58,23 +58,95 @@ with whole(Path({str(path)!r})) as part:
     killed = subprocess.run([sys.executable, "-c", program], env=environment, check=False)
     assert killed.returncode == -signal.SIGKILL
     assert path.read_text(encoding="utf-8") == "earlier"
+    with whole(path) as part:
+        part.write_text("later", encoding="utf-8")
+    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """The text of all files but the manifest, by their paths in a folder."""
+    return {
+        str(path.relative_to(folder)): path.read_text(encoding="utf-8")
+        for path in folder.rglob("*")
+        if path.is_file() and path.name != MANIFEST
+    }
+
+
+def write(folder: Path, *names: str) -> None:
+    """Files that hold all their names."""
+    for name in names:
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(" ".join(names), encoding="utf-8")
+
+
+def in_the_making(path: Path) -> subprocess.Popen[str]:
+    """A process that has begun to write a folder, says where, and goes on at a line of input."""
+    program = f"""
+from pathlib import Path
+from runs.files import beside
+with beside(Path({str(path)!r})) as part:
+    (part / "half").write_text("half")
+    print(part, flush=True)
+    input()
+"""
+    return subprocess.Popen(
+        [sys.executable, "-c", program],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
 
 
 def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
     folder = tmp_path / "figures"
-    for names in (("a.png", "b.png"), ("b.png", "c.png")):
+    for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
         with whole_folder(folder) as part:
-            for name in names:
-                (part / name).write_text(" ".join(names), encoding="utf-8")
-        assert sorted(p.name for p in folder.iterdir()) == list(names)
-    assert (folder / "b.png").read_text(encoding="utf-8") == "b.png c.png"
+            write(part, *names)
+        assert contents(folder) == dict.fromkeys(names, " ".join(names))
     assert [p.name for p in tmp_path.iterdir()] == ["figures"]
+
+
+def test_what_is_the_user_s_stays(tmp_path: Path) -> None:
+    """Files, folders, links and what comes while the new folder is written."""
+    folder = tmp_path / "out"
+    for content in ("earlier", "later"):
+        with whole_folder(folder) as part:
+            (part / "figures").mkdir()
+            (part / "figures" / f"{content}.png").write_text(content, encoding="utf-8")
+            if content == "later":
+                (folder / "late.txt").write_text("mine", encoding="utf-8")
+        if content == "earlier":
+            (folder / "figures" / "my.png").write_text("mine", encoding="utf-8")
+            (folder / "notes" / "empty").mkdir(parents=True)
+            (folder / "link").symlink_to("nowhere")
+            folder.chmod(0o750)
+    mine = {"figures/my.png": "mine", "late.txt": "mine"}
+    assert contents(folder) == {"figures/later.png": "later", **mine}
+    assert (folder / "notes" / "empty").is_dir()
+    assert os.readlink(folder / "link") == "nowhere"
+    assert folder.stat().st_mode & 0o777 == 0o750
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
+    """What the user has put there is the user's still at the next run."""
+    folder = tmp_path / "out"
+    with whole_folder(folder) as part:
+        write(part, "data", "report")
+    write(folder, "mine")
+    with alone(folder), changed_folder(folder) as part, whole(part / "report") as report:
+        report.write_text("again", encoding="utf-8")
+    assert contents(folder) == {"data": "data report", "report": "again", "mine": "mine"}
+    with whole_folder(folder) as part:
+        write(part, "data")
+    assert contents(folder) == {"data": "data", "mine": "mine"}
 
 
 def test_a_failing_folder_leaves_the_one_that_was_there(tmp_path: Path) -> None:
     folder = tmp_path / "figures"
     with whole_folder(folder) as part:
-        (part / "a.png").write_text("earlier", encoding="utf-8")
+        write(part, "a.png")
 
     def fail() -> None:
         with whole_folder(folder) as part:
@@ -83,14 +155,49 @@ def test_a_failing_folder_leaves_the_one_that_was_there(tmp_path: Path) -> None:
 
     with pytest.raises(RuntimeError):
         fail()
-    assert (folder / "a.png").read_text(encoding="utf-8") == "earlier"
+    assert contents(folder) == {"a.png": "a.png"}
     assert [p.name for p in tmp_path.iterdir()] == ["figures"]
 
 
-def test_a_folder_without_files_is_none(tmp_path: Path) -> None:
-    folder = tmp_path / "mesh"
+@pytest.mark.parametrize("disk", ["Linux's own", "another"])
+def test_folders_are_exchanged_on_every_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, disk: str
+) -> None:
+    if disk == "another":
+        monkeypatch.setattr("ctypes.PyDLL", lambda *_, **__: object())
+    folder = tmp_path / "out"
+    for name in ("earlier", "later"):
+        with whole_folder(folder) as part:
+            write(part, name)
+    assert contents(folder) == {"later": "later"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path: Path) -> None:
+    """Between two renames, where the disk takes two of them."""
+    folder = tmp_path / "out"
     with whole_folder(folder) as part:
-        (part / "outer.msh").write_text("mesh", encoding="utf-8")
-    with whole_folder(folder):
-        pass
-    assert not folder.exists()
+        write(part, "earlier")
+    folder.rename(tmp_path / ".out.protractile-01234567.away")
+    with alone(folder):
+        assert contents(folder) == {"earlier": "earlier"}
+
+
+def test_what_a_killed_process_leaves_goes_and_what_a_live_one_writes_stays(
+    tmp_path: Path,
+) -> None:
+    folder, mine = tmp_path / "out", tmp_path / ".out.mine"
+    mine.mkdir()
+    killed, live = in_the_making(folder), in_the_making(folder)
+    parts = []
+    for process in (killed, live):
+        assert process.stdout is not None
+        parts.append(Path(process.stdout.readline().strip()))
+    killed.kill()
+    killed.wait()
+    assert all((part / "half").exists() for part in parts)
+    with whole_folder(folder) as part:
+        write(part, "whole")
+    assert sorted(tmp_path.iterdir()) == sorted([folder, mine, parts[1]])
+    live.communicate("\n")
+    assert sorted(tmp_path.iterdir()) == sorted([folder, mine])

@@ -22,6 +22,7 @@ from runs import sweep, sweep_output, theme
 from runs.bad_input import BadInput
 from runs.build import build_boom
 from runs.cache import Cache
+from runs.files import beside
 from runs.pipeline import run_case
 from runs.quantities import QUANTITIES, measure, settling_time
 from runs.schema import Case
@@ -56,9 +57,9 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
     cases: list[Case] = []
     run_point = sweep.run_point
 
-    def count(case: Case, cache: object) -> Outcome:
+    def count(case: Case, scratch: Path, cache: object) -> Outcome:
         cases.append(case)
-        return run_point(case)
+        return run_point(case, scratch)
 
     monkeypatch.setattr(sweep, "run_point", count)
     return cases
@@ -67,8 +68,8 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
 def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
     """All outcomes of a sweep, run in this process."""
     sweep.prepare(folder, planned.file)
-    with ThreadPoolExecutor(1) as pool:
-        return sweep.run_points(planned.points, folder, pool, lambda *_: None)
+    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
+        return sweep.run_points(planned.points, folder, pool, scratch, lambda *_: None)
 
 
 @pytest.mark.parametrize(
@@ -376,7 +377,7 @@ def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> N
 def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
     planned: Planned, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def break_down(case: Case, cache: object) -> Outcome:
+    def break_down(case: Case, scratch: Path, cache: object) -> Outcome:
         if case.joints[0].play == 0.0:
             return Outcome({}, {"kantorovich-4": "no number is finite"})
         raise RuntimeError("broken")
@@ -403,7 +404,7 @@ def charts(sweeping: Plan) -> list[str]:
         for i in range(len(sweeping.points))
     ]
     sweep_output.write(sweeping, outcomes, Path())
-    names = sorted(path.name for path in Path("figures").iterdir())
+    names = sorted(path.name for path in Path("figures").glob("*.png"))
     for name in names:
         with Image.open(Path("figures") / name) as image:
             assert image.size[0] == round(theme.WIDTH * theme.DPI)

@@ -41,6 +41,7 @@ def test_every_file_of_a_series_run_opens(series: Path) -> None:
         "summary.json",
         "verdicts.json",
         "report.html",
+        ".manifest",
     }
 
 
@@ -58,6 +59,8 @@ def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path:
     shutil.copytree(series, again)
     (again / "figures" / "stale.png").write_bytes(b"of an earlier version")
     (again / "fields.nc").write_bytes(b"of a shell that is not run now")
+    with (again / ".manifest").open("a") as manifest:
+        manifest.write("figures/stale.png\nfields.nc\n")
     case = again / "case.toml"
     assert protractile("run", case, "--out", again) == 0
     assert files(again) == files(series)

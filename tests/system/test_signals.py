@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Ctrl-C and SIGTERM end a command in one line, and nothing of it is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.system.run_folder import COARSE, ROOT
+
+RUN = "run", COARSE, "--models", "kantorovich-4,timoshenko", "--no-cache"
+SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0.014:8"
+
+
+def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    """A command in a process group of its own, as a terminal starts it."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "runs", *arguments, "--out", "out"],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def listens(process: subprocess.Popen[str]) -> bool:
+    """Whether the process has taken SIGTERM into its own hands."""
+    status = Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
+    (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
+    return bool(int(caught.split()[1], 16) & 1 << (signal.SIGTERM - 1))
+
+
+def works(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:
+    """Whether something is in the making."""
+    return lambda process: bool(list(folder.glob(".out.*")))
+
+
+def has_a_point(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:
+    return lambda process: bool(list(folder.glob("out/points/*/point.json")))
+
+
+def wait_until(happens: Callable[[subprocess.Popen[str]], bool], it: subprocess.Popen[str]) -> None:
+    while not happens(it):
+        assert it.poll() is None
+        time.sleep(0.005)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("stage", ["importing", "working"])
+def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: str) -> None:
+    process = start(tmp_path, *RUN)
+    wait_until(listens if stage == "importing" else works(tmp_path), process)
+    os.killpg(process.pid, number)
+    assert process.communicate(timeout=60) == ("", "protractile: interrupted\n")
+    assert process.returncode == 128 + number
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("all_hear_it", [True, False])
+def test_a_sweep_ends_with_its_processes(
+    tmp_path: Path, number: signal.Signals, all_hear_it: bool
+) -> None:
+    """Finished points stay. Its output ends when the last process that could write to it does."""
+    process = start(tmp_path, *SWEEP)
+    wait_until(has_a_point(tmp_path), process)
+    (os.killpg if all_hear_it else os.kill)(process.pid, number)
+    assert process.communicate(timeout=60) == ("", "protractile: interrupted\n")
+    assert process.returncode == 128 + number
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["points"]
