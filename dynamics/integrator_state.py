@@ -69,20 +69,22 @@ def excitation_arrays(system: GapSystem, times: Array, step: float) -> Excitatio
     histories = [x.history for x in system.excitations]
     loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
     kinks = np.unique(np.concatenate([np.zeros(0), *(history.kinks for history in histories)]))
-    inside = kinks[(kinks > times[0]) & (kinks < times[-1])]
-    places = np.searchsorted(times, inside)
-    between = times[places] != inside
-    knots = np.insert(times, places[between], inside[between])
+    kinks = kinks[(kinks > times[0]) & (kinks < times[-1])]
+    after = np.searchsorted(times, kinks)
+    within = times[after] != kinks
+    new = after[within]
+    knots = np.insert(times, new, kinks[within])
     samples = np.array([history(knots) for history in histories], dtype=np.float64)
-    parts = np.searchsorted(knots, times)
-    spans = np.diff(knots)
-    # The differences of whole steps would each have their own round-off.
-    spans[parts[:-1][np.diff(parts) == 1]] = step
-    straight = np.ones(times.size - 1, dtype=np.int64)
-    if not any(history.fastest for history in histories):
-        bends = np.append(inside, np.inf)[np.searchsorted(inside, times[:-1], side="right")]
-        ahead = np.searchsorted(times, bends, side="right") - 1 - np.arange(straight.size)
-        straight = np.maximum(straight, ahead)
+    parts = np.arange(times.size) + np.bincount(new, minlength=times.size).cumsum()
+    spans = np.full(knots.size - 1, step)
+    cut = new + np.arange(new.size)
+    spans[cut] = knots[cut + 1] - knots[cut]
+    spans[cut - 1] = knots[cut] - knots[cut - 1]
+    if any(history.fastest for history in histories):
+        ends = np.arange(1, times.size)
+    else:
+        ends = np.unique([*after, *(after - within), times.size - 1, 0])[1:]
+    straight = np.repeat(ends, np.diff(ends, prepend=0)) - np.arange(times.size - 1)
     samples = np.ascontiguousarray(samples.reshape(len(histories), knots.size).T)
     return loads, samples, spans, parts, straight, np.zeros((3, system.num_modes))
 
