@@ -40,6 +40,7 @@ STUDIES = (
     "stiffeners",
     "refinement",
     "walk",
+    "histories",
 )
 
 

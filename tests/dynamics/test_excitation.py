@@ -14,10 +14,11 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table
 from dynamics.friction import DryFriction
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.integrators import Events, suited
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
+from runs.studies.histories import KINKED, OMEGAS, masses, response
 
 pytestmark = pytest.mark.quick
 
@@ -59,82 +60,33 @@ def test_a_step_is_a_load(one_mass: OneMass) -> None:
     assert moved.data.identical(again.data)
 
 
-def swing(omega: float, table: Table, time: Array) -> Array:
-    """Closed form for 1 kg from rest on a spring ω² in N/m under 1 N times a table.
-
-    A step of the load to its first value, and at each point a ramp by as much as the slope
-    changes there.
-    """
-
-    def ramp(since: Array) -> Array:
-        if omega == 0.0:
-            return np.asarray(since**3 / 6.0)
-        return np.asarray((since - np.sin(omega * since) / omega) / omega**2)
-
-    slopes = np.diff(table.values) / np.diff(table.times)
-    steps = np.diff(slopes, prepend=0.0, append=0.0)
-    way = table.values[0] * 0.5 * time**2 * np.sinc(0.5 * omega * time / np.pi) ** 2
-    for begin, step in zip(table.times, steps, strict=True):
-        way = way + step * ramp(np.maximum(time - begin, 0.0))
-    return np.asarray(way)
-
-
-OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-MANY = np.linspace(0.011, 2.9, 1500)
-KINKED = {
-    "within a step": Table((0.0, 0.71), (0.0, 1.0)),
-    "at ends of steps": Table((0.0, 0.7, 1.2), (0.5, 1.0, -0.5)),
-    "two in a step": Table((0.0, 0.303, 0.311, 0.7), (0.0, 1.0, -2.0, 0.3)),
-    "finer than steps": Table(MANY.tolist(), np.sin(40.0 * MANY).tolist()),
-    "all within a step": Table((1.001, 1.004), (0.0, 1.0)),
-}
-
-
-def modes(frictions: int = 0) -> GapSystem:
-    """A mode for each of ``OMEGAS``, read one by one; rows that friction does not hold."""
-    n = len(OMEGAS)
-    return GapSystem(
-        omega2=np.square(OMEGAS),
-        load=np.zeros(n),
-        rows=np.zeros((0, n)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[0.0],
-        observers={
-            f"{omega:g}": Observer(row) for omega, row in zip(OMEGAS, np.eye(n), strict=True)
-        },
-        friction_rows=np.ones((frictions, n)),
-        frictions=[DryFriction(0.2, 0, 1.0e-30)] * frictions,
-    )
-
-
 @pytest.mark.parametrize("frictions", [0, 1])
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-3])
 @pytest.mark.parametrize("where", KINKED)
 def test_kinks_are_followed_wherever_they_are(where: str, step: float, frictions: int) -> None:
-    """Reference: analytic, :func:`swing`, for each mode by its range; the work is all the energy
-    that there is."""
-    table = KINKED[where]
-    system = modes(frictions)
-    system = replace(system, excitations=[Excitation(np.ones(len(OMEGAS)), table)])
+    """Reference: analytic, for each mode by its range, with friction that holds nothing or without;
+    the work is all the energy that there is."""
+    system = replace(
+        masses(KINKED[where]),
+        friction_rows=np.ones((frictions, len(OMEGAS))),
+        frictions=[DryFriction(0.2, 0, 1.0e-30)] * frictions,
+    )
     run = integrate(system, 4.0, output_step=0.02, step=step)
     for omega in OMEGAS:
-        expected = swing(omega, table, run.time)
-        error = np.abs(run.data[f"{omega:g}"] - expected).max()
-        assert float(error) < 1e-9 * np.ptp(expected), omega
+        expected = response(omega, KINKED[where], run.time)
+        error = np.abs(run.data[f"{omega:g}"].values - expected).max()
+        assert error < 1e-9 * np.ptp(expected), omega
     assert run.energy_residual < 1e-11
 
 
 def test_a_jump_within_a_step() -> None:
     """Reference: analytic, the load let on 0.507 s later, as a table that rises within 1 ns."""
-    table = Table((0.507, 0.507 + 1.0e-9), (0.0, 1.0))
-    system = replace(modes(), excitations=[Excitation(np.ones(len(OMEGAS)), table)])
-    run = integrate(system, 2.0, output_step=0.02)
+    run = integrate(masses(Table((0.507, 0.507 + 1.0e-9), (0.0, 1.0))), 2.0, output_step=0.02)
     since = np.maximum(run.time - 0.507 - 0.5e-9, 0.0)
     for omega in OMEGAS:
         expected = 0.5 * since**2 * np.sinc(0.5 * omega * since / np.pi) ** 2
-        error = np.abs(run.data[f"{omega:g}"] - expected).max()
-        assert float(error) < 1e-8 * np.ptp(expected), omega
+        error = np.abs(run.data[f"{omega:g}"].values - expected).max()
+        assert error < 1e-8 * np.ptp(expected), omega
 
 
 def test_a_table_that_knocks_takes_long_strides(one_mass: OneMass) -> None:
@@ -273,11 +225,9 @@ class Own:
 
 def test_a_history_of_one_s_own() -> None:
     """Reference: the same as a table."""
-    given: list[History] = [Own(), Table((0.0, 1.0, 3.0), (1.0, 1.0, -1.0))]
-    runs = [
-        integrate(replace(modes(), excitations=[Excitation(np.ones(5), one)]), 2.0, 0.03)
-        for one in given
-    ]
+    system = masses(Table((0.0, 1.0, 3.0), (1.0, 1.0, -1.0)))
+    own = replace(system, excitations=[Excitation(np.ones(len(OMEGAS)), Own())])
+    runs = [integrate(one, 2.0, 0.03) for one in (own, system)]
     np.testing.assert_allclose(runs[0].states, runs[1].states, rtol=1e-12, atol=1e-14)
 
 
