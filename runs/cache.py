@@ -14,17 +14,15 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import shutil
-import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any, TypeVar
 
 import numpy as np
 
+from runs.files import beside
 from runs.notices import NOTICES
 from runs.shown import shown
 
@@ -38,10 +36,6 @@ ROOM = 4 * 1024**3
 VARIABLE = "PROTRACTILE_CACHE"
 
 SUMS = "SHA256SUMS"
-
-# What is being filled or dropped, and its age in s from which nobody can be at it any more.
-_PART = ".part-"
-_ABANDONED = 3600.0
 
 
 def default_folder() -> Path:
@@ -108,25 +102,20 @@ class Cache:
             files: the parts of each file, by its name.
 
         Raises:
-            OSError: it cannot be written; ``filename`` is the cache's folder.
+            OSError: it cannot be written.
         """
         entry = self.folder / key
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            part = Path(mkdtemp(prefix=_PART, dir=self.folder))
+        with beside(entry) as part:
+            made = part / key
+            made.mkdir()
+            for name, content in {**files, SUMS: [_sums(key, files)]}.items():
+                with (made / name).open("wb") as file:
+                    file.writelines(content)
             try:
-                for name, content in {**files, SUMS: [_sums(key, files)]}.items():
-                    with (part / name).open("wb") as file:
-                        file.writelines(content)
-                try:
-                    part.rename(entry)
-                except OSError:
-                    if not entry.is_dir():
-                        raise
-            finally:
-                shutil.rmtree(part, ignore_errors=True)
-        except OSError as error:
-            raise OSError(error.errno, error.strerror, str(self.folder)) from error
+                made.rename(entry)
+            except OSError:
+                if not entry.is_dir():
+                    raise
 
     def make_room(self, room: int = ROOM) -> None:
         """Drop the least recently used entries until the others take ``room`` bytes together."""
@@ -134,22 +123,19 @@ class Cache:
         for entry in self.folder.iterdir():
             # Another process may take it away while it is looked at.
             with suppress(OSError):
-                size = sum(path.stat().st_size for path in entry.iterdir())
+                size = sum(path.stat().st_size for path in entry.rglob("*"))
                 used.append((entry.stat().st_mtime, size, entry))
         total = sum(size for _, size, _ in used)
-        for last_use, size, entry in sorted(used)[:-1]:
-            abandoned = entry.name.startswith(_PART) and last_use < time.time() - _ABANDONED
-            if total > room or abandoned:
-                self._drop(entry)
-                total -= size
+        for _, size, entry in sorted(used)[:-1]:
+            if total <= room:
+                return
+            self._drop(entry)
+            total -= size
 
     def _drop(self, entry: Path) -> None:
         """Take an entry away at once, since others may be reading it."""
-        with suppress(OSError):
-            part = Path(mkdtemp(prefix=_PART, dir=self.folder))
-            with suppress(OSError):
-                os.rename(entry, part / entry.name)
-            shutil.rmtree(part, ignore_errors=True)
+        with suppress(OSError), beside(entry) as part:
+            entry.rename(part / entry.name)
 
 
 def _content(path: Path) -> memoryview:

@@ -97,14 +97,15 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
         prefix = f"{name}-" if len(run.shells) > 1 else ""
         shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
         shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
-        meshes, series = folder / "mesh", folder / SERIES
+        # Of names joined by a hyphen two may be the same.
+        meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
-            place.mkdir(exist_ok=True)
+            place.mkdir(parents=True, exist_ok=True)
         write_field_series(shell.fields, series, _series_times(shell.fields))
         for segment, mesh in shell.meshes.items():
-            mesh.write(meshes / f"{prefix}{segment}.vtu")
+            mesh.write(meshes / f"{segment}.vtu")
             gmsh_file = mesh_folder / name / f"{segment}.msh"
-            shutil.copyfile(gmsh_file, meshes / f"{prefix}{segment}.msh")
+            shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
     try:
         write_snapshots(results, folder)
     except RenderingUnavailable as reason:

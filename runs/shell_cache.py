@@ -57,7 +57,7 @@ def remembered(
             NOTICES.warning(
                 "%s: the cache cannot be written (%s), and shells are reduced anew in every run; "
                 "give another folder in PROTRACTILE_CACHE, or --no-cache",
-                shown(error.filename),
+                shown(str(cache.folder)),
                 error.strerror,
             )
     return reduced

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +23,7 @@ pytestmark = pytest.mark.quick
 
 
 TEXT = "text"
+ROOT = Path(__file__).parents[2]
 
 
 def keep(cache: Cache, name: str, text: str) -> None:
@@ -46,11 +49,11 @@ def test_an_interrupted_entry_leaves_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_full_disk_names_the_folder(tmp_path: Path) -> None:
-    (tmp_path / "a").touch()
-    with pytest.raises(OSError, match="File exists") as caught:
-        keep(Cache(tmp_path / "a"), "b", "text")
-    assert caught.value.filename == str(tmp_path / "a")
+def test_what_cannot_be_kept_is_told_by_its_name(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(NotADirectoryError) as caught:
+        keep(Cache(tmp_path / "file"), "a", "text")
+    assert caught.value.filename == str(tmp_path / "file" / "a")
 
 
 def test_of_two_that_keep_the_same_the_first_stays(tmp_path: Path) -> None:
@@ -70,6 +73,22 @@ def test_the_least_recently_used_goes(tmp_path: Path) -> None:
     keep(cache, "c", 100 * "x")
     cache.make_room(500)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "c"]
+
+
+def test_what_a_killed_process_has_left_goes(tmp_path: Path) -> None:
+    program = (
+        "import os; from pathlib import Path; from runs.cache import Cache; "
+        "Path.rename = lambda *_: os._exit(9); "
+        f"Cache(Path({str(tmp_path)!r})).keep('a', {{'text': [b'first']}})"
+    )
+    killed = subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False)
+    assert killed.returncode == 9
+    (left,) = tmp_path.iterdir()
+    cache = Cache(tmp_path)
+    assert load(cache, "a") is None
+    keep(cache, "a", "second")
+    assert load(cache, "a") == "second"
+    assert not left.exists()
 
 
 def test_one_entry_may_be_larger_than_the_room(tmp_path: Path) -> None:

@@ -196,15 +196,17 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 
     monkeypatch.setattr("runs.output.render_snapshots", draw)
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
-    shell = text[text.index('[[model]]\nname = "shell"') :]
-    text += "\n" + shell.replace('name = "shell"', 'name = "across"').replace("near webs", "across")
+    shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
+    text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")
+    text = text.replace('"outer"', '"b-c"').replace('"inner"', '"c"')
     (tmp_path / "case.toml").write_text(text, encoding="utf-8")
     folder = tmp_path / "out"
     assert protractile(
-        "run", tmp_path / "case.toml", "--models", "shell,across", "--out", folder
+        "run", tmp_path / "case.toml", "--models", "a,a-b", "--out", folder
     ) == 0  # fmt: skip
     found = files(folder)
-    for model in ("shell", "across"):
+    for model in ("a", "a-b"):
         assert {f"{model}-fields.nc", f"snapshots/{model}-boom-end.png"} <= found
-        assert {f"mesh/{model}-outer.msh", f"mesh/{model}-inner.vtu"} <= found
+        meshes = {f"{segment}.{kind}" for segment in ("b-c", "c") for kind in ("msh", "vtu")}
+        assert {f"mesh/{model}/{name}" for name in meshes} <= found
         assert {f"{model}-stress.nc", f"fields/{model}.pvd", f"fields/{model}-00.vtu"} <= found

@@ -20,6 +20,7 @@ from mpi4py import MPI
 from runs import case as case_file
 from runs import sweep
 from runs.cache import Cache
+from runs.files import beside
 from runs.notices import NOTICES
 from runs.pipeline import run_case
 from runs.sweep_points import plan
@@ -88,5 +89,5 @@ def _shell(cache: Cache) -> bytes:
 def _points(folder: Path) -> bytes:
     """Three points of the fastest model."""
     points = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-tied"], None).points
-    with ThreadPoolExecutor(1) as pool:
-        return repr(sweep.run_points(points, folder, pool, lambda *_: None)).encode()
+    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
+        return repr(sweep.run_points(points, folder, pool, scratch, lambda *_: None)).encode()
