@@ -33,6 +33,7 @@ TITLE = "What proves the models"
 STUDIES = (
     "benchmarks",
     "mesh",
+    "working_load",
     "direct",
     "solid",
     "stress",

@@ -195,7 +195,7 @@ def reduce_boom(
     local = local_compliance(whole, contacts)
     coarse = assemble_segments(boom, options.coarser, comm)
     same, _ = contacts_and_frictions(boom, coarse, planes, options.contact_line, options.surface)
-    off = extrapolated_error(np.diag(whole), full_compliance(coarse, same))
+    off = extrapolated_error(local, local_compliance(full_compliance(coarse, same), same))
     seconds["mesh error"] = perf_counter() - start
     return ReducedShell(
         system=system,
@@ -207,7 +207,7 @@ def reduce_boom(
             "frequency_limit_in_hz": min(r.frequency_limit for r in reduced),
         },
         local_compliance=local,
-        mesh_error=_largest(off / local),
+        mesh_error=_largest(off),
         seconds=seconds,
         meshes=meshes,
     )

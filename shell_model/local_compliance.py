@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from shell_model.joint_rows import Contact
+from shell_model.products import gram
 from shell_model.segment_shell import SegmentShell
 from shell_model.shifted_solver import ShiftedSolver
 
@@ -23,7 +24,7 @@ Array = npt.NDArray[np.float64]
 # Hz: above rigid motion, below all elastic motion.
 SLOW = 20.0
 
-# Of the compliance in the edge length, on meshes that resolve the contact.
+# Of the local compliance in the edge length, at least.
 ORDER = 1.0
 
 
@@ -38,14 +39,14 @@ def compliance(omega2: Array, rows: Array) -> Array:
 
 
 def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact]) -> Array:
-    """(num_contacts,) the diagonal of the same, of shells that are not reduced. Collective."""
-    found = np.zeros(len(contacts))
+    """(num_contacts, num_contacts) the same of shells that are not reduced. Collective."""
+    found = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
         solve = ShiftedSolver(shell, SLOW)
-        found[touching] += shell.comm.allreduce(np.einsum("ij,ij->j", rows, solve(rows)))
+        found[np.ix_(touching, touching)] += gram(shell.comm, rows, solve(rows))
         solve.destroy()
     return found
 
@@ -65,12 +66,12 @@ def local_compliance(whole: Array, contacts: Sequence[Contact]) -> Array:
 
 
 def extrapolated_error(fine: Array, coarse: Array) -> Array:
-    """How far values of a mesh are from the limit of finer ones (Richardson 1911).
+    """How far values of a mesh are from the limit of finer ones, as parts (Richardson 1911).
 
     Args:
         fine, coarse: of the mesh, and of one with edges of twice the length.
     """
-    return np.asarray(np.abs(fine - coarse) / (2.0**ORDER - 1.0))
+    return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**ORDER - 1.0))
 
 
 def _opposite(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:

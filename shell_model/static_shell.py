@@ -93,8 +93,15 @@ class StaticShell:
         )
         return hold(self.node_dofs[on_plane, axis]) | hold(self.rotation_dofs[rotations][:, others])
 
-    def surface_load(self, force: Array, couple: Array | None = None) -> Array:
-        """(num_dofs,) of a force (3,) in N/m² and a couple (3,) in N m/m² on every facet."""
+    def surface_load(
+        self, force: Array, couple: Array | None = None, on: Mask | None = None
+    ) -> Array:
+        """(num_dofs,) of a force (3,) in N/m² and a couple (3,) in N m/m².
+
+        Args:
+            force, couple: uniform.
+            on: (num_triangles,) which facets feel them; all unless given.
+        """
         v, eta = ufl.split(ufl.TestFunction(self._plates.space))
         domain = self._plates.space.mesh
         force_density, couple_density = (
@@ -102,6 +109,8 @@ class StaticShell:
             for density in (force, np.zeros(3) if couple is None else couple)
         )
         power = ufl.dot(force_density, v) + ufl.dot(couple_density, eta)
+        if on is not None:
+            power *= compat.cellwise_function(domain, on.astype(float))
         form: Any = fem.form(power * ufl.dx(degree=2, domain=domain))
         return compat.assemble_vector(form)
 

@@ -3,7 +3,8 @@
 
 The paper's boom with friction, whose motion is regular: on one mesh, all degrees of freedom by the
 generalised-α method with ever shorter steps, and the reduction by the splitting. A reduction with
-more coordinates tells what is left of the difference to the one, and what to the other.
+more coordinates tells what is left of the difference to the one, and what to the other. Once as the
+paper loads it, near webs, and once with pads under ten times the load.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from dynamics.energy import ENERGY_BOUND
 from runs.build import build_boom, contact_laws
 from runs.motion import Motion
 from runs.schema import Case, ShellTable
-from runs.studies.motions import friction_case, gap_system, model_of
+from runs.studies.motions import friction_case, gap_system, loaded, model_of
+from runs.studies.pads import with_pads
 from runs.studies.study import Plot, Proof, Study
 from runs.tables import TextTable
 from runs.theme import fixed, number
@@ -29,6 +31,9 @@ Array = npt.NDArray[np.float64]
 
 # Allowed of the tip, as a part of its range.
 ALLOWED = 0.005
+
+# Length and width in m of the pads under so many times the paper's load.
+PAD, LOAD = (0.1, 0.06), 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +44,7 @@ class Sizes:
         mesh: edge length in m.
         duration: of the motion in s.
         steps: of the direct integration in s, parts of the output step, each half the one before.
+        hard_steps: the same with pads under ``LOAD`` times the load.
         shifts, moments: of the reduction with more coordinates.
         fine_step: of its splitting in s.
     """
@@ -46,6 +52,7 @@ class Sizes:
     mesh: float = 0.2
     duration: float = 1.0
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
+    hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
     moments: int = 5
     fine_step: float = 5.0e-7
@@ -104,11 +111,14 @@ class Comparison:
         return float(np.polyfit(steps, np.log([r.apart_from_larger for r in self.of_steps]), 1)[0])
 
 
-def compare(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> Comparison:
+def compare(
+    case: Case, steps: Sequence[float], sizes: Sizes, tell: Callable[[str], None]
+) -> Comparison:
     """Move the shell reduced and unreduced.
 
     Args:
         case: in the plane, with prescribed normal forces and a model ``shell``.
+        steps: of the unreduced one in s.
         sizes: what is measured.
         tell: told what is being moved.
     """
@@ -145,7 +155,7 @@ def compare(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> Comparison
         residual = trajectory.energy_residual
         found.append((how, system.num_modes, taken, tip, impulse, residual, seconds))
     full = assemble_boom(boom, laws, options, MPI.COMM_SELF)
-    for step in sizes.steps:
+    for step in steps:
         tell(f"the unreduced shell, step {step:g} s")
         start = perf_counter()
         direct = integrate_directly(full, sizes.duration, step, case.time.output_step)
@@ -173,7 +183,7 @@ def compare(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> Comparison
     return Comparison(times, reduced, found[-1][3], runs)
 
 
-def table(found: Comparison, sizes: Sizes) -> TextTable:
+def table(found: Comparison, where: str, sizes: Sizes) -> TextTable:
     """One row a motion."""
     rows = []
     for i, run in enumerate(found.runs):
@@ -194,7 +204,7 @@ def table(found: Comparison, sizes: Sizes) -> TextTable:
             )
         )
     return TextTable(
-        f"The reduced shell against the unreduced one, mesh of {sizes.mesh:g} m",
+        f"The reduced shell against the unreduced one, {where}, mesh of {sizes.mesh:g} m",
         (
             "shell",
             "unknowns",
@@ -215,14 +225,14 @@ def table(found: Comparison, sizes: Sizes) -> TextTable:
             "Where a station presses and sticks at once, the sum of both forces moves the boom; "
             "how they share it until the next slip hangs on frequencies far above its motion.",
         ),
-        name="direct",
+        name=f"direct-{where.replace(' ', '-')}",
     )
 
 
-def proofs(found: Comparison, sizes: Sizes) -> list[Proof]:
+def proofs(found: Comparison, where: str, sizes: Sizes) -> list[Proof]:
     """The tip, and the energy of both motions."""
     finest, reduced = found.runs[-1], found.runs[0]
-    where = f"mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
+    where = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
     return [
         Proof(
             what=f"tip of the reduced shell off the unreduced one, part of its range, {where}",
@@ -257,47 +267,58 @@ def _impulse(forces: Array, case: Case) -> float:
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     """The paper's boom with friction, all its degrees of freedom against few coordinates."""
     sizes = sizes or Sizes()
-    found = compare(friction_case(), sizes, tell)
-    steps = [run.step for run in found.of_steps]
-    times = found.time.tolist()
+    case = friction_case()
+    hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
+    found = {
+        "near webs": compare(case, sizes.steps, sizes, tell),
+        hard: compare(loaded(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, tell),
+    }
     return Study(
         name="direct",
         title="The reduction against the full order",
-        tables=[table(found, sizes)],
-        proofs=proofs(found, sizes),
-        plots=[
-            Plot(
-                "direct-tips",
-                "The reduced shell moves as the unreduced one does",
-                "time (s)",
-                "tip (mm)",
-                {
-                    f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * tip).tolist())
-                    for run, tip in (
-                        (found.runs[0], found.reduced),
-                        (found.runs[-1], found.direct),
-                    )
-                },
-                "Tip of the paper's boom with friction, by two integrators: one curve hides "
-                "the other.",
-                logarithmic=False,
-            ),
-            Plot(
-                "direct-steps",
-                "Finer steps close in on the reduced shell",
-                "step of the direct integration (s)",
-                "tip difference (part of range)",
-                {
-                    "from the reduced shell": (steps, [r.apart for r in found.of_steps]),
-                    "from the one with more coordinates": (
-                        steps,
-                        [r.apart_from_larger for r in found.of_steps],
-                    ),
-                },
-                f"The largest over {sizes.duration:g} s. Where the curves part, it is the "
-                f"reduction: more coordinates change the tip by {100.0 * found.runs[1].apart:.2g} "
-                "% of its range.",
-            ),
-        ],
-        data={"runs": [asdict(run) for run in found.runs], "order": found.order},
+        tables=[table(one, where, sizes) for where, one in found.items()],
+        proofs=[proof for where, one in found.items() for proof in proofs(one, where, sizes)],
+        plots=[plot for where, one in found.items() for plot in _plots(one, where, sizes)],
+        data={
+            where: {"runs": [asdict(run) for run in one.runs], "order": one.order}
+            for where, one in found.items()
+        },
     )
+
+
+def _plots(found: Comparison, where: str, sizes: Sizes) -> list[Plot]:
+    steps = [run.step for run in found.of_steps]
+    times = found.time.tolist()
+    name = "direct" if where == "near webs" else "direct-pads"
+    return [
+        Plot(
+            f"{name}-tips",
+            f"The reduced shell moves as the unreduced one does, {where}",
+            "time (s)",
+            "tip (mm)",
+            {
+                f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * tip).tolist())
+                for run, tip in (
+                    (found.runs[0], found.reduced),
+                    (found.runs[-1], found.direct),
+                )
+            },
+            "Tip of the paper's boom with friction, by two integrators: one curve hides the other.",
+            logarithmic=False,
+        ),
+        Plot(
+            f"{name}-steps",
+            f"Finer steps close in on the reduced shell, {where}",
+            "step of the direct integration (s)",
+            "tip difference (part of range)",
+            {
+                "from the reduced shell": (steps, [r.apart for r in found.of_steps]),
+                "from the one with more coordinates": (
+                    steps,
+                    [r.apart_from_larger for r in found.of_steps],
+                ),
+            },
+            f"The largest over {sizes.duration:g} s. Where the curves part, it is the reduction: "
+            f"more coordinates change the tip by {100.0 * found.runs[1].apart:.2g} % of its range.",
+        ),
+    ]

@@ -192,12 +192,12 @@ def _quantities(
     for station, x in enumerate(system.stations):
         row = int(np.argmax(system.station_of_row == station))
         found[f"contact compliance at {x:g} m", "m/N"] = float(flexible[row])
-    for i, height in enumerate(_peaks(motion)[: sizes.peaks], start=1):
+    for i, height in enumerate(peak_heights(motion)[: sizes.peaks], start=1):
         found[f"tip peak {i}", "mm"] = 1.0e3 * height
     return found
 
 
-def _peaks(motion: Trajectory) -> list[float]:
+def peak_heights(motion: Trajectory) -> list[float]:
     """Heights in m of the tip's peaks, on parabolas through the three highest output values."""
     tip = np.asarray(motion.data["tip"].values)
     places, _ = find_peaks(tip, prominence=0.2 * np.ptp(tip))

@@ -37,6 +37,14 @@ def friction_case() -> Case:
     return case_file.load(str(CASE))
 
 
+def loaded(case: Case, times: float) -> Case:
+    """The case with its segments' loads so many times as large."""
+    segments = tuple(
+        segment.model_copy(update={"load": times * segment.load}) for segment in case.segments
+    )
+    return case.model_copy(update={"segments": segments})
+
+
 def model_of(case: Case, name: str) -> Model:
     """A model by its name."""
     return next(model for model in case.models if model.name == name)

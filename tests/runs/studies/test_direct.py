@@ -14,6 +14,7 @@ TINY = Sizes(
     mesh=1.0,
     duration=0.37,
     steps=(1.0e-3, 5.0e-4),
+    hard_steps=(2.5e-4, 1.25e-4),
     shifts=(5.0, 50.0, 300.0, 1500.0, 8000.0),
     moments=4,
     fine_step=2.5e-6,
@@ -28,13 +29,16 @@ def test_the_tip_is_that_of_the_unreduced_shell() -> None:
         "the reduced shell",
         "the unreduced shell, step 0.001 s",
         "the unreduced shell, step 0.0005 s",
+        "the reduced shell",
+        "the unreduced shell, step 0.00025 s",
+        "the unreduced shell, step 0.000125 s",
     ]
-    own, larger, coarse, fine = found.data["runs"]
+    own, larger, coarse, fine = found.data["near webs"]["runs"]
     assert own["unknowns"] < larger["unknowns"] < 0.1 * coarse["unknowns"]
     assert own["apart"] == larger["apart_from_larger"] == 0.0
     assert 0.0 < fine["apart_from_larger"] < coarse["apart_from_larger"] < 2.0e-3
     assert fine["impulse"] == pytest.approx(larger["impulse"], rel=0.2)
-    assert len(found.proofs) == 3
+    assert len(found.proofs) == 6
     assert all(proof.holds for proof in found.proofs)
     tips = [np.array(curve[1]) for curve in found.plots[0].curves.values()]
     assert np.abs(tips[0] - tips[1]).max() == pytest.approx(fine["apart"] * np.ptp(tips[0]))

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two points of the paper's boom on three coarse meshes."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.studies.working_load import Point, Sizes, study
+
+TINY = Sizes(
+    meshes=(16.0, 8.0, 4.0),
+    plays=(14.0e-3,),
+    loads=(1.0, 10.0),
+    pads=(),
+    in_space=(Point(4.0e-3, 10.0),),
+    duration=0.9,
+    spatial_duration=0.3,
+    peaks=1,
+)
+
+
+def test_a_mesh_errs_more_under_more_load() -> None:
+    """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls; one
+    reduction serves both loads.
+    """
+    told: list[str] = []
+    found = study(told.append, TINY)
+    assert told == ["near webs", "in space"]
+    light, heavy = found.data["near webs"]
+    assert (light["play"], light["load"], heavy["load"]) == (14.0e-3, 1.0, 10.0)
+    assert 0.0 < light["tip_change"] < heavy["tip_change"] < 0.1
+    assert max(heavy["forces"][-1]) > 3.0 * max(light["forces"][-1])
+    names = [proof.what for proof in found.proofs]
+    assert names[1] == ("tip, part of its range, near webs, worst of 2 points (14 mm, load × 10)")
+    assert found.proofs[1].value == pytest.approx(heavy["tip_change"])
