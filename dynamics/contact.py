@@ -95,6 +95,11 @@ class PowerContact:
         n = self.exponent
         return self._side(y) * self.penetration(y) ** (n + 1.0) / (n + 1.0)
 
+    def slope(self, y: Array) -> Array:
+        """Derivative of :meth:`force` in N/m, zero while apart. Shape of ``y``."""
+        depth, n = self.penetration(y), self.exponent
+        return np.where(depth > 0.0, n * self._side(y) * depth ** (n - 1.0), 0.0)
+
     def _side(self, y: Array) -> Array:
         return np.where(y > 0.0, self.stiffness, self.below)
 

@@ -193,7 +193,7 @@ def _march(
 
 def what_hinders(system: GapSystem) -> str | None:
     """What of a system cannot be moved from contact to contact; None if all can."""
-    if system.damping.any():
+    if system.damped:
         return "a damped system has no closed form from contact to contact"
     if not all(excitation.constant for excitation in system.excitations):
         return "loads that change with time leave no closed form from contact to contact"

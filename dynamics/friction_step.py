@@ -4,13 +4,13 @@
 In the middle of the step, between two half flows, the impulse r_l acts on the modes through the
 row D_l filtered by φ_i = sin(ω_i h/2)/(ω_i h/2). The slip of the rows over the whole step then is
 
-    s = s_free + G r,    G = (h/2) D φ² Dᵀ,    r_l ∈ −h μ_l N_l Sign(s_l)
+    s = s_free + G r,    G = (h/2) D φ S φ Dᵀ,    r_l ∈ −h μ_l N_l Sign(s_l)
 
-and the work of the impulses is r·s/h exactly (without damping, under a constant load): friction
-takes its force times the way that it slides, and nothing from a row that it holds. Rows that are
-held end where they began; the rest of their speed goes at the end of the step, by impulses that
-leave |r_l| ≤ h μ_l N_l. The filter is that of the mollified impulse method (García-Archilla et
-al. 1999).
+where S is what damping leaves of speeds over half a step; it acts before and after the impulse. The
+work of the impulses is r·s/h exactly (without damping, under a constant load): friction takes its
+force times the way that it slides, and nothing from a row that it holds. Rows that are held end
+where they began; the rest of their speed goes at the end of the step, by impulses that leave
+|r_l| ≤ h μ_l N_l. The filter is that of the mollified impulse method (García-Archilla et al. 1999).
 """
 
 from __future__ import annotations
@@ -39,16 +39,11 @@ def push_rows(v: Array, rows: Array, problem: Array) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
-def filter_rows(rows: Array, half: Array, time: float, filtered: Array, matrix: Array) -> None:
-    """Fill in the filtered rows, φ = 2 av/h by the half flow, and G = (h/2) D φ² Dᵀ."""
+def filter_rows(rows: Array, half: Array, time: float, filtered: Array) -> None:
+    """Fill in the filtered rows, φ = 2 av/h by the half flow."""
     for j in range(rows.shape[0]):
         for i in range(rows.shape[1]):
             filtered[j, i] = 2.0 / time * half[1, i] * rows[j, i]
-        for k in range(j + 1):
-            total = 0.0
-            for i in range(rows.shape[1]):
-                total += filtered[j, i] * filtered[k, i]
-            matrix[j, k] = matrix[k, j] = 0.5 * time * total
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})

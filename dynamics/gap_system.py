@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The one form that every model takes before it moves.
 
-    ä_i + c_i ȧ_i + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
-    y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i
+    ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
+    y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
 
 in mass-normalised modal coordinates a. Segments that only contact couples stand side by
 side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
-D_l a relative displacement along which two places slide.
+D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ class GapSystem:
         stations: x of the stations in m.
         observers: name → what a trajectory records.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
+        dashpots: (num_dashpots, num_modes) rows G in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
         frictions: (num_frictions) the friction of each row.
         excitations: loads that change with time.
@@ -63,6 +64,7 @@ class GapSystem:
     stations: Sequence[float]
     observers: Mapping[str, Observer]
     damping: Array = field(default_factory=lambda: np.zeros(0))
+    dashpots: Array = field(default_factory=lambda: np.zeros((0, 0)))
     friction_rows: Array = field(default_factory=lambda: np.zeros((0, 0)))
     frictions: Sequence[DryFriction] = ()
     excitations: Sequence[Excitation] = ()
@@ -72,6 +74,8 @@ class GapSystem:
         n, m = self.omega2.size, len(self.laws)
         if self.damping.size == 0:
             object.__setattr__(self, "damping", np.zeros(n))
+        if self.dashpots.size == 0:
+            object.__setattr__(self, "dashpots", np.zeros((0, n)))
         if self.friction_rows.size == 0:
             object.__setattr__(self, "friction_rows", np.zeros((0, n)))
         if not self.station_directions:
@@ -80,6 +84,7 @@ class GapSystem:
             "omega2": (self.omega2, (n,)),
             "load": (self.load, (n,)),
             "damping": (self.damping, (n,)),
+            "dashpots": (self.dashpots, (len(self.dashpots), n)),
             "rows": (self.rows, (m, n)),
             "station_of_row": (self.station_of_row, (m,)),
             "friction_rows": (self.friction_rows, (len(self.frictions), n)),
@@ -110,6 +115,16 @@ class GapSystem:
     def num_modes(self) -> int:
         """Number of modal coordinates."""
         return self.omega2.size
+
+    @property
+    def damped(self) -> bool:
+        """Whether anything but contacts and friction takes energy."""
+        return bool(self.damping.any() or self.dashpots.any())
+
+    @property
+    def damping_matrix(self) -> Array:
+        """(num_modes, num_modes) C in 1/s."""
+        return np.diag(self.damping) + self.dashpots.T @ self.dashpots
 
     @property
     def frequencies(self) -> Array:

@@ -12,9 +12,8 @@ from dynamics.gap_system import GapSystem
 
 Array = npt.NDArray[np.float64]
 
-# omega2, load, damping (num_modes,), contact rows (num_rows, num_modes), laws (5, num_rows),
-# whether any mode is damped.
-System = tuple[Array, Array, Array, Array, Array, bool]
+# omega2, load (num_modes,), contact rows (num_rows, num_modes), laws (5, num_rows).
+System = tuple[Array, Array, Array, Array]
 
 # Friction rows (num_frictions, num_modes), their μ and prescribed N (2, num_frictions), 1 where a
 # contact row presses (num_frictions, num_rows), D Dᵀ.
@@ -45,12 +44,11 @@ State = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Arr
 
 
 def system_arrays(system: GapSystem) -> System:
-    """A system without friction and excitations in the layout of the compiled loops."""
-    omega2, load, damping, rows = (
-        np.ascontiguousarray(array)
-        for array in (system.omega2, system.load, system.damping, system.rows)
+    """A system without damping, friction and excitations in the layout of the compiled loops."""
+    omega2, load, rows = (
+        np.ascontiguousarray(array) for array in (system.omega2, system.load, system.rows)
     )
-    return omega2, load, damping, rows, law_columns(system.laws), bool(damping.any())
+    return omega2, load, rows, law_columns(system.laws)
 
 
 def friction_arrays(system: GapSystem) -> Dry:

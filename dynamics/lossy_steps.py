@@ -9,6 +9,7 @@ from numba import njit
 
 from dynamics.bounded_impulses import FREE, NOISE, problem_for
 from dynamics.contact_kicks import contact_forces, damped_kick
+from dynamics.decay import Damping, damp, kept_after
 from dynamics.friction_step import (
     add_pressed_bounds,
     filter_rows,
@@ -23,6 +24,7 @@ from dynamics.friction_step import (
 from dynamics.gap_system import GapSystem
 from dynamics.integrator_state import (
     CONTACT,
+    DAMPING,
     FRICTION,
     MIDDLE,
     PLACE,
@@ -43,24 +45,27 @@ Array = npt.NDArray[np.float64]
 # Rows that turn within this part of a step of one another turn together.
 _TOGETHER = 1.0e-9
 
-# A length of step in s (1,), and of this the flow over its half (9, num_modes), the filtered
-# friction rows and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows),
-# friction rows (3, num_frictions), and the problem of bounded impulses.
-Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array]
+# A length of step in s (1,), and of this the flow over its half (9, num_modes), what modes keep
+# over a quarter (num_modes,) and dashpots over a half (num_dashpots,), the filtered friction rows
+# and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows), friction rows
+# (3, num_frictions), and the problem of bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
 
 def space_for(system: GapSystem) -> Space:
     """What the steps of a system need beside its state."""
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
-    shapes = ((1,), (9, n), (f, n), (f, f), (n,), (3, m), (3, f))
-    length, half, filtered, matrix, ahead, middle, lines = (np.zeros(shape) for shape in shapes)
-    return length, half, filtered, matrix, ahead, middle, lines, problem_for(f)
+    d = len(system.dashpots)
+    shapes = ((1,), (9, n), (n,), (d,), (f, n), (f, f), (n,), (3, m), (3, f))
+    length, half, faded, dragged, filtered, matrix, ahead, middle, lines = map(np.zeros, shapes)
+    return length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem_for(f)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def lossy_steps(
     state: State,
     system: System,
+    damping: Damping,
     dry: Dry,
     excitations: Excitations,
     space: Space,
@@ -81,17 +86,18 @@ def lossy_steps(
     """
     # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
-    omega2, load, damping, rows, law, damped = system
+    omega2, load, rows, law = system
+    rates, directions, dashpot_rates = damping
     friction_rows, given, pressing, masses = dry
     loads, _, spans, parts, _, pushes = excitations
     start, centre, end = pushes
-    length, half, filtered, matrix, ahead, middle, lines, problem = space
+    length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = space
     push, y_ahead, force_ahead = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     pressed = pressing.any()
     excited = loads.shape[0] > 0
-    plain = not (damped or excited)
+    none = np.zeros(a.size)
     k = first
     for p in range(parts[first], parts[last]):
         span = spans[p]
@@ -105,8 +111,15 @@ def lossy_steps(
             while True:
                 if time != length[0]:
                     length[0] = time
-                    tabulate(half, omega2, load, damping, 0.5 * time)
-                    filter_rows(friction_rows, half, time, filtered, matrix)
+                    tabulate(half, omega2, load, none, 0.5 * time)
+                    kept_after(rates, 0.25 * time, faded)
+                    kept_after(dashpot_rates, 0.5 * time, dragged)
+                    filter_rows(friction_rows, half, time, filtered)
+                    for j in range(friction.size):
+                        ahead[:] = filtered[j]
+                        damp(ahead, faded, directions, dragged)
+                        read(filtered, ahead, matrix[j])
+                        matrix[j] *= 0.5 * time
                 if excited:
                     excite(excitations, p, p + 1, 1.0 - left / span, 1.0 - (left - time) / span)
                 share = 0.5 * time / (substeps * step)
@@ -114,12 +127,15 @@ def lossy_steps(
                 loss = damped_kick(v, rows, force, law, 0.5 * time, False, push)
                 for j in range(y.size):
                     mean[j] += share * push[j]
-                if plain:
-                    move(a, v, half)
+                if excited:
+                    travel(a, v, half, 0.5 * time, omega2, load, False, start, centre, tally)
                 else:
-                    travel(a, v, half, 0.5 * time, omega2, load, damped, start, centre, tally)
+                    move(a, v, half)
 
-                look_ahead(a, v, half, ahead)
+                tally[DAMPING] += damp(v, faded, directions, dragged)
+                ahead[:] = v
+                damp(ahead, faded, directions, dragged)
+                look_ahead(a, ahead, half, ahead)
                 if excited:
                     drive(ahead, half, centre, end)
                 prescribed_bounds(given, time, grip)
@@ -132,11 +148,12 @@ def lossy_steps(
                 for j in range(friction.size):
                     slips[j] -= grip[PLACE, j]
                 tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
+                tally[DAMPING] += damp(v, faded, directions, dragged)
 
-                if plain:
-                    move(a, v, half)
+                if excited:
+                    travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
                 else:
-                    travel(a, v, half, 0.5 * time, omega2, load, damped, centre, end, tally)
+                    move(a, v, half)
                 contact_forces(a, rows, law, y, force)
                 loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
                 tally[CONTACT] += loss

@@ -4,7 +4,9 @@
 One step is half a contact impulse, the exact flow of every mode under its load, and half an
 impulse at the new place (Strang 1968; for stiff springs known as the impulse method, Grubmüller
 et al. 1991). It is second order, symplectic without damping and time-reversible, so the energy
-error stays bounded over any number of contacts, which Newmark's method does not give. Dry
+error stays bounded over any number of contacts, which Newmark's method does not give. Damping acts
+outside the contact impulses, where speeds are smooth: between them a mode that rests under a force
+swings by the impulses alone, and would be damped in vain (:mod:`dynamics.decay`). Dry
 friction acts in the middle of the flow (:mod:`dynamics.friction_step`); a step in which a sliding
 row turns is made in two, so that it turns between them.
 
@@ -21,10 +23,12 @@ import numpy.typing as npt
 from numba import njit
 
 from dynamics.contact_kicks import contact_energy, contact_forces, elastic_kick
+from dynamics.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.gap_system import GapSystem
 from dynamics.integrator_state import (
     CHANGES,
+    DAMPING,
     FIRST_CONTACT,
     STEPS,
     WORK,
@@ -42,7 +46,7 @@ from dynamics.integrator_state import (
 )
 from dynamics.lossy_steps import Space, lossy_steps, space_for
 from dynamics.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
-from dynamics.step import contact_step, initial_speeds
+from dynamics.step import DRAGGED, contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -85,8 +89,11 @@ def _closing_bounds(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _stride(y: Array, law: Array, bounds: Array, step: float, left: int) -> int:
-    """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within."""
+def _stride(y: Array, law: Array, bounds: Array, step: float, left: int, count: int) -> int:
+    """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within.
+
+    One of the first ``count``.
+    """
     free = float(left)
     for j in range(y.size):
         reach = bounds[j] * step
@@ -95,7 +102,7 @@ def _stride(y: Array, law: Array, bounds: Array, step: float, left: int) -> int:
         if reach > 0.0 and law[1, j] > 0.0:
             free = min(free, (law[2, j] + y[j]) / reach)
     stride = 0
-    while stride + 1 < STRIDES.size and STRIDES[stride + 1] <= free:
+    while stride + 1 < count and STRIDES[stride + 1] <= free:
         stride += 1
     return stride
 
@@ -105,6 +112,7 @@ def _march(
     state: State,
     flows: Array,
     system: System,
+    damping: Damping,
     dry: Dry,
     excitations: Excitations,
     space: Space,
@@ -115,16 +123,25 @@ def _march(
     """Advance by ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, energies, gaps, mean forces, peak forces, friction forces), one row an
-    interval. ``flows`` has one (9, num_modes) for each of ``STRIDES``.
+    interval. ``flows`` has one (9, num_modes) for each of the ``STRIDES`` that may be made, with
+    the rates of damping.
     """
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
-    omega2, load, damping, rows, law, damped = system
+    omega2, load, rows, law = system
+    rates, directions, dashpot_rates = damping
     friction_rows, given, _, _ = dry
     loads, _, spans, parts, straight, pushes = excitations
     now, _, then = pushes
     states, energies, gaps, means, peaks, frictions = out
     bounds = np.zeros(y.size)
-    piece = np.zeros(flows[0].shape)
+    piece, undamped = np.zeros((2, *flows[0].shape))
+    faded, none = np.zeros((2, a.size))
+    tabulate(undamped, omega2, load, none, step)
+    kept_after(rates, 0.25 * step, faded)
+    dragged = np.zeros((len(flows), dashpot_rates.size))
+    for stride in range(len(flows)):
+        kept_after(dashpot_rates, 0.5 * STRIDES[stride] * step, dragged[stride])
+    damped = rates.any()
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
     single = (given[0] * given[1]).any() or straight.max() < STRIDES[1]
@@ -146,32 +163,40 @@ def _march(
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
                     _closing_bounds(a, v, omega2, load, now, then, rows, substeps * step, bounds)
-                stride = _stride(y, law, bounds, step, until - done)
+                stride = _stride(y, law, bounds, step, until - done, len(flows))
             flying = not (touching or lossy) and done + STRIDES[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(
-                    state, system, dry, excitations, space, step,
+                    state, system, damping, dry, excitations, space, step,
                     k, k - done + substeps, substeps, single,
                 )  # fmt: skip
                 touching = force.any()
                 continue
             before[:] = y
             time = STRIDES[stride] * step
+            first, last = parts[k], parts[k + STRIDES[stride]]
+            # The damped flow is exact where nothing presses.
+            apart = damped and touching
+            within = damped and not touching
+            flow = undamped if apart else flows[stride]
+            if apart:
+                tally[DAMPING] += damp(v, faded, directions, dragged[0])
+            else:
+                tally[DAMPING] += drag(v, directions, dragged[stride])
             if touching:
                 elastic_kick(v, rows, force, 0.5 * step)
                 for j in range(y.size):
                     mean[j] += 0.5 * force[j] / substeps
-            first, last = parts[k], parts[k + STRIDES[stride]]
             if stride == 0 and last > first + 1:
                 for p in range(first, last):
-                    tabulate(piece, omega2, load, damping, spans[p])
+                    tabulate(piece, omega2, load, none if apart else rates, spans[p])
                     excite(excitations, p, p + 1, 0.0, 1.0)
-                    travel(a, v, piece, spans[p], omega2, load, damped, now, then, tally)
-            elif excited or damped:
+                    travel(a, v, piece, spans[p], omega2, load, within, now, then, tally)
+            elif excited or within:
                 excite(excitations, first, last, 0.0, 1.0)
-                travel(a, v, flows[stride], time, omega2, load, damped, now, then, tally)
+                travel(a, v, flow, time, omega2, load, within, now, then, tally)
             else:
-                move(a, v, flows[stride])
+                move(a, v, flow)
             touching = contact_forces(a, rows, law, y, force)
             done += STRIDES[stride]
             enter(y, before, law, time, tally)
@@ -181,6 +206,10 @@ def _march(
                     mean[j] += 0.5 * force[j] / substeps
                     if abs(force[j]) > abs(peak[j]):
                         peak[j] = force[j]
+            if apart:
+                tally[DAMPING] += damp(v, faded, directions, dragged[0])
+            else:
+                tally[DAMPING] += drag(v, directions, dragged[stride])
             if friction.size > 0:
                 look(a, v, friction_rows, grip)
         tally[WORK] += np.dot(load, a - start)
@@ -231,7 +260,10 @@ def integrate(
     state = initial_state(system, a, v)
     y, tally = state[3], state[6]
     arrays, dry, space = system_arrays(system), friction_arrays(system), space_for(system)
-    flows = np.array([ModalFlow.over(system, stride * h).stacked() for stride in STRIDES])
+    damping = damping_arrays(system)
+    longest = DRAGGED / (h * damping[2].max(initial=0.0) + 1.0e-300)
+    strides = STRIDES[max(1.0, longest) >= STRIDES]
+    flows = np.array([ModalFlow.over(system, stride * h).stacked() for stride in strides])
 
     f = len(system.frictions)
     states, frictions = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, f))
@@ -251,7 +283,7 @@ def integrate(
         times = h * np.arange((part.start - 1) * substeps, (part.stop - 1) * substeps + 1)
         out = tuple(array[part] for array in recorded)
         excitations = excitation_arrays(system, times, h)
-        _march(state, flows, arrays, dry, excitations, space, h, substeps, out)
+        _march(state, flows, arrays, damping, dry, excitations, space, h, substeps, out)
         check_energy(energies[: part.stop], h, energy_bound, least)
         if progress is not None:
             progress((part.stop - 1) / outputs)

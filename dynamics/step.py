@@ -19,6 +19,9 @@ Array = npt.NDArray[np.float64]
 # Step times the highest frequency. The energy error of the splitting is second order in it.
 PHASE = 0.03
 
+# What part of a speed dashpots may take in a step.
+DRAGGED = 0.2
+
 
 def initial_speeds(system: GapSystem, position: Array, velocity: Array) -> Array:
     """(num_modes,) √(v² + ω² a²), the speed that each mode reaches from its initial state."""
@@ -80,7 +83,8 @@ def contact_step(
 ) -> float:
     """The largest whole part of the output step that resolves contacts, friction, excitations.
 
-    With contact or friction it is also at most 1/ω of the highest mode.
+    With contact or friction it is also at most 1/ω of the highest mode. Within it dashpots take no
+    more than ``DRAGGED`` of a speed.
 
     Args:
         system: without any of these the motion is exact, and the output step itself serves.
@@ -97,5 +101,7 @@ def contact_step(
         # An impulse every half period of a mode pumps it (García-Archilla et al. 1999): stay well
         # away from that for all modes, however soft the contact.
         frequencies.append(phase * float(np.sqrt(system.omega2.max())))
+    if system.dashpots.size:
+        frequencies.append(phase / DRAGGED * float(np.linalg.norm(system.dashpots, 2) ** 2))
     fastest = max(frequencies, default=0.0)
     return output_step / max(1, int(np.ceil(output_step * fastest / phase)))

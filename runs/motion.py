@@ -59,7 +59,7 @@ class Motion:
             NumericsError: there is no equilibrium to start from, or it would take days.
         """
         system, position, velocity = actions.start(system, case)
-        system = damped(system, case.damping)
+        system = damped(system, case)
         time = case.time
         given = model.step or time.step
         speeds = initial_speeds(system, position, velocity)

@@ -9,16 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from beam_model.finite_element import finite_element_segment
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
+from dynamics.damping import with_ratio
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from runs.build import contact_laws, lateral_laws
 from runs.cache import Cache
-from runs.schema import Case, DampingTable, FiniteElementTable, KantorovichTable, ShellTable
+from runs.schema import Case, FiniteElementTable, KantorovichTable, ShellTable
 from runs.shell_cache import remembered
 
 if TYPE_CHECKING:
@@ -107,12 +106,15 @@ def _krylov(model: ShellTable) -> KrylovOptions:
     return KrylovOptions(most=model.modes)
 
 
-def damped(system: GapSystem, table: DampingTable) -> GapSystem:
-    """The system with damping in every mode besides its own.
+def damped(system: GapSystem, case: Case) -> GapSystem:
+    """A model's system with the damping of its case besides the segments' own.
 
-    Rayleigh's is α + β ω², a damping ratio ζ is 2 ζ ω; rigid modes have no part of the latter.
+    Rayleigh's is α + β ω² in the modes of the segments; a damping ratio is one of the boom's modes
+    with its joints pressed (:func:`dynamics.damping.with_ratio`).
     """
-    added = (
-        2.0 * table.modal * np.sqrt(system.omega2) + table.mass + table.stiffness * system.omega2
-    )
-    return replace(system, damping=system.damping + added)
+    table = case.damping
+    rates = system.damping + table.mass + table.stiffness * system.omega2
+    system = replace(system, damping=rates)
+    if table.modal == 0.0:
+        return system
+    return with_ratio(system, table.modal, len(system.stations) - len(case.stops))

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Damping ratios of a boom whose joints are pressed.
+
+A boom with play is described by the modes of its separate segments, and much of its swing is in
+their rigid motions, which no damping of those modes reaches. Its own modes are those with the
+joints pressed: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and elastic
+coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
+
+    C = 2ζ [½ ω₁ on rigid coordinates + s Ω on elastic ones + ε⁺ᵀ (ω − ½ ω₁ ρᵀρ − s εᵀ Ω ε) ε⁺]
+
+gives Φᵀ C Φ = 2ζ ω, and lets a segment that flies lose its speed at the rate ζ ω₁. C is positive
+semidefinite for s ≤ ½ at least, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the largest up
+to 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eigh, null_space, pinv
+
+from dynamics.equilibrium import equilibrium
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+
+Array = npt.NDArray[np.float64]
+
+# Modes that get their ratio: in space, three of each direction and two of twisting.
+DAMPED_MODES = 8
+
+# Motions of the pressed boom that bend its segments less than this part of what others do are left
+# to what damps the rigid segments.
+_BENT = 5.0e-3
+
+# A dashpot's rate, as a part of the largest, that is round-off.
+_ROUND_OFF = 1.0e-9
+
+
+def pressed_modes(system: GapSystem, joint_stations: int) -> tuple[Array, Array]:
+    """ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes) with the joints pressed.
+
+    Rows that press at rest under the constant loads have the stiffness that they have there. Where
+    none does at a station, all of it are tied.
+
+    Args:
+        system: of a boom.
+        joint_stations: how many of its stations, the first ones, are those of joints.
+    """
+    stiffness = _stiffness_at_rest(system)
+    pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
+    tied = system.rows[~pressed & (system.station_of_row < joint_stations)]
+    free = null_space(tied) if tied.size else np.eye(system.num_modes)
+    rows = system.rows @ free
+    omega2, combination = eigh(
+        free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
+    )
+    moving = omega2 > 1.0e-6 * system.omega2[system.omega2 > 0.0].min()
+    return np.sqrt(omega2[moving]), free @ combination[:, moving]
+
+
+def _stiffness_at_rest(system: GapSystem) -> Array:
+    """(num_rows,) F'(y) of each row in N/m at rest under the constant loads; 0 where none is."""
+    try:
+        gaps = system.rows @ equilibrium(system, system.load)
+    except NumericsError:
+        return np.zeros(len(system.laws))
+    return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
+
+
+def with_ratio(system: GapSystem, ratio: float, joint_stations: int) -> GapSystem:
+    """The system with a damping ratio ζ in the first modes of the pressed boom.
+
+    Args:
+        system: of a boom, with its own damping, to which this is added.
+        ratio: ζ of the first ``DAMPED_MODES``, or of as many as its segments can bend.
+        joint_stations: as in :func:`pressed_modes`.
+    """
+    rigid = system.omega2 == 0.0
+    count = min(DAMPED_MODES, np.count_nonzero(~rigid))
+    omega, shapes = (part[..., :count] for part in pressed_modes(system, joint_stations))
+    own = np.where(rigid, 0.5 * omega[0], np.sqrt(system.omega2))
+    bent = np.where(rigid[:, None], 0.0, shapes)
+    asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
+    found = bent.T @ (own[:, None] * bent)
+    share = 1.0 / max(1.0, eigh(found, asked, eigvals_only=True)[-1])
+    missing, directions = eigh(asked - share * found)
+    rates = 2.0 * ratio * np.where(rigid, own, share * own)
+    needed = missing > _ROUND_OFF * omega[-1]
+    strengths = np.sqrt(2.0 * ratio * missing[needed])
+    dashpots = strengths[:, None] * (directions[:, needed].T @ pinv(bent, rtol=_BENT))
+    return replace(
+        system,
+        damping=system.damping + rates,
+        dashpots=np.concatenate([system.dashpots, dashpots]),
+    )
+
+
+def pressed_ratios(system: GapSystem, joint_stations: int) -> tuple[Array, Array]:
+    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each.
+
+    Args:
+        system, joint_stations: as in :func:`pressed_modes`.
+    """
+    omega, shapes = pressed_modes(system, joint_stations)
+    rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)
+    return omega / (2.0 * np.pi), rates / (2.0 * omega)

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A damping ratio is one of the boom's own modes, with its joints pressed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import find_peaks
+
+from beam_model.component import SegmentModel
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
+from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from geometry.boom import Boom
+
+pytestmark = pytest.mark.quick
+
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
+STATIONS = 2
+
+
+@pytest.fixture(scope="module")
+def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSystem:
+    """A series of 6 + 6 functions under its weight, which presses the joint."""
+    system = gap_system(paper_boom, series((6, 6), "complete"), [LINEAR])
+    return replace(system, load=9.81 * system.load)
+
+
+@pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
+def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
+    """Reference: analytic, Φᵀ C Φ = 2ζω, and a matrix that takes energy only."""
+    damped = with_ratio(heavy, ratio, STATIONS)
+    omega, shapes = pressed_modes(heavy, STATIONS)
+    found = shapes[:, :8].T @ damped.damping_matrix @ shapes[:, :8]
+    np.testing.assert_allclose(found, np.diag(2.0 * ratio * omega[:8]), atol=1e-9 * omega[7])
+    assert np.linalg.eigvalsh(damped.damping_matrix)[0] > 0.0
+    hertz, ratios = pressed_ratios(damped, STATIONS)
+    np.testing.assert_allclose(ratios[:8], ratio, rtol=1e-9)
+    np.testing.assert_allclose(hertz, omega / (2.0 * np.pi))
+
+
+def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem) -> None:
+    """Reference: analytic, an oscillator of the ratio ζ loses its amplitude at the rate ζω."""
+    damped = with_ratio(heavy, 0.02, STATIONS)
+    first = pressed_modes(heavy, STATIONS)[0][0]
+    rigid = heavy.omega2 == 0.0
+    assert rigid.sum() == 2
+    expected = np.zeros((2, heavy.num_modes))
+    expected[:, rigid] = 0.02 * first * np.eye(2)
+    np.testing.assert_allclose(damped.damping_matrix[rigid], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
+@pytest.mark.parametrize("mode", [0, 1, 2])
+def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio: float) -> None:
+    """Reference: analytic, the logarithmic decrement 2πζ/√(1 − ζ²)."""
+    omega, shapes = pressed_modes(heavy, STATIONS)
+    rest = equilibrium(heavy, heavy.load)
+    run = integrate(
+        with_ratio(heavy, ratio, STATIONS),
+        3.2 * 2.0 * np.pi / omega[mode],
+        2.0 * np.pi / omega[mode] / 200.0,
+        position=rest + 1e-3 * shapes[:, mode],
+    )
+    swing = (run.states - rest) @ shapes[:, mode]
+    peaks, _ = find_peaks(swing)
+    decrement = np.log(swing[peaks[0]] / swing[peaks[-1]]) / (peaks.size - 1)
+    assert decrement == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=0.01)
+    assert run.energy_residual < 1e-6
+
+
+def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
+    """Reference: analytic, exp(−ζω₁t)."""
+    wide = replace(heavy, load=0.0 * heavy.load, laws=[replace(LINEAR, clearance=10.0)] * STATIONS)
+    damped = with_ratio(wide, 0.05, STATIONS)
+    tied = pressed_modes(wide, STATIONS)[0][0]
+    thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
+    run = integrate(damped, 1.0, 0.1, velocity=thrown)
+    way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
+    np.testing.assert_allclose(run.states @ thrown, way, rtol=1e-9, atol=1e-12)
+    assert run.energy_residual < 1e-12
+
+
+def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
+    """Reference: analytic. Nothing moves, however much the modes are damped."""
+    damped = replace(heavy, damping=3e-4 * heavy.omega2)
+    run = integrate(damped, 0.5, 0.01, position=equilibrium(heavy, heavy.load))
+    strain = float(run.data["strain_energy"][0])
+    assert float(run.data["damping_loss"][-1]) < 1e-6 * strain
+
+
+def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
+    """Reference: the same motion at a sixteenth of the finest step."""
+    damped = with_ratio(heavy, 0.05, STATIONS)
+    rest = equilibrium(heavy, heavy.load)
+    _, shapes = pressed_modes(heavy, STATIONS)
+    start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
+
+    def states(step: float) -> np.ndarray:
+        return integrate(damped, 0.05, 0.01, step=step, position=start).states
+
+    exact = states(5e-6 / 16.0)
+    errors = [np.abs(states(step) - exact).max() for step in (2e-5, 1e-5, 5e-6)]
+    assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_tied_boom_keeps_its_exact_flow(
+    paper_boom: Boom, series: Callable[..., list[SegmentModel]]
+) -> None:
+    """Reference: analytic. Its modes are the pressed ones already: 2ζω each, and no dashpots."""
+    tied = tied_system(paper_boom, series((6, 6), "complete"))
+    damped = with_ratio(tied, 0.02, 0)
+    np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(tied.omega2))
+    assert not damped.dashpots.size
