@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.failure import NumericsError
+from dynamics.failure import StepTooLong
 
 Array = npt.NDArray[np.float64]
 
@@ -53,13 +53,13 @@ def check_energy(
         least: as in :func:`energy_residual`.
 
     Raises:
-        NumericsError: an energy is not finite, or the residual passes the bound.
+        StepTooLong: an energy is not finite, or the residual passes the bound.
     """
     if not np.isfinite(energies).all():
-        raise NumericsError(f"the motion is not finite at a step of {step:.3g} s; halve the step")
+        raise StepTooLong(f"the motion is not finite at a step of {step:.3g} s; halve the step")
     worst = float(np.abs(energy_residual(energies, least)).max())
     if worst > bound:
-        raise NumericsError(
+        raise StepTooLong(
             f"the energy residual is {worst:.3g} of the work done, above the bound of {bound:.3g}, "
             f"at a step of {step:.3g} s; halve the step"
         )

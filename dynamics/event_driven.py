@@ -16,7 +16,7 @@ from numba import njit
 from dynamics.contact_kicks import law_columns
 from dynamics.contact_series import Series, evaluate, exit_time, expand, farthest, impulse, reach
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
-from dynamics.failure import NumericsError
+from dynamics.failure import NumericsError, StepTooLong
 from dynamics.flight import jump, pulls, safe_time, tabulate
 from dynamics.gap_system import GapSystem
 from dynamics.step import closing_speeds, initial_speeds
@@ -279,7 +279,7 @@ def integrate_events(
     energies[:, 3] = (states - states[0]) @ system.load
     residual = float(np.abs(energy_residual(energies)).max())
     if not residual <= ENERGY_BOUND:
-        raise NumericsError(
+        raise StepTooLong(
             f"the energy residual is {residual:.3g} of the work done, above the bound of "
             f"{ENERGY_BOUND:.3g}, at a tolerance of {tolerance:.3g}; make it smaller"
         )

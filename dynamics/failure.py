@@ -4,3 +4,7 @@
 
 class NumericsError(RuntimeError):
     """The result is not finite, or its energy is out of bound. The message names the remedy."""
+
+
+class StepTooLong(NumericsError):
+    """One that smaller steps may mend."""

@@ -18,7 +18,7 @@ from numba import njit
 
 from dynamics.contact import PowerContact
 from dynamics.contact_kicks import contact_energy, law_columns
-from dynamics.failure import NumericsError
+from dynamics.failure import StepTooLong
 from dynamics.friction import DryFriction
 
 Array = npt.NDArray[np.float64]
@@ -64,12 +64,12 @@ class ResistingRows:
             free: (num_rows,) what the rows would read without, in m.
 
         Raises:
-            NumericsError: they are not found.
+            StepTooLong: they are not found.
         """
         forces, friction = self._forces, slice(self._law.shape[1], None)
         problem = self._compliance, free, self._law, self._bound, self._place
         if not (np.isfinite(free).all() and resist(*problem, forces)):
-            raise NumericsError("the forces of contact and friction are not found; halve the step")
+            raise StepTooLong("the forces of contact and friction are not found; halve the step")
         way = self._onward * (free - self._compliance @ forces - self.readings)
         self.readings += way
         self.friction_loss += float(forces[friction] @ way[friction])

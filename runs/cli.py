@@ -91,11 +91,12 @@ def run(
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with whole_folder(folder, [readings.FILE]) as part, beside(folder) as scratch:
             with _progress_bars() as tell:
-                finished = run_case(effective, case, comm, scratch, tell, cache)
+                finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
             output.write(finished, part, scratch)
         print(printable(str(folder / output.REPORT)))
-        return _show({case: finished.results})
+        status = _show({case: finished.results})
+        return _show_models_that_failed(case, finished.results) or status
 
 
 @app.command()
@@ -314,6 +315,22 @@ def _show(runs: Mapping[str, Results]) -> int:
             )
         )
     return 1 if broken else 0
+
+
+def _show_models_that_failed(file: str, results: Results) -> int:
+    """A line where a model took smaller steps, and one for all that failed; the exit status."""
+    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
+    for name, model in results.summary["models"].items():
+        if refused := model["refused_steps"]:
+            taken = f"took {2 ** len(refused)} times as many steps"
+            say(message(f"{shown(file)}: model[{numbers[name]}]: {taken}, since {refused[0]}"))
+    failures = results.summary["failures"]
+    if not failures:
+        return 0
+    first, *others = (f"model[{numbers[name]}]" for name in failures)
+    too = f"{', '.join(others)} failed, too; first " if others else ""
+    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    return 3
 
 
 def _show_failures(plan: sweep_points.Plan, outcomes: Sequence[sweep_runs.Outcome]) -> int:

@@ -7,7 +7,7 @@ the beginning to the end: friction takes what impacts would otherwise let grow.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import xarray as xr
@@ -15,7 +15,7 @@ import xarray as xr
 from dynamics.comparison import Comparison, Distributions, PeakDifferences, Pointwise, compare
 from runs.known import known
 from runs.questions import tied
-from runs.schema import Case, ShellTable
+from runs.schema import Case, Model, ShellTable
 
 # Differences over a whole run are told until here, too, in s.
 HALFWAY = 5.0
@@ -32,9 +32,9 @@ def rubs(case: Case) -> bool:
     return any(joint.friction > 0.0 for joint in case.joints)
 
 
-def reference_of(case: Case) -> str | None:
+def reference_of(models: Iterable[Model]) -> str | None:
     """The model that the others are held against: the last shell, else the last with play."""
-    with_play = [model for model in case.models if not tied(model)]
+    with_play = [model for model in models if not tied(model)]
     shells = [model for model in with_play if isinstance(model, ShellTable)]
     candidates = shells or with_play
     return candidates[-1].name if candidates else None
@@ -58,7 +58,8 @@ def compare_models(
         ``reference``; ``ensembles``, for each other model with play the three levels; ``whole``,
         with friction, for each other model the pointwise differences until some times.
     """
-    reference = reference_of(case)
+    ran = trajectories["model"].values
+    reference = reference_of(model for model in case.models if model.name in ran)
     if reference is None:
         return None
     found: dict[str, Any] = {"reference": reference}

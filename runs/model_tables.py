@@ -43,7 +43,7 @@ class ModelRow:
 
 
 def model_rows(results: Results) -> list[ModelRow]:
-    """A row for each model, in the case's order."""
+    """A row for each model that ran, in the case's order, and for each one that failed."""
     models: Mapping[str, Any] = results.summary["models"]
     duration = results.case.time.duration
     shares = SHARES if any("ensemble" in model for model in models.values()) else ()
@@ -66,7 +66,10 @@ def model_rows(results: Results) -> list[ModelRow]:
                 seconds=fixed(sum(model["seconds"].values()), 1),
             )
         )
-    return rows
+    missing = ("failed", *(NONE,) * 5, tuple(NONE for _ in shares), *(NONE,) * 3)
+    kinds = {model.name: model.kind for model in results.case.models}
+    failed = results.summary.get("failures", {})
+    return rows + [ModelRow(name, kinds[name], *missing) for name in failed]
 
 
 def horizon(model: Mapping[str, Any], share: float, duration: float) -> str:
@@ -141,7 +144,7 @@ def step_table(results: Results) -> TextTable:
 def law_table(results: Results) -> TextTable | None:
     """The contact law of each joint in each model with play, and the first peak it leads to."""
     joints = [joint for joint in results.case.joints if not joint.tied]
-    models = [model for model in results.case.models if not tied(model)]
+    models = [model for model in results.ran if not tied(model)]
     if not joints or not models:
         return None
     rows = []
@@ -172,7 +175,7 @@ def law_table(results: Results) -> TextTable | None:
 def space_table(results: Results) -> TextTable | None:
     """First peaks along both directions against the reference; None for a flat boom."""
     models: Mapping[str, Any] = results.summary["models"]
-    reference = reference_of(results.case)
+    reference = reference_of(results.ran)
     if reference is None or "tip_lateral" not in models[reference]["first_peak"]:
         return None
     rows = []

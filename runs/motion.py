@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -77,6 +77,10 @@ class Motion:
     def from_rest(self) -> bool:
         """Whether nothing moves or is bent at t = 0."""
         return not (self.position.any() or self.velocity.any())
+
+    def finer(self) -> Motion:
+        """The same in half the step."""
+        return replace(self, integrator=self.integrator.finer())
 
     def warm(self) -> None:
         """One output compiles the time loop, so that a wall time is the motion's own."""

@@ -30,6 +30,7 @@ from runs.results import (
     Results,
     read_netcdf,
 )
+from runs.schema import ShellTable
 from runs.tables import TextTable
 from shell_model.field_series import write_field_series
 from shell_model.rendering import RenderingUnavailable, render_snapshots
@@ -93,8 +94,9 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
         results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
     _write_csv(results.trajectories, folder / "trajectories.csv")
     _write_text(folder / CASE, toml.dumps(results.case))
+    shells = [model for model in results.case.models if isinstance(model, ShellTable)]
     for name, shell in run.shells.items():
-        prefix = f"{name}-" if len(run.shells) > 1 else ""
+        prefix = f"{name}-" if len(shells) > 1 else ""
         shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
         shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
         # Of names joined by a hyphen two may be the same.

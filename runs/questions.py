@@ -41,10 +41,17 @@ class Run:
         """(num_times,) in s."""
         return np.asarray(self.trajectories["time"].values, dtype=float)
 
-    def curve(self, model: Model, place: str = "tip") -> Array:
-        """(num_times,) deflection in m."""
+    def check_ran(self, model: Model) -> None:
+        """Refuse a model that failed, or was left out."""
+        why = self.summary.get("failures", {}).get(model.name)
+        if why is not None:
+            raise Lacking(f"{model.name!r} failed: {why}.")
         if model.name not in self.trajectories["model"].values:
             raise Lacking(f"{model.name!r} did not run.")
+
+    def curve(self, model: Model, place: str = "tip") -> Array:
+        """(num_times,) deflection in m."""
+        self.check_ran(model)
         if place not in self.trajectories:
             raise Lacking(f"No {place} in this run.")
         deflection = np.asarray(self.trajectories[place].sel(model=model.name).values, dtype=float)
@@ -63,6 +70,7 @@ class Run:
 
     def number(self, model: Model, *keys: str | int) -> float:
         """A number of the model's summary."""
+        self.check_ran(model)
         value: Any = self.summary["models"].get(model.name)
         for key in keys:
             value = value.get(key) if isinstance(value, Mapping) else value and value[key]

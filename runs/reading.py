@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from beam_model.kantorovich import Base
 from dynamics.ensemble import perturbations
+from dynamics.failure import NumericsError
 from runs.pipeline import run_case
 from runs.results import Results
 from runs.schema import Case, KantorovichTable
@@ -200,6 +201,8 @@ def _but_exponent(reading: Reading) -> Reading:
 def _results(case: Case) -> Results:
     finished = run_case(case, "paper.toml", None, Path(), _silence)
     assert finished is not None
+    for model, why in finished.results.summary["failures"].items():
+        raise NumericsError(f"{model}: {why}")
     return finished.results
 
 

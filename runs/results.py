@@ -17,7 +17,7 @@ from geometry.boom import Boom
 from runs import case as case_file
 from runs import toml
 from runs.bad_input import BadInput
-from runs.schema import Case, KantorovichTable
+from runs.schema import Case, KantorovichTable, Model
 from runs.statements import Verdict
 
 TRAJECTORIES = "trajectories.nc"
@@ -99,6 +99,11 @@ class Results:
         """Whether the statements of the paper, which are about its series, are worth a table."""
         return any(isinstance(model, KantorovichTable) for model in self.case.models)
 
+    @property
+    def ran(self) -> list[Model]:
+        """The models that have not failed."""
+        return [model for model in self.case.models if model.name in self.summary["models"]]
+
     def cautions(self) -> list[str]:
         """What the results are not worth, a line each."""
         spans = [x for segment in self.case.segments for x in segment.span]
@@ -123,7 +128,15 @@ class Results:
             for name, model in models
             if (error := model.get("mesh_error") or 0.0) > POOR
         ]
-        return far + poor + coarse
+        failed = [
+            f"failed: {name}: {why}" for name, why in self.summary.get("failures", {}).items()
+        ]
+        halved = [
+            f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
+            for name, model in models
+            if (refused := model.get("refused_steps"))
+        ]
+        return failed + far + poor + coarse + halved
 
     def broken_demands(self) -> list[Verdict]:
         """The verdicts that the case demands and that are not ``reproduced``."""

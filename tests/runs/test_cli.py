@@ -161,7 +161,7 @@ def test_numerics_that_fail_are_one_line_and_no_results(protractile: Protractile
     status, out, err = protractile("run", "case.toml", *SERIES, "--out", "out")
     assert (status, out) == (3, "")
     assert err.startswith("protractile: case.toml: model[1]: the energy residual is ")
-    assert err.endswith(" at a step of 0.001 s; halve the step\n")
+    assert err.endswith(" at a step of 0.00025 s; halve the step\n")
     assert err.count("\n") == 1
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
 

@@ -59,7 +59,7 @@ def ensembles(members: dict[str, list[np.ndarray]]) -> xr.Dataset:
 def test_the_reference_is_the_most_complicated_model(
     models: list[str], expected: str | None
 ) -> None:
-    assert reference_of(case_of(*models)) == expected
+    assert reference_of(case_of(*models).models) == expected
 
 
 def test_a_model_that_is_late_and_low_is_so_at_each_level() -> None:

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A model that fails costs the others nothing, and what is finished is not computed again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.trajectory import Trajectory
+from runs.cache import VARIABLE
+from runs.motion import Motion
+from runs.results import Results
+from tests.runs.coarse_case import COARSE
+from tests.system.run_folder import protractile, trajectories
+
+pytestmark = pytest.mark.quick
+
+RUN = "run", "case.toml", "--models", "kantorovich-4,kantorovich-5", "--out", "out"
+# Of kantorovich-4, whose contacts last for less.
+TOO_LONG, A_BIT_LONG = "1e-3", "5e-4"
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An empty folder, with a cache beside it."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
+
+
+def write_case(step: str) -> None:
+    base = 'base = "as printed"'
+    text = COARSE.replace("duration = 0.6", "duration = 0.3")
+    Path("case.toml").write_text(text.replace(base, f"{base}\nstep = {step}", 1), "utf-8")
+
+
+@pytest.fixture
+def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The modes of each system that has moved."""
+    modes: list[int] = []
+    move = Motion.trajectory
+
+    def count(motion: Motion, progress: Any) -> Trajectory:
+        modes.append(motion.system.num_modes)
+        return move(motion, progress)
+
+    monkeypatch.setattr(Motion, "trajectory", count)
+    return modes
+
+
+def test_the_others_are_written_and_it_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    write_case(TOO_LONG)
+    assert protractile(*RUN) == 3
+    out, err = capsys.readouterr()
+    assert err.startswith("protractile: case.toml: model[1]: the energy residual is ")
+    assert err.endswith(" at a step of 0.00025 s; halve the step\n")
+    assert err.count("\n") == 1
+    assert "failed: kantorovich-4: the energy residual is " in out
+    results = Results.load(Path("out"))
+    assert results.trajectories["model"].values.tolist() == ["kantorovich-5"]
+    why = results.summary["failures"]["kantorovich-4"]
+    first = results.verdicts[0]
+    assert (first.id, first.verdict) == ("S1", "undecided")
+    assert first.why == f"'kantorovich-4' failed: {why}."
+    page = Path("out/report.html").read_text(encoding="utf-8")
+    assert "<td>failed</td>" in page
+    assert protractile("report", "out") == 0
+
+
+def test_nothing_is_written_where_all_fail(capsys: pytest.CaptureFixture[str]) -> None:
+    write_case(TOO_LONG)
+    assert protractile("run", "case.toml", "--models", "kantorovich-4", "--out", "out") == 3
+    assert capsys.readouterr().err.count("\n") == 1
+    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
+
+
+def test_a_step_that_loses_energy_is_halved(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: the same with a quarter of the step from the beginning."""
+    write_case("1.25e-4")
+    assert protractile(*RUN[:-1], "expected") == 0
+    write_case(A_BIT_LONG)
+    capsys.readouterr()
+    assert protractile(*RUN) == 0
+    out, err = capsys.readouterr()
+    assert err.startswith(
+        "protractile: case.toml: model[1]: took 4 times as many steps, since the energy residual "
+    )
+    assert "caution: kantorovich-4 took 4 times as many steps as chosen: " in out
+    summary = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["models"]
+    assert summary["kantorovich-4"]["step"] == 1.25e-4
+    assert [len(model["refused_steps"]) for model in summary.values()] == [2, 0]
+    assert np.array_equal(trajectories(Path("out"))["tip"], trajectories(Path("expected"))["tip"])
+
+
+def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first is broken off in its second model. Reference: one that is not."""
+    write_case("1e-4")
+    assert protractile(*RUN, "--no-cache") == 0
+    undisturbed = Path("out/trajectories.nc").read_bytes()
+    assert moved == [4, 5]
+    move = Motion.trajectory
+
+    def break_off(motion: Motion, progress: Any) -> Trajectory:
+        if motion.system.num_modes == 5:
+            raise OSError("broken off")
+        return move(motion, progress)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Motion, "trajectory", break_off)
+        assert protractile(*RUN) == 2
+    assert protractile(*RUN) == 0
+    assert moved == [4, 5, 4, 5]
+    assert Path("out/trajectories.nc").read_bytes() == undisturbed
+    assert protractile(*RUN, "--no-cache") == 0
+    assert moved == [4, 5, 4, 5, 4, 5]
+
+
+def test_another_case_is_another_motion(moved: list[int]) -> None:
+    write_case("1e-4")
+    assert protractile(*RUN) == 0
+    text = Path("case.toml").read_text("utf-8").replace("load = 55.07", "load = 55.08")
+    Path("case.toml").write_text(text, "utf-8")
+    assert protractile(*RUN) == 0
+    assert moved == [4, 5, 4, 5]
