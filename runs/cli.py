@@ -18,7 +18,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 
 from dynamics.failure import NumericsError
 from runs import case as case_file
-from runs import notices, output, ranks, readings, sweep_output, sweep_points, terminal
+from runs import estimates, notices, output, ranks, readings, sweep_output, sweep_points, terminal
 from runs import sweep as sweep_runs
 from runs.bad_input import BadInput
 from runs.cache import Cache, default_folder
@@ -58,6 +58,9 @@ NoCache = Annotated[
     bool,
     typer.Option("--no-cache", help="Reduce shells afresh, and leave the user's cache alone."),
 ]
+Large = Annotated[
+    bool, typer.Option("--large", help="Start even what may take more than 4 GB or an hour.")
+]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
@@ -74,11 +77,14 @@ def run(
         int | None, typer.Option(metavar="N", help="Runs in each model's ensemble, 0 for none.")
     ] = None,
     no_cache: NoCache = False,
+    large: Large = False,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
     effective = case_file.select(
         case_file.load(case), case, _names(models), mesh_size, members, modes
     )
+    if not large:
+        estimates.refuse_large(estimates.of_run(effective), case)
     cache = None if no_cache else Cache(default_folder())
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
@@ -160,6 +166,7 @@ def sweep(
     models: ModelNames = None,
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
+    large: Large = False,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -168,6 +175,8 @@ def sweep(
     points, else the cores do. Ensembles are left out.
     """
     plan = sweep_points.plan(case, vary, _names(models), mesh_size)
+    if not large:
+        estimates.refuse_large(estimates.of_sweep([point.case for point in plan.points]), case)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
     with _all_ranks_end_together(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")

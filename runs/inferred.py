@@ -9,6 +9,7 @@ from rich.table import Table
 from geometry.boom import Boom, Joint
 from geometry.section import BoxSection
 from runs.build import build_boom, contact_laws
+from runs.estimates import of_run
 from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
 
 
@@ -23,6 +24,7 @@ def print_inferred(case: Case, console: Console) -> None:
     if boom.joints:
         console.print(_joints(boom))
     console.print(_models(case))
+    console.print(f"A run may take {of_run(case)}.", highlight=False)
 
 
 def _segments(case: Case, boom: Boom) -> Table:
