@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Many seeded slips, some at a time, each in a folder and a process of its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+from tests.fuzz import cases, command_lines, contract, histories
+from tests.runs.coarse_case import CASES
+
+SHORT = "duration = 0.05"
+# Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.
+WITHOUT_SHELLS = "kantorovich-4,kantorovich-5,beam-fe"
+
+# What a mutation is of, and its part of them all.
+KINDS = {"case, checked": 0.55, "case, run": 0.15, "history": 0.12, "command line": 0.18}
+
+
+@dataclass(slots=True)
+class Tally:
+    """What became of the slips of one kind."""
+
+    statuses: Counter[int] = field(default_factory=Counter)
+    breaches: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+    memory: float = 0.0
+
+    def add(self, seed: int, ending: contract.Ending) -> None:
+        """Count one."""
+        self.statuses[ending.status] += 1
+        self.seconds = max(self.seconds, ending.seconds)
+        self.memory = max(self.memory, ending.memory)
+        if breach := ending.breach():
+            self.breaches.append(f"{seed}: {breach}")
+
+
+def kind_of(seed: int) -> str:
+    """What a seed's slip is in."""
+    return Random(f"kind {seed}").choices(list(KINDS), list(KINDS.values()))[0]
+
+
+def prepare(seed: int, folder: Path) -> list[str]:
+    """Write the files of a seed's slip to a folder; the arguments of its command."""
+    random, kind = Random(seed), kind_of(seed)
+    path = random.choice(sorted(CASES.glob("*.toml")))
+    text = path.read_text(encoding="utf-8")
+    if kind == "case, run":
+        text = (CASES / "coarse.toml").read_text(encoding="utf-8")
+        text = text.replace("duration = 0.6", SHORT)
+    arguments = ["check", "case.toml"]
+    if kind == "case, run":
+        arguments = ["run", "case.toml", "--models", WITHOUT_SHELLS, "--out", "out"]
+    if kind == "case, checked" or random.random() < 0.2:
+        text = cases.slip(text, random)
+    elif kind == "case, run":
+        text = cases.scaled(text, random)
+    if kind == "history":
+        table = '[[base]]\nacceleration = 1.0\nfile = "history.csv"\n\n[[model]]'
+        text = text.replace("[[model]]", table, 1)
+        histories.put(folder / "history.csv", random)
+    if kind == "command line":
+        text = (CASES / "coarse.toml").read_text(encoding="utf-8")
+        text = text.replace("duration = 0.6", SHORT)
+        arguments = command_lines.slip(random)
+    (folder / "case.toml").write_text(text, encoding="utf-8", errors="surrogateescape")
+    return arguments
+
+
+def run(seeds: Iterable[int], tell: Callable[[int], None]) -> dict[str, Tally]:
+    """Run the slips of seeds on all cores; ``tell`` is called after each."""
+    tallies = {kind: Tally() for kind in KINDS}
+    with TemporaryDirectory(prefix="protractile-fuzz-") as top:
+        for done, (seed, ending) in enumerate(_endings(seeds, Path(top)), start=1):
+            tallies[kind_of(seed)].add(seed, ending)
+            tell(done)
+    return tallies
+
+
+def _endings(seeds: Iterable[int], top: Path) -> Iterator[tuple[int, contract.Ending]]:
+    running: dict[int, tuple[int, Path]] = {}
+    for seed in seeds:
+        if len(running) == len(os.sched_getaffinity(0)):
+            yield _next(running)
+        folder = top / str(seed)
+        folder.mkdir()
+        running[contract.start(prepare(seed, folder), folder)] = seed, folder
+    while running:
+        yield _next(running)
+
+
+def _next(running: dict[int, tuple[int, Path]]) -> tuple[int, contract.Ending]:
+    pid, status, used = os.wait3(0)
+    seed, folder = running.pop(pid)
+    ending = contract.finish(folder, pid, status, used)
+    shutil.rmtree(folder)
+    return seed, ending

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Case files with slips: in a value, in a key, in a table, in the bytes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from random import Random
+
+from tests.fuzz.values import any_value
+
+_LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)
+_NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e-?\d+)?")
+_KEYS = (
+    "supports", "masses", "load", "viscous_damping", "lateral_load", "section", "collars",
+    "diaphragms", "friction", "normal_forces", "lateral_play", "restitution", "tied", "pad",
+    "stiffness_below", "exponent", "step", "modes", "tolerance", "contact_line", "surface_points",
+    "rotary_inertia", "theory", "base", "contact", "demand", "ramp", "frequency", "table", "file",
+    "released", "direction", "kind", "name", "x", "gravity",
+)  # fmt: skip
+_TABLES = (
+    "[payload]\nmass = {}\n", "[damping]\nmodal = {}\n", "[damping]\nstiffness = {}\n",
+    "[damping]\nmass = {}\n", '[start]\nstate = "equilibrium"\n',
+    "[start]\nvelocity = {{ inner = {} }}\n", "[[base]]\nacceleration = {}\n",
+    '[[base]]\nacceleration = 1.0\nramp = {}\n',
+    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\n',
+    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = -100.0\nfrequency = {}\n',
+    '[[stop]]\nsegment = "inner"\nx = 18.0\nplay = 0.1\nstiffness = {}\n',
+    "[ensemble]\nmembers = {}\n", "[ensemble]\nmembers = 3\nrelative = {}\n",
+    "[ensemble]\nmembers = 3\nseed = {}\n",
+)  # fmt: skip
+
+
+def slip(text: str, random: Random) -> str:
+    """A case file with one slip or a few."""
+    for _ in range(random.choice((1, 1, 1, 2, 3))):
+        text = random.choices(_SLIPS, _WEIGHTS)[0](text, random)
+    return text
+
+
+def scaled(text: str, random: Random) -> str:
+    """A case file with one to three numbers of another size, which most often can be run."""
+    for _ in range(random.choice((1, 2, 3))):
+        number = random.choice(list(_NUMBER.finditer(text)))
+        other = float(number[0]) * random.choice(
+            (-1.0, 0.0, 1e-9, 1e-3, 0.1, 0.9, 1.1, 10, 1e3, 1e9)
+        )
+        text = f"{text[: number.start()]}{other!r}{text[number.end() :]}"
+    return text
+
+
+def _other_value(text: str, random: Random) -> str:
+    line = random.choice(list(_LINE.finditer(text)) or [None])
+    if line is None:
+        return text
+    return (
+        text[: line.start("value")] + any_value(random, line["value"]) + text[line.end("value") :]
+    )
+
+
+def _other_number(text: str, random: Random) -> str:
+    """One number, perhaps inside a list or a table."""
+    number = random.choice(list(_NUMBER.finditer(text)) or [None])
+    if number is None:
+        return text
+    return text[: number.start()] + any_value(random, number[0]) + text[number.end() :]
+
+
+def _without_a_line(text: str, random: Random) -> str:
+    lines = text.splitlines(keepends=True)
+    del lines[random.randrange(len(lines)) : random.randrange(len(lines))]
+    return "".join(lines)
+
+
+def _one_more_key(text: str, random: Random) -> str:
+    lines = text.splitlines()
+    key = random.choice((*_KEYS, "unknown", '"\\u001b[2J"', "k" * 300))
+    lines.insert(random.randrange(len(lines) + 1), f"{key} = {any_value(random, '1.0')}")
+    return "\n".join(lines) + "\n"
+
+
+def _one_more_table(text: str, random: Random) -> str:
+    table = random.choice(_TABLES).format(any_value(random, "1.0"))
+    return text.replace("[[model]]", f"{table}\n[[model]]", 1)
+
+
+def _tables_again(text: str, random: Random) -> str:
+    """A part of the file once more, or many times."""
+    parts = re.split(r"(?m)^(?=\[)", text)
+    i = random.randrange(len(parts))
+    return "".join([*parts[:i], parts[i] * random.choice((2, 3, 30, 3000)), *parts[i + 1 :]])
+
+
+def _tables_exchanged(text: str, random: Random) -> str:
+    parts = re.split(r"(?m)^(?=\[)", text)
+    random.shuffle(parts)
+    return "".join(parts)
+
+
+def _other_letters(text: str, random: Random) -> str:
+    """A few letters of the file: brackets, quotes, controls, halves of characters."""
+    letters = list(text)
+    for _ in range(random.choice((1, 2, 5, 100))):
+        letters[random.randrange(len(letters))] = random.choice(
+            "[]{}\"'=.,#\n\x00\x1b\x7f\udcffé9e-"
+        )
+    return "".join(letters)
+
+
+def _cut(text: str, random: Random) -> str:
+    return text[: random.randrange(len(text) + 1)]
+
+
+_SLIPS: tuple[Callable[[str, Random], str], ...] = (
+    _other_value, _other_number, _without_a_line, _one_more_key, _one_more_table, _tables_again,
+    _tables_exchanged, _other_letters, _cut,
+)  # fmt: skip
+_WEIGHTS = (8, 8, 1, 3, 6, 1, 0.5, 1, 0.5)

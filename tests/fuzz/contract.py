@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What every command keeps to, whatever it is given, and a process that shows whether it does.
+
+Exit status 0, 1, 2 or 3; nothing on stderr but one line, shorter than 300 characters, printable,
+where it is not 0; 4 GB; 60 s of CPU beyond what was announced.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from runs import case as case_file
+from runs import cli, estimates
+from runs.shown import LONGEST
+
+MOST_MEMORY = 4.0e9
+MOST_CPU = 60
+
+# Where a process leaves what it prints, in its folder.
+OUT, ERR = ".stdout", ".stderr"
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a command ended.
+
+    Args:
+        status: of its exit; negative for the signal that killed it.
+        err: what it wrote on stderr.
+        seconds: of CPU.
+        memory: largest resident set in bytes.
+    """
+
+    status: int
+    err: bytes
+    seconds: float
+    memory: float
+
+    def breach(self) -> str:
+        """What of the contract was broken; nothing if it was kept."""
+        if self.status not in (0, 1, 2, 3):
+            return f"exit status {self.status}: {self.err[-300:]!r}"
+        if self.memory > MOST_MEMORY:
+            return f"{self.memory / 1e9:.2g} GB"
+        lines = self.err.decode("utf-8", "replace").splitlines()
+        if len(lines) != (0 if self.status == 0 else 1):
+            return f"{len(lines)} lines with exit status {self.status}: {self.err[-300:]!r}"
+        if any(len(line) >= LONGEST or not line.isprintable() for line in lines):
+            return f"a line that cannot be read: {lines[0]!r}"
+        if any(not line.startswith("protractile: ") for line in lines):
+            return f"a line that is not protractile's: {lines[0]!r}"
+        return ""
+
+
+def start(arguments: Sequence[str], folder: Path) -> int:
+    """A process of its own that runs a command in a folder; its id."""
+    pid = os.fork()
+    if pid == 0:
+        os._exit(_run(arguments, folder))
+    return pid
+
+
+def finish(folder: Path, pid: int, status: int, used: resource.struct_rusage) -> Ending:
+    """How a process that :func:`start` made and that is gone ended."""
+    return Ending(
+        os.waitstatus_to_exitcode(status),
+        (folder / ERR).read_bytes(),
+        used.ru_utime + used.ru_stime,
+        1024.0 * used.ru_maxrss,
+    )
+
+
+def _run(arguments: Sequence[str], folder: Path) -> int:
+    os.chdir(folder)
+    for name, number in ((OUT, 1), (ERR, 2)):
+        os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), number)
+    limit = MOST_CPU + _announced(arguments)
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+    try:
+        cli.main(arguments)
+    except SystemExit as end:
+        status = end.code
+    except BaseException:
+        traceback.print_exc()
+        status = 70
+    sys.stdout.flush()
+    sys.stderr.flush()
+    return status if isinstance(status, int) else 0
+
+
+def _announced(arguments: Sequence[str]) -> int:
+    """Seconds that a run was said to take."""
+    if arguments[:2] != ["run", "case.toml"]:
+        return 0
+    try:
+        return int(estimates.of_run(case_file.load("case.toml")).seconds)
+    except Exception:
+        return 0
