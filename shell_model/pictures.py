@@ -69,17 +69,18 @@ class BoomView:
             pixels: width and height of the picture.
             displacement: up to which part of the boom's length displacements are drawn.
         """
-        low, high = 0.0, SAME_PLACE
+        low, high = 0.0, 0.0
         for instant in instants:
             deflection = shell.displacement(instant.time)[:, 2]
             low, high = min(low, deflection.min()), max(high, deflection.max())
-        deflections = 1.0e3 * low, 1.0e3 * high
+        # A scale has two ends, even at rest.
+        deflections = 1.0e3 * low, 1.0e3 * max(high, low + SAME_PLACE)
         begin, end = shell.points[:, 0].min(), shell.points[:, 0].max()
         half = SECTION_DRAWN * shell.points[:, 2].max()
         play = sum(overlap.clearance for overlap in shell.overlaps)
         scale = round_scale(
             min(
-                displacement * (end - begin) / max(high, -low),
+                displacement * (end - begin) / max(high, -low, SAME_PLACE),
                 PLAY_OF_SECTION * half / max(play, SAME_PLACE),
             )
         )

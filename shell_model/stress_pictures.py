@@ -29,6 +29,9 @@ BOOM_DISPLACEMENT = 0.1
 # line of contact would leave nothing but the light end for the rest.
 SHOWN_AREA = 0.995
 
+# Stresses below it are none, in Pa.
+LEAST = 1.0
+
 # Between this part of the scale and its end there is no room for another number.
 LAST_TICK = 0.65
 
@@ -38,7 +41,7 @@ class StressScale:
     """The colours of von Mises stresses, the same in all pictures that are to be compared.
 
     Args:
-        end: what the darkest colour is for, in Pa.
+        end: what the darkest colour is for, in Pa, of three digits.
         largest: of all triangles and instants, in Pa.
     """
 
@@ -56,7 +59,7 @@ class StressScale:
             place = int(np.searchsorted(covered, SHOWN_AREA * covered[-1]))
             end = max(end, float(values[rising[place]]))
             largest = max(largest, float(values.max()))
-        return cls(max(end, 1.0), max(largest, 1.0))
+        return cls(_rounded_down(max(end, LEAST)), largest)
 
     def look(self, values: npt.NDArray[np.float32]) -> dict[str, Any]:
         """How triangles with these stresses (num_triangles,) in Pa are drawn."""
@@ -79,8 +82,18 @@ class StressScale:
         )
         ticks = [t for t in MaxNLocator(3).tick_values(0.0, end) if t <= LAST_TICK * end]
         last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
-        bar.set_ticks([*ticks, end], labels=[*(f"{t:g}" for t in ticks), last])
+        labels = {**{t: f"{t:g}" for t in ticks}, end: last}
+        if self.largest < self.end:
+            # Nothing is stressed, and the scale has no end.
+            labels = {0.0: "0"}
+        bar.set_ticks(list(labels), labels=list(labels.values()))
         bar.set_label("von Mises stress (MPa),\nthe larger of both faces", fontsize=18)
+
+
+def _rounded_down(number: float) -> float:
+    """To three digits, so that what is written is not above what there is."""
+    unit = 10.0 ** (np.floor(np.log10(number)) - 2.0)
+    return float(f"{np.floor(number / unit + 1.0e-9) * unit:.3g}")
 
 
 def draw_stress(

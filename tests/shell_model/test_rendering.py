@@ -20,8 +20,8 @@ from geometry.section import BoxSection
 from shell_model import rendering
 from shell_model.deformation import MovingShell, round_scale
 from shell_model.overlap_pictures import draw_overlap
-from shell_model.picture_theme import LETTERS, Camera, Scene
-from shell_model.pictures import Instant
+from shell_model.picture_theme import LETTERS, Camera, Scene, Sheet
+from shell_model.pictures import BoomView, Instant
 from shell_model.rendering import (
     RenderingUnavailable,
     render_snapshots,
@@ -29,7 +29,7 @@ from shell_model.rendering import (
     where_pressed,
 )
 from shell_model.still_pictures import draw_mesh, draw_sections
-from shell_model.stress_pictures import StressScale, draw_stress
+from shell_model.stress_pictures import OVERLAP_PIXELS, StressScale, draw_stress
 
 Array = npt.NDArray[np.float64]
 
@@ -395,6 +395,36 @@ def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> Non
     left, right = np.array_split(is_force, 2, axis=1)
     rows = [np.flatnonzero(part.any(axis=1)).mean() for part in (right, left)]
     assert rows[0] + 200.0 < rows[1]
+
+
+def test_the_scale_of_deflections_ends_with_what_there_is(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """A boom that hangs down everywhere has no deflection above 0."""
+    hanging = fields.assign(state=-1.0 * fields["state"])
+    (shell,) = MovingShell.views(hanging, trajectories.sel(model="shell"))
+    deflection = 1e3 * shell.displacement(0.5)[:, 2]
+    low, high = BoomView.of(shell, [Instant(0.5)]).deflections
+    assert (low, high) == (min(0.0, deflection.min()), max(0.0, deflection.max()))
+
+
+@pytest.mark.parametrize("steep", [0.0, 1.0, 1.2345, 4.0])
+def test_the_scale_of_stresses_ends_with_what_there_is(
+    fields: xr.Dataset, trajectories: xr.Dataset, steep: float
+) -> None:
+    """What is written at the end of the bar is not above the largest stress, 0 at rest.
+
+    Reference: analytic, the stresses themselves.
+    """
+    steeper = fields.assign(state=steep * fields["state"])
+    (shell,) = MovingShell.views(steeper, trajectories.sel(model="shell"))
+    scale = StressScale.of(shell, [Instant(0.5)])
+    sheet = Sheet(OVERLAP_PIXELS, 0)
+    scale.add_bar(sheet)
+    labels = [label.get_text() for label in sheet.figure.axes[-1].get_xticklabels()]
+    largest = 1e-6 * float(shell.stress.at(0.5).largest().max())
+    assert 0.99 * largest < float(labels[-1].removeprefix("≥ ")) <= largest or labels == ["0"]
+    assert (labels == ["0"]) == (steep == 0.0)
 
 
 @pytest.mark.usefixtures("_opengl")
