@@ -28,7 +28,7 @@ BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence test quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence test fuzz quick lint matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -55,6 +55,9 @@ convergence: $(READY) ## what proves the models: benchmarks, refinements, other 
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+
+fuzz: $(READY) ## a thousand slips in cases, loads' files and command lines; fails if one is not told in a line
+	$(BIN)/python -m tests.fuzz
 
 quick: $(READY) ## the quick tests alone
 	$(BIN)/python -m pytest -m quick

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sample of ``make fuzz``, and whether a breach would be seen."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.contract import Ending
+
+
+def test_a_sample_keeps_the_contract() -> None:
+    """In a process of its own, which may fork."""
+    answer = subprocess.run(
+        [sys.executable, "-m", "tests.fuzz", "40"],
+        cwd=Path(__file__).parents[2],
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert (answer.returncode, answer.stderr) == (0, ""), answer.stdout
+    assert answer.stdout.endswith("40 of 40 keep the contract\n")
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("status", "err", "breach"),
+    [
+        (0, b"", ""),
+        (2, b"protractile: a: b: c\n", ""),
+        (2, b"", "0 lines with exit status 2: b''"),
+        (0, b"warning\n", "1 lines with exit status 0: b'warning\\n'"),
+        (3, b"protractile: a\nb\n", "2 lines with exit status 3: b'protractile: a\\nb\\n'"),
+        (2, b"a: b\n", "a line that is not protractile's: 'a: b'"),
+        (2, b"protractile: \x1b[31m\n", "a line that cannot be read: 'protractile: \\x1b[31m'"),
+        (70, b"Traceback", "exit status 70: b'Traceback'"),
+        (-24, b"", "exit status -24: b''"),
+    ],
+)
+def test_a_breach_is_told(status: int, err: bytes, breach: str) -> None:
+    assert Ending(status, err, 1.0, 1e9).breach() == breach
+    assert Ending(status, err, 1.0, 5e9).breach()

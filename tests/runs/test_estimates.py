@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a run takes is told beforehand, and what takes much is not started unasked."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from runs import case as case_file
+from runs import sweep_points
+from runs.bad_input import BadInput
+from runs.estimates import Cost, of_run, of_sweep, refuse_large
+from tests.runs.coarse_case import CASES, COARSE
+
+ROOT = Path(__file__).parents[2]
+
+PROGRAM = """
+import resource, sys
+from runs.cli import main
+try:
+    main(sys.argv[1:])
+except SystemExit as end:
+    assert not end.code
+print(1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+ELEMENTS = "--models", "beam-fe"
+SERIES = "--models", "kantorovich-5"
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def write(*edits: tuple[str, str]) -> None:
+    text = COARSE
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new, 1)
+    Path("case.toml").write_text(text, encoding="utf-8")
+
+
+def memory(*arguments: str) -> int:
+    """Largest resident set of a run in bytes."""
+    answer = subprocess.run(
+        [sys.executable, "-c", PROGRAM, "run", "case.toml", "--out", "out", *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    return int(answer.stdout.split()[-1])
+
+
+@pytest.mark.parametrize(
+    ("edits", "options", "members"),
+    [
+        ((("output_step = 1e-3", "output_step = 2e-6"),), SERIES, None),
+        ((("output_step = 1e-3", "output_step = 1e-5"),), SERIES, 200),
+        ((("mesh_size = 0.25", "mesh_size = 0.06"),), ("--models", "shell"), None),
+    ],
+    ids=["outputs", "members", "mesh"],
+)
+def test_memory_is_not_above_the_estimate_and_not_far_below(
+    edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
+) -> None:
+    """Reference: external, what the operating system has counted."""
+    write(*edits)
+    case = case_file.load("case.toml")
+    case = case_file.select(case, "case.toml", [options[1]], members=members)
+    used = memory(*options, "--members", str(members or 0))
+    assert used <= of_run(case).memory <= 3.0 * used
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("edits", "line"),
+    [
+        ((("output_step = 1e-3", "output_step = 1e-7"),), "73 GB and 18 min"),
+        ((("mesh_size = 0.25", "mesh_size = 0.015"),), "8.2 GB and 5 min"),
+        ((("element_length = 0.5", "element_length = 0.002"),), "20 GB and 84.8 h"),
+        ((("duration = 0.6", "duration = 60.0\nstep = 1e-8"),), "1.4 GB and 2.02 h"),
+    ],
+)
+def test_what_takes_much_is_refused_with_the_number(
+    edits: tuple[tuple[str, str], ...], line: str
+) -> None:
+    """Reference: non-regression; what a million outputs, dofs and steps take was measured."""
+    write(*edits)
+    with pytest.raises(BadInput) as refused:
+        refuse_large(of_run(case_file.load("case.toml")), "case.toml")
+    assert str(refused.value) == (
+        f"case.toml: --large: missing, and it may take {line}; give it to start all the same, or "
+        "ask for fewer outputs, members, points or steps, or for coarser meshes"
+    )
+
+
+@pytest.mark.quick
+def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: analytic. Two points at a time, all alike."""
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    write()
+    points = [p.case for p in sweep_points.plan("case.toml", VARY, ["beam-fe"], None).points]
+    one, all_of_them = of_run(points[0]), of_sweep(points)
+    assert all_of_them.memory == pytest.approx(2.0 * one.memory, rel=1e-9)
+    assert all_of_them.seconds == pytest.approx(50.0 * one.seconds, rel=0.5)
+
+
+VARY = ["joint.stiffness=1e13:1.1e13:100"]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_cases_that_come_with_the_project_start_unasked(path: Path) -> None:
+    refuse_large(of_run(case_file.load(str(path))), str(path))
+
+
+@pytest.mark.quick
+def test_an_unknown_cost_is_a_large_one() -> None:
+    with pytest.raises(BadInput):
+        refuse_large(Cost(float("nan"), 0.0), "case.toml")
