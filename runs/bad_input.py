@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from runs import schema
+from runs.limits import NAME
 from runs.shown import shown
 
 _TABLES: Mapping[str, type[BaseModel]] = {
@@ -116,7 +117,7 @@ def _explain(
         return key, f"too many; give {limits['max_length']} at most"
     elif fault == "string_too_long":
         return key, f"too long; give {limits['max_length']} characters at most"
-    elif fault == "string_pattern_mismatch" and limits["pattern"] == schema.NAME:
+    elif fault == "string_pattern_mismatch" and limits["pattern"] == NAME:
         what = "must be made of letters, digits, blanks and . _ + -, starting with one of the first"
     elif fault == "string_pattern_mismatch":
         what = "must be a line of printable characters"

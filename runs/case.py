@@ -16,9 +16,8 @@ from beam_model.kantorovich import bending_basis
 from geometry.boom import Boom, BoomError
 from runs.bad_input import BadInput, choices
 from runs.build import build_boom, check_names, needs_plates
+from runs.limits import MOST_MEMBERS, MOST_TIMES
 from runs.schema import (
-    MOST_MEMBERS,
-    MOST_TIMES,
     Case,
     EnsembleTable,
     FiniteElementTable,

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What single values of a case file may be, and how many of each there may be."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Exponent = Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
+Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0)]
+Flag = Annotated[bool, Field(strict=True)]
+# A name becomes a part of file names, and an element of a comma-separated list.
+NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
+Name = Annotated[str, Field(pattern=NAME, max_length=60)]
+# Neither controls, nor what breaks a line or turns its direction.
+PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
+Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
+StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
+
+# Whole tips are kept of each.
+MOST_MEMBERS = 10_000
+# A boom has a few of each; many more are a slip of the pen, and would take for ever to draw.
+MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS = 20, 50, 50
+Few = Field(max_length=100)
+# Measured accelerations of a minute at a thousand a second, and more.
+MOST_TIMES = 100_000
