@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 def check(redirection: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """``protractile check`` of the coarse case in a shell, its output redirected."""
-    command = f"{sys.executable} -m runs.cli check {COARSE} {redirection}"
+    command = f"{sys.executable} -m runs check {COARSE} {redirection}"
     return subprocess.run(
         ["bash", "-o", "pipefail", "-c", command],
         cwd=ROOT,
