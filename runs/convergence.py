@@ -33,6 +33,7 @@ TITLE = "What proves the models"
 STUDIES = (
     "benchmarks",
     "mesh",
+    "contact_size",
     "working_load",
     "direct",
     "solid",

@@ -23,7 +23,7 @@ from runs.shell_cache import remembered
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.boom_shell import ReducedShell, ShellOptions
     from shell_model.krylov import KrylovOptions
 
 
@@ -78,24 +78,30 @@ def reduce_shell(
         tell: told the stage and the part of it that is done.
         cache: where the same shell may be already, and is kept; computed unless given.
     """
-    from shell_model.boom_shell import ShellOptions, reduce_boom
-    from shell_model.surface_contact import POINTS, SurfaceOptions
+    from shell_model.boom_shell import reduce_boom
 
     if comm.rank == 0:
         mesh_folder.mkdir(parents=True)
-    options = ShellOptions(
-        mesh_size=model.mesh_size,
-        contact_line=model.contact_line,
-        surface=SurfaceOptions(model.surface_points or POINTS, model.surface_stiffness),
-        krylov=_krylov(model),
-        mesh_folder=mesh_folder,
-    )
+    options = replace(shell_options(model), mesh_folder=mesh_folder)
     laws, lateral = contact_laws(case, model), lateral_laws(case, model)
     compute = partial(reduce_boom, boom, laws, options, comm, tell, lateral)
     if cache is None:
         return compute()
     content = (boom, laws, lateral, replace(options, mesh_folder=None))
     return remembered(cache, content, comm, mesh_folder, compute)
+
+
+def shell_options(model: ShellTable) -> ShellOptions:
+    """How a boom becomes the shells that a model asks for."""
+    from shell_model.boom_shell import ShellOptions
+    from shell_model.surface_contact import POINTS, SurfaceOptions
+
+    return ShellOptions(
+        mesh_size=model.mesh_size,
+        contact_line=model.contact_line,
+        surface=SurfaceOptions(model.surface_points or POINTS, model.surface_stiffness),
+        krylov=_krylov(model),
+    )
 
 
 def _krylov(model: ShellTable) -> KrylovOptions:

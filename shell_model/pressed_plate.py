@@ -144,6 +144,11 @@ class _Field(NamedTuple):
         return cls(np.kron(f, g), np.kron(df, g), np.kron(f, dg))
 
 
+def flange(edges: Edges) -> PressedPlate:
+    """Nearly the outer flange of the paper's boom, 0.3 m wide, under a pad beside its web."""
+    return PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075), edges)
+
+
 def _polynomials(places: Array, side: float, free: bool) -> tuple[Array, Array]:
     """(num_polynomials, num_places) values and slopes of Legendre's, or of differences of these
     that vanish at both ends.

@@ -141,6 +141,11 @@ def at_point(system: GapSystem, point: Point) -> GapSystem:
     return replace(system, laws=laws, load=point.load * system.load)
 
 
+def finer(shell: ShellTable, part: float) -> ShellTable:
+    """The shell with all edges this part of what they were."""
+    return shell.model_copy(update={"mesh_size": part * shell.mesh_size})
+
+
 def in_space(case: Case) -> Case:
     """The case with play and half its load sideways, too."""
     joints = tuple(joint.model_copy(update={"lateral_play": joint.play}) for joint in case.joints)
@@ -154,10 +159,7 @@ def _systems(case: Case, sizes: Sizes) -> list[GapSystem]:
     shell = model_of(case, "shell")
     assert isinstance(shell, ShellTable)
     boom = build_boom(case)
-    return [
-        gap_system(case, boom, shell.model_copy(update={"mesh_size": part * shell.mesh_size}))
-        for part in sizes.meshes
-    ]
+    return [gap_system(case, boom, finer(shell, part)) for part in sizes.meshes]
 
 
 def _move(system: GapSystem, duration: float, peaks: int) -> Moved:

@@ -3,15 +3,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from shell_model.plates import STEEL
-from shell_model.pressed_plate import Edges, PressedPlate
-
-# The outer flange of the paper's boom, nearly, under a pad beside its web.
-FLANGE = PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075), "clamped")
+from shell_model.pressed_plate import Edges, PressedPlate, flange
 
 
 @pytest.mark.parametrize(("edges", "factor"), [("simply supported", 0.0116), ("clamped", 0.0056)])
@@ -27,12 +22,12 @@ def test_a_small_patch_is_a_point(edges: Edges, factor: float) -> None:
 
 def test_polynomials_find_the_series_of_sines() -> None:
     """Reference: analytic, Navier's double series."""
-    plate = replace(FLANGE, edges="simply supported")
+    plate = flange("simply supported")
     assert plate.theory() == pytest.approx(plate.navier(), rel=1.0e-3)
 
 
 @pytest.mark.parametrize("edges", ["simply supported", "clamped"])
 def test_the_shell_gives_way_as_the_plate(edges: Edges) -> None:
     """Reference: other code, Ritz's method; four edges over the shorter side of the patch."""
-    plate = replace(FLANGE, edges=edges)
+    plate = flange(edges)
     assert plate.shell(0.0125) == pytest.approx(plate.theory(), rel=0.01)

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A corner and a pad on coarse meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.studies.contact_size import Sizes, study
+
+TINY = Sizes(
+    meshes=(8.0, 4.0, 2.0),
+    default=4.0,
+    lengths=(0.1,),
+    pads=((0.2, 0.06),),
+    plate=(0.0125,),
+    loads=(10.0,),
+)
+
+
+def test_pads_beside_the_webs_give_way_more() -> None:
+    """Reference: other code, plate theory for the wall; a flange that bends is ten times softer
+    than a corner, on any mesh, and the boom's first peak is higher for it.
+    """
+    told: list[str] = []
+    found = study(told.append, TINY)
+    corner, pad = "corner of 0.1 m", "pad of 0.2 m x 0.06 m"
+    assert told == ["plates", corner, pad]
+    local = {name: np.array(found.data[name]["local"]) for name in (corner, pad)}
+    assert local[corner].shape == (3, 2)
+    assert (np.diff(local[corner], axis=0) > 0.0).all()
+    assert (local[pad] > 10.0 * local[corner]).all()
+    (of_corner,), (of_pad,) = (found.data[name]["first_peaks"] for name in (corner, pad))
+    assert 0.35 < of_corner < 0.8 * of_pad
+    plates = [proof for proof in found.proofs if "plate" in proof.what]
+    assert len(plates) == 2
+    assert all(proof.holds for proof in plates)
