@@ -117,6 +117,20 @@ class Cache:
                 if not entry.is_dir():
                     raise
 
+    def remember(self, key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> None:
+        """Keep an entry, and room for others; a notice says so where it cannot be written."""
+        try:
+            self.keep(key, files)
+            self.make_room()
+        except OSError as error:
+            NOTICES.warning(
+                "%s: the cache cannot be written (%s), and what is computed is not kept for later "
+                "runs; give another folder in %s, or --no-cache",
+                shown(str(self.folder)),
+                error.strerror,
+                VARIABLE,
+            )
+
     def make_room(self, room: int = ROOM) -> None:
         """Drop the least recently used entries until the others take ``room`` bytes together."""
         used: list[tuple[float, int, Path]] = []

@@ -8,7 +8,6 @@ writes to, has checksums, and goes when nobody has asked for it for long.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,9 +48,7 @@ def finished(
     if found is not None:
         return found
     result = compute()
-    with suppress(OSError):
-        cache.keep(name, records.pack(result))
-        cache.make_room()
+    cache.remember(name, records.pack(result))
     return result
 
 

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 from runs import records
 from runs.cache import Cache, Files, key
 from runs.files import whole
-from runs.notices import NOTICES
-from runs.shown import shown
 from runs.versions import program
 
 if TYPE_CHECKING:
@@ -51,15 +49,8 @@ def remembered(
         return replace(found or shared, seconds={"cache": perf_counter() - start})
     reduced = compute()
     if comm.rank == 0:
-        try:
-            _keep(cache, name, mesh_folder, reduced)
-        except OSError as error:
-            NOTICES.warning(
-                "%s: the cache cannot be written (%s), and shells are reduced anew in every run; "
-                "give another folder in PROTRACTILE_CACHE, or --no-cache",
-                shown(str(cache.folder)),
-                error.strerror,
-            )
+        meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
+        cache.remember(name, records.pack(reduced) | meshes)
     return reduced
 
 
@@ -79,9 +70,3 @@ def _read(files: Files) -> tuple[ReducedShell, Files]:
 
     meshes = {name: content for name, content in files.items() if name.endswith(_MESH)}
     return records.unpack(files, ReducedShell), meshes
-
-
-def _keep(cache: Cache, name: str, mesh_folder: Path, reduced: ReducedShell) -> None:
-    meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
-    cache.keep(name, records.pack(reduced) | meshes)
-    cache.make_room()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Bits that a disk has flipped, in the cache of shells and in the points of a sweep.
+"""Bits that a disk has flipped, in the cache and in the points of a sweep.
 
 Of each file as many as of any other, so that names and checksums are hit as often as numbers. What
 comes of it must be what comes without, to the last bit, and a notice must say that an entry was
@@ -76,11 +76,11 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
 
 
 def _shell(cache: Cache) -> bytes:
-    """A shell's motion until shortly after its first contact."""
+    """A shell and its motion until shortly after its first contact, both of which are kept."""
     case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
     with TemporaryDirectory() as scratch:
-        run = run_case(short, "", MPI.COMM_SELF, Path(scratch), lambda *_: None, cache)
+        run = run_case(short, "", MPI.COMM_SELF, Path(scratch), lambda *_: None, cache, cache)
     assert run is not None
     left = run.results.trajectories, run.shells["shell"].fields
     return b"".join(bytes(data.to_netcdf(engine="scipy")) for data in left)
