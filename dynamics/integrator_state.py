@@ -66,8 +66,8 @@ def excitation_arrays(system: GapSystem, times: Array, step: float) -> Excitatio
     """Its excitations at the times of all steps and of the end, (num_steps + 1,) in s."""
     histories = [x.history for x in system.excitations]
     loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
-    kinks = np.unique(np.concatenate([np.zeros(0), *(history.kinks for history in histories)]))
-    kinks = kinks[(kinks > times[0]) & (kinks < times[-1])]
+    kinks = np.concatenate([np.zeros(0), *(history.kinks for history in histories)])
+    kinks = np.unique(kinks[(kinks > times[0]) & (kinks < times[-1])])
     after = np.searchsorted(times, kinks)
     within = times[after] != kinks
     new = after[within]
@@ -81,7 +81,7 @@ def excitation_arrays(system: GapSystem, times: Array, step: float) -> Excitatio
     if any(history.fastest for history in histories):
         ends = np.arange(1, times.size)
     else:
-        ends = np.unique([*after, *(after - within), times.size - 1, 0])[1:]
+        ends = np.unique(np.concatenate([after, after - within, [times.size - 1]]))
     straight = np.repeat(ends, np.diff(ends, prepend=0)) - np.arange(times.size - 1)
     samples = np.ascontiguousarray(samples.reshape(len(histories), knots.size).T)
     return loads, samples, spans, parts, straight, np.zeros((3, system.num_modes))
