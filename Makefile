@@ -28,7 +28,7 @@ BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence test fuzz quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence test fuzz torture quick lint matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -58,6 +58,9 @@ test: $(READY) ## all tests
 
 fuzz: $(READY) ## a thousand slips in cases, loads' files and command lines; fails if one is not told in a line
 	$(BIN)/python -m tests.fuzz
+
+torture: $(READY) ## full disks, kills, flipped bits, shared folders: what they cost, as a table
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m tests.torture
 
 quick: $(READY) ## the quick tests alone
 	$(BIN)/python -m pytest -m quick

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Every call that writes, refused once: what was there before stays, to the last byte.
+
+A disk that is full stays full; one that errs does so once. The calls are those of Python, by which
+all files of a run, a report and a sweep are written.
+"""
+
+from __future__ import annotations
+
+import builtins
+import errno
+import io
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, redirect_stderr, redirect_stdout, suppress
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from runs import case as case_file
+from runs import cli
+from runs.cache import VARIABLE
+from shell_model.rendering import RenderingUnavailable
+
+Row = tuple[str, int, int, str]
+
+_CASES = Path(case_file.__file__).parent / "cases"
+_CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
+_WRITES = set("wax+")
+
+
+class Disk:
+    """The files of a folder, on a disk that refuses one of the calls that write to it.
+
+    Args:
+        folder: whose files they are.
+        last: the number of calls that go well.
+        number: what the next one says, of ``errno``; all that follow, if the disk is full.
+    """
+
+    def __init__(self, folder: Path, last: float, number: int) -> None:
+        self.calls = 0
+        self._folder, self._last, self._number = str(folder), last, number
+
+    def check(self, path: object) -> None:
+        if isinstance(path, str | os.PathLike) and not os.path.abspath(path).startswith(
+            self._folder
+        ):
+            return
+        self.calls += 1
+        over = self.calls - self._last
+        if over == 1 or (over > 1 and self._number == errno.ENOSPC):
+            raise OSError(self._number, os.strerror(self._number))
+
+    def in_use(self) -> ExitStack:
+        """While this is open Python writes to this disk."""
+        stack = ExitStack()
+        for name in _CHANGES:
+            stack.enter_context(patch.object(os, name, self._checked(getattr(os, name))))
+        for module in (builtins, io):
+            stack.enter_context(patch.object(module, "open", self._open(open)))
+        return stack
+
+    def _checked(self, call: Callable[..., Any]) -> Callable[..., Any]:
+        def checked(path: object, *rest: Any, **options: Any) -> Any:
+            self.check(path)
+            return call(path, *rest, **options)
+
+        return checked
+
+    def _open(self, call: Callable[..., Any]) -> Callable[..., Any]:
+        def opened(path: Any, mode: str = "r", *rest: Any, **options: Any) -> Any:
+            written = bool(_WRITES & set(mode)) and not isinstance(path, int)
+            if not written or not os.path.abspath(path).startswith(self._folder):
+                return call(path, mode, *rest, **options)
+            self.check(path)
+            return _File(call(path, mode, *rest, **options), self)
+
+        return opened
+
+
+class _File:
+    """A file that asks the disk before it writes."""
+
+    def __init__(self, file: Any, disk: Disk) -> None:
+        self._file, self._disk = file, disk
+
+    def write(self, content: Any) -> Any:
+        self._disk.check(None)
+        return self._file.write(content)
+
+    def close(self) -> None:
+        if not self._file.closed:
+            self._file.close()
+            self._disk.check(None)
+
+    def __enter__(self) -> _File:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._file)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._file, name)
+
+
+def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
+    """What is left of a run, a report and a sweep; a breach is what is neither old nor new.
+
+    Args:
+        folder: an empty one to work in.
+        tries: of each, spread over all calls; no more than there are.
+    """
+    with patch.dict(os.environ, {VARIABLE: str(folder / "cache")}):
+        models = "--models", "beam-fe-tied"
+        run = "run", _case(folder, 0.02), *models, "--out", str(folder / "run" / "out")
+        other = "run", _case(folder, 0.01), *models, "--out", str(folder / "run" / "out")
+        yield from _torture("a run", folder / "run", other, run, tries)
+        yield from _torture("a report", folder / "run", other, ("report", run[-1]), tries)
+        out = "--out", str(folder / "sweep" / "out")
+        plays = "--vary", "joint.play=0.010:0.014:2"
+        other = "sweep", _case(folder, 0.01), *models, *plays, *out
+        yield from _torture(
+            "a sweep", folder / "sweep", other, ("sweep", _case(folder, 0.02), *other[2:]), tries
+        )
+
+
+def _case(folder: Path, duration: float) -> str:
+    """The coarse case for as long."""
+    path = folder / f"{duration:g}.toml"
+    text = (_CASES / "coarse.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace("duration = 0.6", f"duration = {duration:g}"), encoding="utf-8")
+    return str(path)
+
+
+def _torture(
+    name: str, place: Path, before: Sequence[str], command: Sequence[str], tries: int
+) -> Iterator[Row]:
+    """A command beside what another one has left, and what the user has put there."""
+    place.mkdir(exist_ok=True)
+    assert _run(before)[0] == 0
+    (place / "out" / "my-fields.nc").write_text("mine")
+    (place / "out" / "figures" / "my.png").write_text("mine")
+    old = _left(place)
+    disk = Disk(place, float("inf"), 0)
+    with disk.in_use():
+        assert _run(command)[0] == 0
+    new = _left(place)
+    for number in (errno.ENOSPC, errno.EIO):
+        done = breaches = 0
+        for last in range(0, disk.calls, max(1, disk.calls // tries)):
+            if _left(place) != old:
+                assert _run(before)[0] == 0
+            with Disk(place, last, number).in_use():
+                status, said = _run(command)
+            done += 1
+            whole = _left(place) == (new if status == 0 else old)
+            breaches += not whole or said != (status != 0)
+        what = f"of {disk.calls} calls: what was there, or all that is new, and one line"
+        yield f"{name}, {os.strerror(number)}", done, breaches, what
+
+
+def _run(command: Sequence[str]) -> tuple[object, int]:
+    """Exit status and number of lines on stderr."""
+
+    def refuse(*arguments: object) -> None:
+        raise RenderingUnavailable("left out")
+
+    status: object = None
+    said = io.StringIO()
+    with redirect_stdout(io.StringIO()), redirect_stderr(said), suppress(SystemExit):
+        try:
+            with patch("runs.output.render_snapshots", refuse):
+                cli.main(command)
+        except SystemExit as ended:
+            status = ended.code
+            raise
+    return status, said.getvalue().count("\n")
+
+
+def _left(place: Path) -> dict[str, bytes]:
+    """All files of a folder, by their paths in it, but for what counts the time that it took."""
+    return {
+        str(path.relative_to(place)): path.read_bytes()
+        if path.suffix in {".nc", ".csv", ".toml", ".png", ".manifest"}
+        else b""
+        for path in place.rglob("*")
+        if path.is_file() and "points" not in path.parts
+    }

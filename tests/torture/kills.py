@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Commands killed at random moments, with all their processes, and run again.
+
+What was there before stays, or all is there that is new. The next run leaves what an undisturbed
+one leaves, to the last byte, and nothing else beside it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from runs import case as case_file
+
+Row = tuple[str, int, int, str]
+
+_ROOT = Path(__file__).parents[2]
+_COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+_SEED = 60
+# In the names of all that is not whole yet.
+_IN_THE_MAKING = "protractile-"
+_COMMAND = sys.executable, "-m", "runs"
+_RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
+
+# Models and what is varied of each command.
+_BEAMS = "kantorovich-4,beam-fe-tied"
+COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
+    ("run", (*_COMMAND, "run", "case.toml", "--models", _BEAMS)),
+    (
+        "sweep",
+        (*_COMMAND, "sweep", "case.toml", "--models", _BEAMS, "--vary", "joint.play=0.01:0.014:3"),
+    ),
+    (
+        "run on two ranks",
+        (*_RANKS, "run", "case.toml", "--models", f"{_BEAMS},shell", "--mesh-size", "1"),
+    ),
+)
+
+
+def rows(
+    folder: Path, tries: int = 20, commands: Sequence[tuple[str, Sequence[str]]] = COMMANDS
+) -> Iterator[Row]:
+    """What killed commands leave; a breach is a loss, a rest or a difference.
+
+    Args:
+        folder: an empty one to work in.
+        tries: of each command.
+        commands: by their names.
+    """
+    random = np.random.default_rng(_SEED)
+    for name, command in commands:
+        place = folder / name
+        place.mkdir()
+        _write_case(place, 0.1)
+        assert _start(place, command).wait() == 0
+        (place / "out" / "my-fields.nc").write_text("mine")
+        shutil.copytree(place, folder / "old", symlinks=True)
+        old = _left(place / "out")
+        _write_case(place, 0.2)
+        begin = time.monotonic()
+        assert _start(place, command).wait() == 0
+        lasts = time.monotonic() - begin
+        new = _left(place / "out")
+        breaches = 0
+        for moment in random.uniform(0.0, lasts, tries):
+            shutil.rmtree(place)
+            shutil.copytree(folder / "old", place, symlinks=True)
+            _write_case(place, 0.2)
+            process = _start(place, command)
+            time.sleep(moment)
+            _kill(process)
+            kept = _left(place / "out") in (old, new)
+            again = _start(place, command).wait() == 0 and _left(place / "out") == new
+            rests = [path for path in place.rglob("*") if _IN_THE_MAKING in path.name]
+            breaches += not (kept and again) or bool(rests)
+        shutil.rmtree(folder / "old")
+        yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
+
+
+def _write_case(place: Path, duration: float) -> None:
+    """The coarse case for as long."""
+    text = _COARSE.read_text(encoding="utf-8")
+    text = text.replace("duration = 0.6", f"duration = {duration:g}")
+    (place / "case.toml").write_text(text, encoding="utf-8")
+
+
+def _start(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
+    """A command in a session of its own."""
+    (place / "tmp").mkdir(exist_ok=True)
+    own = {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
+    # A process that has entered MPI by itself must not pass its own rank on.
+    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_C", "PMIX_", "PMI"))}
+    return subprocess.Popen(
+        [*command, "--out", "out"],
+        cwd=place,
+        env=outside | own,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """All processes of its session, whatever group a launcher has put them in."""
+    while sessions := _of_session(process.pid):
+        for pid in sessions:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        process.poll()
+        time.sleep(0.01)
+    process.wait()
+
+
+def _of_session(session: int) -> list[int]:
+    """Its processes that are alive."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, _, its_session, *_ = path.read_text().rpartition(")")[2].split()
+            if int(its_session) == session and state != "Z":
+                found.append(int(path.parent.name))
+    return found
+
+
+def _left(out: Path) -> dict[str, bytes]:
+    """Files of a folder, but for those of a sweep's points and what tells how long it took."""
+    return {
+        str(path.relative_to(out)): path.read_bytes()
+        if path.suffix in {".nc", ".csv", ".msh", ".vtu", ".pvd", ".toml"}
+        else b""
+        for path in out.rglob("*")
+        if path.is_file()
+        and "points" not in path.relative_to(out).parts
+        and _IN_THE_MAKING not in str(path)
+    }

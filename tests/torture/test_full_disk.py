@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sample of the campaign."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.torture import full_disk
+
+
+def test_no_write_that_is_refused_costs_what_was_there(tmp_path: Path) -> None:
+    for name, _, breaches, what in full_disk.rows(tmp_path, 2):
+        assert breaches == 0, f"{name}: {what}"

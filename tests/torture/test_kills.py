@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sample of the campaign."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.torture import kills
+
+
+def test_a_killed_run_costs_nothing(tmp_path: Path) -> None:
+    for name, tries, breaches, what in kills.rows(tmp_path, 2, kills.COMMANDS[:1]):
+        assert (tries, breaches) == (2, 0), f"{name}: {what}"
