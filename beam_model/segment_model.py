@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw, PowerContact
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
@@ -28,8 +28,8 @@ Array = npt.NDArray[np.float64]
 def gap_system(
     boom: Boom,
     models: Sequence[SegmentModel],
-    laws: Sequence[PowerContact],
-    lateral_laws: Sequence[PowerContact] = (),
+    laws: Sequence[ContactLaw],
+    lateral_laws: Sequence[ContactLaw] = (),
 ) -> GapSystem:
     """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
 
@@ -41,7 +41,7 @@ def gap_system(
     """
     modes = BoomModes(boom, models)
     laws_along = {"z": laws, "y": lateral_laws}
-    contacts: list[tuple[Array, PowerContact, int]] = []
+    contacts: list[tuple[Array, ContactLaw, int]] = []
     friction_rows: list[Array] = []
     frictions: list[DryFriction] = []
     for pad in pads(boom):
@@ -81,7 +81,7 @@ def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     return gap_system(replace(boom, joints=tied), models, ())
 
 
-def _law_of(pad: Pad, law: PowerContact) -> PowerContact | None:
+def _law_of(pad: Pad, law: ContactLaw) -> ContactLaw | None:
     """A pad's part of its joint's law; None on a side where the law never touches."""
     if pad.side == 0:
         return law

@@ -1,24 +1,146 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The force between two segments that touch across a play.
 
-The law is the paper's equation (4): nothing inside the clearance, a power of the
-penetration beyond it. Its potential is kept beside it, because the energy ledger of
-every trajectory is the first check of a contact simulation.
+A contact law is a sum of one-sided powers of the penetration. What these few numbers say is said
+here once, for Python and for the compiled loops; the potential stands beside the force, because
+the energy ledger of every trajectory is the first check of a contact simulation.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 from scipy.optimize import brentq
 
 Array = npt.NDArray[np.float64]
+# (num_terms,) of TERM; (num_rows,) of LIMITS.
+Terms = npt.NDArray[np.void]
+Limits = npt.NDArray[np.void]
+
+# A term of the law of a row.
+TERM = np.dtype(
+    [
+        ("row", np.int64),
+        ("side", np.float64),
+        ("stiffness", np.float64),
+        ("onset", np.float64),
+        ("exponent", np.float64),
+    ]
+)
+# The gaps in m between which a row is open, and its damping in s/m.
+LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
+
+# A penetration in m, smaller than any that matters.
+_LEAST = 1.0e-30
+
+
+class Term(NamedTuple):
+    """F = side · k max(side · y − onset, 0)ⁿ.
+
+    Args:
+        side: 1 where a positive y presses, −1 where a negative one does.
+        stiffness: k in N/mⁿ; negative where a law becomes softer.
+        onset: in m from y = 0 on its side.
+        exponent: n, at least 1.
+    """
+
+    side: float
+    stiffness: float
+    onset: float
+    exponent: float
+
+
+class ContactLaw(ABC):
+    """What presses while a gap y = u − w is beyond its clearance; the base of every law.
+
+    A law of one's own derives from this class, is a frozen dataclass, and gives
+
+    1. ``terms``, whose sum is the elastic force: zero up to the clearance, then never attractive.
+       Those of one side rise by their onset;
+    2. ``clearance`` Δ in m, the least onset, and ``damping`` d in s/m of Hunt and Crossley (1975),
+       F (1 + d ṗ) at the rate ṗ of the penetration, never adhesive;
+    3. :meth:`one_sided`, :meth:`shared` and :meth:`widened`, which give a law of the same class;
+    4. ``str(law)``, the few words by which a table tells it from others.
+
+    Force, energy and the compiled loops follow from these.
+    """
+
+    __slots__ = ()
+
+    clearance: float
+    damping: float
+
+    @property
+    @abstractmethod
+    def terms(self) -> tuple[Term, ...]:
+        """One-sided powers whose sum is the force."""
+
+    @abstractmethod
+    def one_sided(self, side: int) -> ContactLaw | None:
+        """The law on the side of this sign alone; None where it never touches."""
+
+    @abstractmethod
+    def shared(self, weight: float) -> ContactLaw:
+        """The part ``weight`` of the law, for one of several points that carry it together."""
+
+    @abstractmethod
+    def widened(self, factor: float) -> ContactLaw:
+        """The same law behind ``factor`` times the clearance."""
+
+    def force(self, y: Array) -> Array:
+        """Elastic force in N that the outer segment feels; the inner one feels its opposite.
+
+        Args:
+            y: relative displacement u − w in m, any shape.
+        """
+        return self._sum(term_force, y)
+
+    def energy(self, y: Array) -> Array:
+        """Potential of :meth:`force` in J. Shape of ``y``."""
+        return self._sum(term_energy, y)
+
+    def slope(self, y: Array) -> Array:
+        """dF/dy in N/m. Shape of ``y``."""
+        return self._sum(term_slope, y)
+
+    def slope_where(self, measure: Callable[[ContactLaw, Array], Array], value: float) -> float:
+        """dF/dy in N/m where a measure of the law has come to a value, on its stiffer side.
+
+        Args:
+            measure: ``ContactLaw.force``, whose amount counts, or ``ContactLaw.energy``.
+            value: in N or J, not negative.
+        """
+        # The least penetration would be lost beside a clearance.
+        law = self.widened(0.0)
+        return max(law._slope_on(term.side, measure, value) for term in law.terms)
+
+    def _slope_on(
+        self, side: float, measure: Callable[[ContactLaw, Array], Array], value: float
+    ) -> float:
+        def excess(depth: float) -> float:
+            return abs(float(measure(self, np.array(side * depth)))) - value
+
+        deep = 1.0
+        while excess(deep) < 0.0:
+            deep *= 2.0
+        depth = max(brentq(excess, 0.0, deep, xtol=_LEAST, rtol=1.0e-12), _LEAST)
+        return float(self.slope(np.array(side * depth)))
+
+    def _sum(self, of_term: Callable[[np.void, float], float], y: Array) -> Array:
+        gaps = np.asarray(y, dtype=np.float64)
+        total = np.zeros(gaps.size)
+        _add_terms(of_term, contact_terms([self]), gaps.ravel(), total)
+        return total.reshape(gaps.shape)
 
 
 @dataclass(frozen=True, slots=True)
-class PowerContact:
+class PowerContact(ContactLaw):
     """Gap contact: F(y) = k₂ (y − Δ)ⁿ above Δ, −k₁ (−y − Δ)ⁿ below −Δ, zero between.
 
     Equation (4) of Rusiński and Wyciślok (1997), in the one sign convention that restores;
@@ -60,6 +182,11 @@ class PowerContact:
         """k₁ in N/mⁿ."""
         return self.stiffness if self.stiffness_below is None else self.stiffness_below
 
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        sides = (1.0, self.stiffness), (-1.0, self.below)
+        return tuple(Term(side, k, self.clearance, self.exponent) for side, k in sides if k > 0.0)
+
     def upper(self) -> PowerContact:
         """The same law on the side y > 0 alone."""
         return replace(self, stiffness_below=0.0)
@@ -69,39 +196,73 @@ class PowerContact:
         return replace(self, stiffness=0.0, stiffness_below=self.below)
 
     def one_sided(self, side: int) -> PowerContact | None:
-        """The law on the side of this sign alone; None where it never touches."""
         if (self.stiffness if side > 0 else self.below) == 0.0:
             return None
         return self.upper() if side > 0 else self.lower()
 
     def shared(self, weight: float) -> PowerContact:
-        """The part ``weight`` of the law, for one of several points that carry it together."""
         return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)
 
-    def penetration(self, y: Array) -> Array:
-        """Depth beyond the clearance in m, zero while apart. Shape of ``y``."""
-        return np.maximum(np.abs(y) - self.clearance, 0.0)
+    def widened(self, factor: float) -> PowerContact:
+        return replace(self, clearance=factor * self.clearance)
 
-    def force(self, y: Array) -> Array:
-        """Elastic force in N that the outer segment feels; the inner one feels its opposite.
+    def __str__(self) -> str:
+        return f"k {self.stiffness:g}, n {self.exponent:g}"
 
-        Args:
-            y: relative displacement u − w in m, any shape.
-        """
-        return np.sign(y) * self._side(y) * self.penetration(y) ** self.exponent
 
-    def energy(self, y: Array) -> Array:
-        """Potential of :meth:`force` in J. Shape of ``y``."""
-        n = self.exponent
-        return self._side(y) * self.penetration(y) ** (n + 1.0) / (n + 1.0)
+def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
+    """The terms of the laws of rows, by row, for the compiled loops."""
+    return np.array([(row, *term) for row, law in enumerate(laws) for term in law.terms], TERM)
 
-    def slope(self, y: Array) -> Array:
-        """Derivative of :meth:`force` in N/m, zero while apart. Shape of ``y``."""
-        depth, n = self.penetration(y), self.exponent
-        return np.where(depth > 0.0, n * self._side(y) * depth ** (n - 1.0), 0.0)
 
-    def _side(self, y: Array) -> Array:
-        return np.where(y > 0.0, self.stiffness, self.below)
+def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
+    """Where rows touch, for the compiled loops; infinite on a side where one never does."""
+
+    def onset(law: ContactLaw, side: float) -> float:
+        return min((term.onset for term in law.terms if term.side == side), default=np.inf)
+
+    return np.array([(-onset(law, -1.0), onset(law, 1.0), law.damping) for law in laws], LIMITS)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def term_force(term: np.void, y: float) -> float:
+    """Force in N of a term at the gap y in m."""
+    depth = term["side"] * y - term["onset"]
+    if depth <= 0.0:
+        return 0.0
+    n = term["exponent"]
+    power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
+    return float(term["side"] * term["stiffness"] * power)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def term_energy(term: np.void, y: float) -> float:
+    """Potential in J of a term at the gap y in m."""
+    depth = term["side"] * y - term["onset"]
+    if depth <= 0.0:
+        return 0.0
+    n = term["exponent"]
+    return float(term["stiffness"] * depth ** (n + 1.0) / (n + 1.0))
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def term_slope(term: np.void, y: float) -> float:
+    """dF/dy in N/m of a term at the gap y in m."""
+    depth = term["side"] * y - term["onset"]
+    if depth <= 0.0:
+        return 0.0
+    n = term["exponent"]
+    return float(n * term["stiffness"] * depth ** (n - 1.0))
+
+
+@njit(nogil=True, error_model="numpy")
+def _add_terms(
+    of_term: Callable[[np.void, float], float], terms: Terms, y: Array, total: Array
+) -> None:
+    """Add to ``total`` (num_gaps,) what each term of one law says of each gap."""
+    for t in range(terms.size):
+        for i in range(y.size):
+            total[i] += of_term(terms[t], y[i])
 
 
 def restitution_damping(restitution: float, speed: float) -> float:

@@ -1,71 +1,50 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact forces of all rows, and the impulses that they give within half a step.
-
-A law is a column of ``law`` (5, num_rows): k above, k below, Δ, n, d.
-"""
+"""Contact forces of all rows, and the impulses that they give within half a step."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.contact import PowerContact
+from dynamics.contact import Limits, Terms, term_energy, term_force, term_slope
 
 Array = npt.NDArray[np.float64]
 
 
-def law_columns(laws: Sequence[PowerContact]) -> Array:
-    """(5, num_rows), the layout of the compiled loop."""
-    return np.array(
-        [
-            [law.stiffness, law.below, law.clearance, law.exponent, law.damping]
-            for law in laws
-        ]
-    ).reshape(len(laws), 5).T.copy()  # fmt: skip
-
-
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
-def contact_forces(a: Array, rows: Array, law: Array, y: Array, force: Array) -> bool:
+def contact_forces(a: Array, rows: Array, terms: Terms, y: Array, force: Array) -> bool:
     """Relative displacements and elastic forces of every row; whether any row touches."""
-    touching = False
     for j in range(rows.shape[0]):
         total = 0.0
         for i in range(a.size):
             total += rows[j, i] * a[i]
         y[j] = total
-        depth = abs(total) - law[2, j]
-        if depth > 0.0:
-            n = law[3, j]
-            power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
-            force[j] = law[0, j] * power if total > 0.0 else -law[1, j] * power
-            touching = touching or force[j] != 0.0
-        else:
-            force[j] = 0.0
+        force[j] = 0.0
+    touching = False
+    for t in range(terms.size):
+        j = terms[t]["row"]
+        force[j] += term_force(terms[t], y[j])
+        touching = touching or force[j] != 0.0
     return touching
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _side(y: float, clearance: float, above: float, below: float) -> float:
-    """1 where a row presses above, -1 below, 0 where it is open."""
-    if y > clearance and above > 0.0:
-        return 1.0
-    if y < -clearance and below > 0.0:
-        return -1.0
-    return 0.0
+def contact_slopes(y: Array, terms: Terms) -> Array:
+    """(num_rows,) dF/dy of every row in N/m."""
+    stiffness = np.zeros(y.size)
+    for t in range(terms.size):
+        j = terms[t]["row"]
+        stiffness[j] += term_slope(terms[t], y[j])
+    return stiffness
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def contact_energy(y: Array, law: Array) -> float:
+def contact_energy(y: Array, terms: Terms) -> float:
     """Potential of the elastic forces in J."""
     energy = 0.0
-    for j in range(y.size):
-        depth = abs(y[j]) - law[2, j]
-        if depth > 0.0:
-            side = law[0, j] if y[j] > 0.0 else law[1, j]
-            energy += side * depth ** (law[3, j] + 1.0) / (law[3, j] + 1.0)
+    for t in range(terms.size):
+        energy += term_energy(terms[t], y[terms[t]["row"]])
     return energy
 
 
@@ -81,7 +60,13 @@ def elastic_kick(v: Array, rows: Array, force: Array, duration: float) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
 def damped_kick(
-    v: Array, rows: Array, force: Array, law: Array, duration: float, backward: bool, push: Array
+    v: Array,
+    rows: Array,
+    force: Array,
+    limits: Limits,
+    duration: float,
+    backward: bool,
+    push: Array,
 ) -> float:
     """Change the speeds by forces with contact damping; gives its loss in J.
 
@@ -107,7 +92,7 @@ def damped_kick(
             square += rows[j, i] * rows[j, i]
         elastic = duration * abs(force[j])
         # I = τ f (1 + d ṗ) with ṗ = rate − I square/2 in the middle of the kick; never adhesive.
-        strength = elastic * law[4, j]
+        strength = elastic * limits[j]["damping"]
         impulse = max(0.0, (elastic + strength * rate) / (1.0 + 0.5 * strength * square))
         loss += (impulse - elastic) * (rate - 0.5 * impulse * square)
         push[j] = side * impulse / duration
@@ -117,19 +102,28 @@ def damped_kick(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _side(y: float, limit: np.void) -> float:
+    """1 where a row presses above, -1 below, 0 where it is open."""
+    if y > limit["high"]:
+        return 1.0
+    if y < limit["low"]:
+        return -1.0
+    return 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def first_closing(
-    y: Array, before: Array, law: Array, now: float, time: float
+    y: Array, before: Array, limits: Limits, now: float, time: float
 ) -> tuple[int, float]:
     """How many rows opened or closed within ``time`` up to ``now``, and when the first closed."""
     changes = 0
     closing = np.inf
     for j in range(y.size):
-        above, below, clearance = law[0, j], law[1, j], law[2, j]
-        side = _side(y[j], clearance, above, below)
-        if side != _side(before[j], clearance, above, below):
+        side = _side(y[j], limits[j])
+        if side != _side(before[j], limits[j]):
             changes += 1
             if side != 0.0:
-                deep = side * y[j] - clearance
+                deep = y[j] - limits[j]["high"] if side > 0.0 else limits[j]["low"] - y[j]
                 since = time * deep / (side * (y[j] - before[j]))
                 closing = min(closing, now - since)
     return changes, closing

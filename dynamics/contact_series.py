@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from dynamics.contact import Terms
 from dynamics.flight import stay
 
 Array = npt.NDArray[np.float64]
@@ -47,9 +48,9 @@ class Series(NamedTuple):
     weights: Array
 
     @classmethod
-    def room(cls, num_modes: int, exponents: Array) -> Series:
-        """For rows with such whole exponents."""
-        rows, highest = exponents.size, int(max(exponents, default=1.0))
+    def room(cls, num_modes: int, rows: int, terms: Terms) -> Series:
+        """For contact rows whose laws have these terms, with whole exponents."""
+        highest = int(max(terms["exponent"], default=1.0))
         return cls(
             np.zeros((num_modes, ORDER + 1)),
             np.zeros((rows, ORDER + 1)),
@@ -62,7 +63,7 @@ class Series(NamedTuple):
 # The sums here are too short for vector instructions: to reorder them would cost time.
 @njit(cache=True, nogil=True, fastmath={"contract"})
 def expand(
-    series: Series, a: Array, v: Array, system: tuple[Array, ...], law: Array, pressed: Array
+    series: Series, a: Array, v: Array, system: tuple[Array, ...], terms: Terms, pressed: Array
 ) -> None:
     """Fill the series about the state (a, v), each (num_modes,).
 
@@ -70,7 +71,7 @@ def expand(
         series: to be filled.
         a, v: in √kg·m and √kg·m/s.
         system: ω² and load (num_modes,), rows (num_rows, num_modes).
-        law: (5, num_rows) of :func:`dynamics.contact_kicks.law_columns`; all exponents whole.
+        terms: one on each side of a row at most, all exponents whole.
         pressed: (num_rows,) 1 above, −1 below, 0 open.
     """
     omega2, load, rows = system
@@ -89,17 +90,18 @@ def expand(
         if k > 0:
             for i in range(a.size):
                 state[i, k + 2] = -omega2[i] * state[i, k]
-        for j in range(pressed.size):
-            if pressed[j] != 0.0:
-                depth = pressed[j] * gap[j, k]
-                powers[j, 0, k] = depth - law[2, j] if k == 0 else depth
+        for t in range(terms.size):
+            j, side = terms[t]["row"], terms[t]["side"]
+            if pressed[j] == side:
+                depth = side * gap[j, k]
+                powers[j, 0, k] = depth - terms[t]["onset"] if k == 0 else depth
                 power = powers[j, 0, k]
-                for r in range(1, int(law[3, j])):
+                for r in range(1, int(terms[t]["exponent"])):
                     power = 0.0
                     for i in range(k + 1):
                         power += powers[j, r - 1, i] * powers[j, 0, k - i]
                     powers[j, r, k] = power
-                force[j, k] = (law[0, j] if pressed[j] > 0.0 else -law[1, j]) * power
+                force[j, k] = side * terms[t]["stiffness"] * power
                 derivative = _FACTORIAL[k] * force[j, k]
                 for i in range(a.size):
                     state[i, k + 2] -= rows[j, i] * derivative

@@ -12,6 +12,8 @@ import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import minimize
 
+from dynamics.contact import ContactLaw, contact_terms
+from dynamics.contact_kicks import contact_energy, contact_forces, contact_slopes
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
@@ -34,14 +36,13 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     """
     if not load.any():
         return np.zeros(system.num_modes)
-    above = np.array([law.stiffness for law in system.laws])
-    below = np.array([law.below for law in system.laws])
-    clearance = np.array([law.clearance for law in system.laws])
-    n = np.array([law.exponent for law in system.laws])
+    terms = contact_terms(system.laws)
     # With each contact's spring at the force of the whole load in place, no direction is softer
     # or stiffer than another: L Lᵀ scales the unknowns.
     force = np.linalg.norm(load) * np.sqrt(system.row_masses)
-    spring = n * np.maximum(above, below) ** (1.0 / n) * force ** (1.0 - 1.0 / n)
+    spring = np.array(
+        [w.slope_where(ContactLaw.force, f) for w, f in zip(system.laws, force, strict=True)]
+    )
     try:
         factor = cholesky(
             np.diag(system.omega2) + (system.rows.T * spring) @ system.rows, lower=True
@@ -51,28 +52,22 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     scaled_load = solve_triangular(factor, load, lower=True)
     unit = float(np.linalg.norm(scaled_load))
     scaled_load /= unit
-    rows = solve_triangular(factor, system.rows.T, lower=True).T
+    rows = np.ascontiguousarray(solve_triangular(factor, system.rows.T, lower=True).T)
     half = solve_triangular(factor, np.diag(np.sqrt(system.omega2)), lower=True)
     stiffness = half @ half.T
 
-    def pressed(x: Array) -> tuple[Array, Array]:
-        """Signed penetrations, and the stiffness of the side that they are on."""
-        y = unit * rows @ x
-        return np.sign(y) * np.maximum(np.abs(y) - clearance, 0.0), np.where(y > 0.0, above, below)
+    y, forces = np.zeros((2, len(system.laws)))
 
     def energy(x: Array) -> float:
-        p, k = pressed(x)
-        contact = (k * np.abs(p) ** (n + 1.0) / (n + 1.0)).sum() / unit**2
+        contact = contact_energy(unit * rows @ x, terms) / unit**2
         return float(0.5 * x @ stiffness @ x - scaled_load @ x + contact)
 
     def unbalanced(x: Array) -> Array:
-        p, k = pressed(x)
-        forces = np.sign(p) * k * np.abs(p) ** n / unit
-        return np.asarray(stiffness @ x - scaled_load + rows.T @ forces)
+        contact_forces(unit * x, rows, terms, y, forces)
+        return np.asarray(stiffness @ x - scaled_load + rows.T @ forces / unit)
 
     def tangent(x: Array) -> Array:
-        p, k = pressed(x)
-        slopes = np.where(p != 0.0, n * k * np.abs(p) ** (n - 1.0), 0.0)
+        slopes = contact_slopes(unit * rows @ x, terms)
         return np.asarray(stiffness + (rows.T * slopes) @ rows)
 
     found = minimize(

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.contact_kicks import law_columns
+from dynamics.contact import Terms, contact_limits, contact_terms, term_force
 from dynamics.contact_series import Series, evaluate, exit_time, expand, farthest, impulse, reach
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
@@ -79,7 +79,7 @@ def _fly(
 @njit(nogil=True, inline="always")
 def _press(
     series: Series,
-    law: Array,
+    terms: Terms,
     pressed: Array,
     time: float,
     output_step: float,
@@ -94,12 +94,11 @@ def _press(
     while place[0] < states.shape[0]:
         interval = int(place[0])
         end = min(begin + place[1], time)
-        for j in range(pressed.size):
-            if pressed[j] != 0.0:
+        for t in range(terms.size):
+            j, side = terms[t]["row"], terms[t]["side"]
+            if pressed[j] == side:
                 impulses[interval, j] += impulse(series.force[j], begin, end)
-                depth = farthest(series.gap[j], pressed[j], begin, end) - law[2, j]
-                k = law[0, j] if pressed[j] > 0.0 else -law[1, j]
-                force = k * max(depth, 0.0) ** law[3, j]
+                force = term_force(terms[t], side * farthest(series.gap[j], side, begin, end))
                 if abs(force) > abs(peaks[interval, j]):
                     peaks[interval, j] = force
         evaluate(series, end, a, v)
@@ -118,7 +117,7 @@ def _march(
     a: Array,
     v: Array,
     system: tuple[Array, ...],
-    law: Array,
+    terms: Terms,
     touch: tuple[Array, ...],
     pressed: Array,
     output_step: float,
@@ -129,7 +128,7 @@ def _march(
 ) -> bool:
     """Advance through all output intervals; False if contacts follow without end.
 
-    ``system`` = (ω, load, rows); ``law`` (5, num_rows) of :func:`law_columns`; ``touch`` = (low,
+    ``system`` = (ω, load, rows); ``terms`` of the rows' laws; ``touch`` = (low,
     high, shut): the gaps at which each row touches, and what counts as there; ``pressed``
     (num_rows,) 1 above, −1 below, 0 open. ``out`` = (states, velocities, impulses, peaks), one row
     an interval. ``tally`` = first contact, steps, contact changes.
@@ -153,14 +152,14 @@ def _march(
     while place[0] < intervals:
         leaving = 0
         if touching > 0:
-            expand(series, a, v, (squares, load, rows), law, pressed)
+            expand(series, a, v, (squares, load, rows), terms, pressed)
             time = min(reach(series.state, squares, highest, tolerance), intervals * output_step)
             for j in range(shut.size):
                 free, side = exit_time(series.gap[j], low[j], high[j], shut[j], time)
                 if side != 0 or free < time:
                     time, leaving = free, side * (j + 1)
             time = max(time, _SHORTEST * output_step)
-            _press(series, law, pressed, time, output_step, out, place, a, v)
+            _press(series, terms, pressed, time, output_step, out, place, a, v)
             tally[1] += 1.0
         else:
             time, leaving = safe_time(a, v, rows, pull, low, high, shut)
@@ -201,9 +200,11 @@ def what_hinders(system: GapSystem) -> str | None:
         return "dry friction leaves no closed form from contact to contact"
     if any(law.damping > 0.0 for law in system.laws):
         return "contact damping is not analytic where a press ends"
-    broken = [law.exponent for law in system.laws if law.exponent % 1.0 != 0.0]
+    broken = [t.exponent for law in system.laws for t in law.terms if t.exponent % 1.0 != 0.0]
     if broken:
         return f"a force of the exponent {broken[0]:g} is not analytic where a press begins"
+    if any(len({t.side for t in law.terms}) < len(law.terms) for law in system.laws):
+        return "a force of several terms is not analytic where one begins"
     return None
 
 
@@ -247,7 +248,8 @@ def integrate_events(
     a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
     v = np.zeros(n) if velocity is None else np.array(velocity, dtype=np.float64)
     outputs = max(1, round(duration / output_step))
-    law = law_columns(system.laws)
+    terms, limits = contact_terms(system.laws), contact_limits(system.laws)
+    clearance = np.array([law.clearance for law in system.laws])
     states, velocities = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, n))
     impulses, peaks = np.zeros((outputs + 1, m)), np.zeros((outputs + 1, m))
     states[0], velocities[0] = a, v
@@ -256,17 +258,17 @@ def integrate_events(
         np.ascontiguousarray(array) for array in (np.sqrt(system.omega2), system.load, system.rows)
     )
     touch = (
-        np.where(law[1] > 0.0, -law[2], -np.inf),
-        np.where(law[0] > 0.0, law[2], np.inf),
-        _SHUT * np.where(law[2] > 0.0, law[2], _way(system, a, v, output_step)),
+        limits["low"].copy(),
+        limits["high"].copy(),
+        _SHUT * np.where(clearance > 0.0, clearance, _way(system, a, v, output_step)),
     )
     gaps = system.rows @ a
     peaks[0] = [w.force(gap) for w, gap in zip(system.laws, gaps, strict=True)]
     impulses[0] = output_step * peaks[0]
     pressed = 1.0 * (gaps > touch[1]) - (gaps < touch[0])
     tally = np.array([0.0 if pressed.any() else np.nan, 0.0, 0.0])
-    series = Series.room(n, law[3])
-    if not _march(a, v, arrays, law, touch, pressed, output_step, tolerance, series, out, tally):
+    series = Series.room(n, m, terms)
+    if not _march(a, v, arrays, terms, touch, pressed, output_step, tolerance, series, out, tally):
         raise NumericsError(
             f"more than {_ENDLESS} contacts follow within {output_step:g} s; make the contact "
             "softer"

@@ -20,6 +20,7 @@ import numpy.typing as npt
 from numba import njit
 
 from dynamics.bounded_impulses import FREE, HIGH, IMPULSE, LOW, NOISE, bounded_impulses, slip
+from dynamics.contact import Limits, Terms
 from dynamics.contact_kicks import contact_forces
 from dynamics.integrator_state import BOUND, HELD, MIDDLE, PLACE, REST, SLIDING, SPEED
 
@@ -68,7 +69,8 @@ def add_pressed_bounds(
     ahead: Array,
     v: Array,
     contact_rows: Array,
-    law: Array,
+    terms: Terms,
+    limits: Limits,
     push: Array,
     pressing: Array,
     given: Array,
@@ -85,13 +87,14 @@ def add_pressed_bounds(
         push: (num_rows,) contact forces at its start in N.
         y, force: (num_rows,) scratch.
     """
-    contact_forces(ahead, contact_rows, law, y, force)
+    contact_forces(ahead, contact_rows, terms, y, force)
     for k in range(force.size):
-        if law[4, k] > 0.0 and force[k] != 0.0:
+        damping = limits[k]["damping"]
+        if damping > 0.0 and force[k] != 0.0:
             rate = 0.0
             for i in range(v.size):
                 rate += contact_rows[k, i] * v[i]
-            force[k] *= max(0.0, 1.0 + law[4, k] * np.sign(force[k]) * rate)
+            force[k] *= max(0.0, 1.0 + damping * np.sign(force[k]) * rate)
         impulse = 0.5 * time * (abs(push[k]) + abs(force[k]))
         for j in range(given.shape[1]):
             grip[BOUND, j] += given[0, j] * pressing[j, k] * impulse

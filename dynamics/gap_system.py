@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
 
@@ -59,7 +59,7 @@ class GapSystem:
     omega2: Array
     load: Array
     rows: Array
-    laws: Sequence[PowerContact]
+    laws: Sequence[ContactLaw]
     station_of_row: npt.NDArray[np.int64]
     stations: Sequence[float]
     observers: Mapping[str, Observer]

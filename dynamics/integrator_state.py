@@ -7,13 +7,14 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.contact_kicks import contact_forces, first_closing, law_columns
+from dynamics.contact import Limits, Terms, contact_limits, contact_terms
+from dynamics.contact_kicks import contact_forces, first_closing
 from dynamics.gap_system import GapSystem
 
 Array = npt.NDArray[np.float64]
 
-# omega2, load (num_modes,), contact rows (num_rows, num_modes), laws (5, num_rows).
-System = tuple[Array, Array, Array, Array]
+# omega2, load (num_modes,), contact rows (num_rows, num_modes), terms and limits of their laws.
+System = tuple[Array, Array, Array, Terms, Limits]
 
 # Friction rows (num_frictions, num_modes), their μ and prescribed N (2, num_frictions), 1 where a
 # contact row presses (num_frictions, num_rows), D Dᵀ.
@@ -48,7 +49,7 @@ def system_arrays(system: GapSystem) -> System:
     omega2, load, rows = (
         np.ascontiguousarray(array) for array in (system.omega2, system.load, system.rows)
     )
-    return omega2, load, rows, law_columns(system.laws)
+    return omega2, load, rows, contact_terms(system.laws), contact_limits(system.laws)
 
 
 def friction_arrays(system: GapSystem) -> Dry:
@@ -96,7 +97,7 @@ def initial_state(system: GapSystem, position: Array, velocity: Array) -> State:
     before = np.split(kept, sizes[1:-1])[2]
     a[:], v[:] = position, velocity
     touching = contact_forces(
-        a, np.ascontiguousarray(system.rows), law_columns(system.laws), y, force
+        a, np.ascontiguousarray(system.rows), contact_terms(system.laws), y, force
     )
     tally[FIRST_CONTACT] = 0.0 if touching else np.nan
     grip = grip.reshape(_GRIP, f)
@@ -123,11 +124,11 @@ def look(a: Array, v: Array, rows: Array, grip: Array) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def enter(y: Array, before: Array, law: Array, time: float, tally: Array) -> None:
+def enter(y: Array, before: Array, limits: Limits, time: float, tally: Array) -> None:
     """Enter a step of ``time`` that has been made: contact changes, the first contact."""
     tally[TIME] += time
     tally[STEPS] += 1.0
-    changes, closing = first_closing(y, before, law, tally[TIME], time)
+    changes, closing = first_closing(y, before, limits, tally[TIME], time)
     tally[CHANGES] += changes
     if np.isnan(tally[FIRST_CONTACT]) and closing < np.inf:
         tally[FIRST_CONTACT] = closing

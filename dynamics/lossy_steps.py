@@ -86,7 +86,7 @@ def lossy_steps(
     """
     # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
-    omega2, load, rows, law = system
+    omega2, load, rows, terms, limits = system
     rates, directions, dashpot_rates = damping
     friction_rows, given, pressing, masses = dry
     loads, _, spans, parts, _, pushes = excitations
@@ -124,7 +124,7 @@ def lossy_steps(
                     excite(excitations, p, p + 1, 1.0 - left / span, 1.0 - (left - time) / span)
                 share = 0.5 * time / (substeps * step)
 
-                loss = damped_kick(v, rows, force, law, 0.5 * time, False, push)
+                loss = damped_kick(v, rows, force, limits, 0.5 * time, False, push)
                 for j in range(y.size):
                     mean[j] += share * push[j]
                 if excited:
@@ -141,8 +141,9 @@ def lossy_steps(
                 prescribed_bounds(given, time, grip)
                 if pressed:
                     add_pressed_bounds(
-                        ahead, v, rows, law, push, pressing, given, time, y_ahead, force_ahead, grip
-                    )
+                        ahead, v, rows, terms, limits, push, pressing, given, time, y_ahead,
+                        force_ahead, grip,
+                    )  # fmt: skip
                 read(friction_rows, ahead, slips)
                 round_off(masses, ahead, noise)
                 for j in range(friction.size):
@@ -154,8 +155,8 @@ def lossy_steps(
                     travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
                 else:
                     move(a, v, half)
-                contact_forces(a, rows, law, y, force)
-                loss += damped_kick(v, rows, force, law, 0.5 * time, True, push)
+                contact_forces(a, rows, terms, y, force)
+                loss += damped_kick(v, rows, force, limits, 0.5 * time, True, push)
                 tally[CONTACT] += loss
                 for j in range(y.size):
                     mean[j] += share * push[j]
@@ -168,7 +169,7 @@ def lossy_steps(
                 for j in range(friction.size):
                     friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
                 changed = note_directions(masses, grip, problem, slid)
-                enter(y, before, law, time, tally)
+                enter(y, before, limits, time, tally)
 
                 if cut or not changed or cuts > 2 * friction.size:
                     break

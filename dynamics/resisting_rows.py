@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from dynamics.contact import PowerContact
-from dynamics.contact_kicks import contact_energy, law_columns
+from dynamics.contact import ContactLaw, Terms, contact_terms
+from dynamics.contact_kicks import contact_energy
 from dynamics.failure import StepTooLong
 from dynamics.friction import DryFriction
 
@@ -45,12 +45,12 @@ class ResistingRows:
 
     def __init__(
         self,
-        laws: Sequence[PowerContact],
+        laws: Sequence[ContactLaw],
         frictions: Sequence[DryFriction],
         compliance: Array,
         onward: float,
     ) -> None:
-        self._law = law_columns(laws)
+        self._terms, self._contacts = contact_terms(laws), len(laws)
         self._bound = np.array([one.coefficient * one.normal_force for one in frictions])
         self._compliance, self._onward = compliance, onward
         self._place, self._forces = np.zeros(len(frictions)), np.zeros(len(compliance))
@@ -66,8 +66,8 @@ class ResistingRows:
         Raises:
             StepTooLong: they are not found.
         """
-        forces, friction = self._forces, slice(self._law.shape[1], None)
-        problem = self._compliance, free, self._law, self._bound, self._place
+        forces, friction = self._forces, slice(self._contacts, None)
+        problem = self._compliance, free, self._terms, self._bound, self._place
         if not (np.isfinite(free).all() and resist(*problem, forces)):
             raise StepTooLong("the forces of contact and friction are not found; halve the step")
         way = self._onward * (free - self._compliance @ forces - self.readings)
@@ -80,19 +80,19 @@ class ResistingRows:
     @property
     def contact_energy(self) -> float:
         """In J."""
-        return float(contact_energy(self.readings[: self._law.shape[1]], self._law))
+        return float(contact_energy(self.readings[: self._contacts], self._terms))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def resist(
-    compliance: Array, free: Array, law: Array, bound: Array, place: Array, force: Array
+    compliance: Array, free: Array, terms: Terms, bound: Array, place: Array, force: Array
 ) -> bool:
     """Improve ``force`` (num_rows,) until it solves the problem; False if it does not.
 
     Args:
         compliance: (num_rows, num_rows) C in m/N, the contact rows first.
         free: (num_rows,) what the rows read without forces, in m.
-        law: (5, num_contacts) of :func:`dynamics.contact_kicks.law_columns`.
+        terms: of the contact rows' laws, one on each side of a row at most.
         bound: (num_frictions,) μN in N.
         place: (num_frictions,) readings in m at which the friction rows stay if they are held.
         force: (num_rows,) a guess in N, positive against a positive reading.
@@ -102,21 +102,21 @@ def resist(
     for _ in range(_ROUNDS):
         settled = True
         for j in range(n):
-            answer, slope[j] = _answer(compliance, free, law, bound, place, force, j)
+            answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
             left[j] = answer - force[j]
             settled = settled and _excess(compliance, free, force, left[j], j) <= 1.0
             # The sweep goes on with what it has found.
             force[j] = answer
         if settled:
             return True
-        before = _defect(compliance, free, law, bound, place, force, left, slope)
+        before = _defect(compliance, free, terms, bound, place, force, left, slope)
         matrix = np.eye(n)
         for j in range(n):
             for k in range(n):
                 if k != j:
                     matrix[j, k] = slope[j] * compliance[j, k]
         trial = force + np.linalg.lstsq(matrix, left)[0]
-        if _defect(compliance, free, law, bound, place, trial, left, slope) < before:
+        if _defect(compliance, free, terms, bound, place, trial, left, slope) < before:
             force[:] = trial
     return False
 
@@ -125,7 +125,7 @@ def resist(
 def _defect(
     compliance: Array,
     free: Array,
-    law: Array,
+    terms: Terms,
     bound: Array,
     place: Array,
     force: Array,
@@ -135,7 +135,7 @@ def _defect(
     """Largest way in m by which a row misses its answer to the others; the answers' slopes."""
     worst = 0.0
     for j in range(free.size):
-        answer, slope[j] = _answer(compliance, free, law, bound, place, force, j)
+        answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
         left[j] = answer - force[j]
         worst = max(worst, abs(left[j]) * compliance[j, j])
     return worst
@@ -152,27 +152,36 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _answer(
-    compliance: Array, free: Array, law: Array, bound: Array, place: Array, force: Array, j: int
+    compliance: Array,
+    free: Array,
+    terms: Terms,
+    bound: Array,
+    place: Array,
+    force: Array,
+    j: int,
 ) -> tuple[float, float]:
     """The force of row j under those of the others, and its slope over what it would read."""
     alone = free[j]
-    for k in range(free.size):
-        if k != j:
-            alone -= compliance[j, k] * force[k]
+    for i in range(free.size):
+        if i != j:
+            alone -= compliance[j, i] * force[i]
     own = compliance[j, j]
-    contacts = law.shape[1]
+    contacts = free.size - bound.size
     if j >= contacts:
         held = (alone - place[j - contacts]) / own
         most = bound[j - contacts]
         if abs(held) < most:
             return held, 1.0 / own
         return np.sign(held) * most, 0.0
-    k = law[0, j] if alone > 0.0 else law[1, j]
-    depth = abs(alone) - law[2, j]
-    if depth <= 0.0 or k == 0.0:
+    touching = False
+    for t in range(terms.size):
+        if terms[t]["row"] == j and terms[t]["side"] * alone > terms[t]["onset"]:
+            k, n = terms[t]["stiffness"], terms[t]["exponent"]
+            depth = abs(alone) - terms[t]["onset"]
+            touching = True
+    if not touching:
         return 0.0, 0.0
     # e + own k eⁿ = depth: convex, so that Newton's method comes down to the root from above.
-    n = law[3, j]
     e = depth if n > 1.0 else depth / (1.0 + own * k)
     for _ in range(_MOST_NEWTON if n > 1.0 else 0):
         before = e

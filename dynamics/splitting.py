@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from dynamics.contact import Limits
 from dynamics.contact_kicks import contact_energy, contact_forces, elastic_kick
 from dynamics.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
@@ -89,7 +90,7 @@ def _closing_bounds(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _stride(y: Array, law: Array, bounds: Array, step: float, left: int, count: int) -> int:
+def _stride(y: Array, limits: Limits, bounds: Array, step: float, left: int, count: int) -> int:
     """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within.
 
     One of the first ``count``.
@@ -97,10 +98,9 @@ def _stride(y: Array, law: Array, bounds: Array, step: float, left: int, count: 
     free = float(left)
     for j in range(y.size):
         reach = bounds[j] * step
-        if reach > 0.0 and law[0, j] > 0.0:
-            free = min(free, (law[2, j] - y[j]) / reach)
-        if reach > 0.0 and law[1, j] > 0.0:
-            free = min(free, (law[2, j] + y[j]) / reach)
+        if reach > 0.0:
+            free = min(free, (limits[j]["high"] - y[j]) / reach)
+            free = min(free, (y[j] - limits[j]["low"]) / reach)
     stride = 0
     while stride + 1 < count and STRIDES[stride + 1] <= free:
         stride += 1
@@ -127,7 +127,7 @@ def _march(
     the rates of damping.
     """
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
-    omega2, load, rows, law = system
+    omega2, load, rows, terms, limits = system
     rates, directions, dashpot_rates = damping
     friction_rows, given, _, _ = dry
     loads, _, spans, parts, straight, pushes = excitations
@@ -145,7 +145,7 @@ def _march(
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
     single = (given[0] * given[1]).any() or straight.max() < STRIDES[1]
-    lossy = friction.size > 0 or law[4].any()
+    lossy = friction.size > 0 or limits["damping"].any()
     touching = force.any()
     for interval in range(states.shape[0]):
         start = a.copy()
@@ -163,7 +163,7 @@ def _march(
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
                     _closing_bounds(a, v, omega2, load, now, then, rows, substeps * step, bounds)
-                stride = _stride(y, law, bounds, step, until - done, len(flows))
+                stride = _stride(y, limits, bounds, step, until - done, len(flows))
             flying = not (touching or lossy) and done + STRIDES[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(
@@ -197,9 +197,9 @@ def _march(
                 travel(a, v, flow, time, omega2, load, within, now, then, tally)
             else:
                 move(a, v, flow)
-            touching = contact_forces(a, rows, law, y, force)
+            touching = contact_forces(a, rows, terms, y, force)
             done += STRIDES[stride]
-            enter(y, before, law, time, tally)
+            enter(y, before, limits, time, tally)
             if touching:
                 elastic_kick(v, rows, force, 0.5 * step)
                 for j in range(y.size):
@@ -219,7 +219,7 @@ def _march(
         peaks[interval] = peak
         frictions[interval] = friction
         energies[interval, 0], energies[interval, 1] = modal_energy(a, v, omega2)
-        energies[interval, 2] = contact_energy(y, law)
+        energies[interval, 2] = contact_energy(y, terms)
         energies[interval, 3:] = tally[WORK:]
 
 

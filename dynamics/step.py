@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 
 Array = npt.NDArray[np.float64]
@@ -64,10 +65,11 @@ def contact_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Arra
     """
     mass = system.row_masses
     speed = 2.0 * closing_speeds(system, initial)
-    k = np.array([max(law.stiffness, law.below) for law in system.laws])
-    n = np.array([law.exponent for law in system.laws])
-    depth = ((n + 1.0) * mass * speed**2 / (2.0 * k)) ** (1.0 / (n + 1.0))
-    return np.asarray(np.sqrt(n * k * depth ** (n - 1.0) / mass))
+    energies = 0.5 * mass * speed**2
+    stiffness = [
+        w.slope_where(ContactLaw.energy, e) for w, e in zip(system.laws, energies, strict=True)
+    ]
+    return np.asarray(np.sqrt(np.array(stiffness) / mass))
 
 
 def sliding_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.contact import PowerContact, restitution_damping
+from dynamics.contact import ContactLaw, PowerContact, restitution_damping
 from geometry.boom import (
     Boom,
     BoomError,
@@ -50,7 +50,7 @@ def build_boom(case: Case) -> Boom:
     return Boom(segments, joints, actions.loads(case, segments), actions.stops(case, segments))
 
 
-def contact_laws(case: Case, model: Model) -> list[PowerContact]:
+def contact_laws(case: Case, model: Model) -> list[ContactLaw]:
     """The contact law of each joint along z, as a model sees it."""
     return [
         _law(law, 0.5 * joint.play, law.stiffness, law.stiffness_below, law.exponent)
@@ -58,7 +58,7 @@ def contact_laws(case: Case, model: Model) -> list[PowerContact]:
     ]
 
 
-def lateral_laws(case: Case, model: Model) -> list[PowerContact]:
+def lateral_laws(case: Case, model: Model) -> list[ContactLaw]:
     """The same along y; none for a flat boom."""
     laws = []
     for joint in case.joints:
@@ -76,7 +76,7 @@ def _law(
     stiffness: float,
     below: float | None,
     exponent: float,
-) -> PowerContact:
+) -> ContactLaw:
     blow = table.restitution
     damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
     return PowerContact(stiffness, exponent, clearance, below, damping)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from numba import njit
 from scipy.integrate import odeint, solve_ivp
 
+from dynamics.contact import contact_terms, term_force
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
 
@@ -33,9 +34,7 @@ ABSOLUTE = 1.0e-3
 def compiled_rates(system: GapSystem) -> Rates:
     """t, (a, ȧ) → (ȧ, ä) of an undamped system, compiled with its data as constants."""
     omega2, load, rows = system.omega2.copy(), system.load.copy(), system.rows.copy()
-    stiffness = np.array([[law.below, law.stiffness] for law in system.laws])
-    clearance = np.array([law.clearance for law in system.laws])
-    exponent = np.array([law.exponent for law in system.laws])
+    terms = contact_terms(system.laws)
     n = system.num_modes
 
     @njit
@@ -44,15 +43,13 @@ def compiled_rates(system: GapSystem) -> Rates:
         for i in range(n):
             out[i] = state[n + i]
             out[n + i] = load[i] - omega2[i] * state[i]
-        for j in range(clearance.size):
+        for t in range(terms.size):
+            j = terms[t]["row"]
             y = 0.0
             for i in range(n):
                 y += rows[j, i] * state[i]
-            depth = abs(y) - clearance[j]
-            if depth > 0.0:
-                side = 1 if y > 0.0 else 0
-                power = depth * depth if exponent[j] == 2.0 else depth ** exponent[j]
-                force = (2 * side - 1) * stiffness[j, side] * power
+            force = term_force(terms[t], y)
+            if force != 0.0:
                 for i in range(n):
                     out[n + i] -= rows[j, i] * force
         return out
@@ -65,16 +62,15 @@ def compiled_rates(system: GapSystem) -> Rates:
 def array_rates(system: GapSystem) -> Rates:
     """The same as :func:`compiled_rates` in NumPy, as one writes it for a generic solver."""
     n = system.num_modes
-    above = np.array([law.stiffness for law in system.laws])
-    below = np.array([law.below for law in system.laws])
-    clearance = np.array([law.clearance for law in system.laws])
-    exponent = np.array([law.exponent for law in system.laws])
+    terms = contact_terms(system.laws)
+    side, stiffness, onset, exponent = (
+        terms[name] for name in ("side", "stiffness", "onset", "exponent")
+    )
+    pressed = side[:, None] * system.rows[terms["row"]]
 
     def rates(t: float, state: Array) -> Array:
-        y = system.rows @ state[:n]
-        side = np.where(y > 0.0, above, -below)
-        force = side * np.maximum(np.abs(y) - clearance, 0.0) ** exponent
-        acceleration = system.load - system.omega2 * state[:n] - force @ system.rows
+        force = stiffness * np.maximum(pressed @ state[:n] - onset, 0.0) ** exponent
+        acceleration = system.load - system.omega2 * state[:n] - force @ pressed
         return np.concatenate([state[n:], acceleration])
 
     return rates

@@ -113,7 +113,7 @@ def _models(case: Case) -> Table:
     table = Table("model", "kind", "", "contact (k in N/mⁿ)")
     for model in case.models:
         tied = isinstance(model, FiniteElementTable) and model.tied
-        laws = {f"k {law.stiffness:g}, n {law.exponent:g}" for law in contact_laws(case, model)}
+        laws = {str(law) for law in contact_laws(case, model)}
         contact = "tied" if tied else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, _resolution(model), contact)
     return table

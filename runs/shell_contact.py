@@ -59,7 +59,7 @@ def _check_surface(where: str, case: Case, model: ShellTable) -> None:
                 "a reduced model can bear; give fewer",
             )
     laws = contact_laws(case, model) + lateral_laws(case, model)
-    exponents = sorted({law.exponent for law in laws})
+    exponents = sorted({term.exponent for law in laws for term in law.terms})
     if model.surface_stiffness is not None and len(exponents) > 1:
         raise BoomError(
             f"{where}.surface_stiffness",

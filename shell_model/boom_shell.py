@@ -14,7 +14,7 @@ import numpy.typing as npt
 import xarray as xr
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
 from geometry.boom import Boom, BoomError, Direction, Load
@@ -96,11 +96,11 @@ class ReducedShell:
 
 def reduce_boom(
     boom: Boom,
-    laws: Sequence[PowerContact],
+    laws: Sequence[ContactLaw],
     options: ShellOptions,
     comm: MPI.Comm,
     progress: Callable[[str, float], None] | None = None,
-    lateral_laws: Sequence[PowerContact] = (),
+    lateral_laws: Sequence[ContactLaw] = (),
 ) -> ReducedShell:
     """Mesh, assemble and reduce every segment. Collective.
 

@@ -22,7 +22,7 @@ import numpy.typing as npt
 import scipy.sparse
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
 from dynamics.resisting_rows import ResistingRows
 from geometry.boom import Boom, BoomError
@@ -96,7 +96,7 @@ class DirectMotion:
 
 
 def assemble_boom(
-    boom: Boom, laws: Sequence[PowerContact], options: ShellOptions, comm: MPI.Comm
+    boom: Boom, laws: Sequence[ContactLaw], options: ShellOptions, comm: MPI.Comm
 ) -> FullShell:
     """The shells of a flat boom with what acts on them, not reduced. Collective.
 

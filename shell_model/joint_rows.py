@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw, PowerContact
 from dynamics.friction import DryFriction
 from geometry.boom import Boom, BoomError, Direction
 from geometry.pads import Pad, Stretch, pads, patch
@@ -37,7 +37,7 @@ class Contact(NamedTuple):
     """One contact row: the approach it reads, the law it follows, its station."""
 
     reading: Reading
-    law: PowerContact
+    law: ContactLaw
     station: int
 
 
@@ -51,7 +51,7 @@ class Friction(NamedTuple):
 def contacts_and_frictions(
     boom: Boom,
     shells: Sequence[SegmentShell],
-    laws: Mapping[Direction, Sequence[PowerContact]],
+    laws: Mapping[Direction, Sequence[ContactLaw]],
     line: ContactLine,
     surface: SurfaceOptions,
 ) -> tuple[list[Contact], list[Friction]]:

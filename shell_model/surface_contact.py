@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw
 from geometry.boom import Boom, Direction, Joint
 from shell_model.outline import Reading, combine_readings, relative
 from shell_model.products import exact_product
@@ -67,7 +67,7 @@ class SurfacePoint(NamedTuple):
     """
 
     reading: Reading
-    law: PowerContact
+    law: ContactLaw
     station: int
     side: int
     half: int
@@ -76,7 +76,7 @@ class SurfacePoint(NamedTuple):
 def surface_points(
     boom: Boom,
     shells: Sequence[SegmentShell],
-    laws: Mapping[Direction, Sequence[PowerContact]],
+    laws: Mapping[Direction, Sequence[ContactLaw]],
     options: SurfaceOptions,
 ) -> list[SurfacePoint]:
     """All points of all joints that are not tied. Collective.
@@ -142,14 +142,14 @@ class _Patch:
             area=width * (end - start),
         )
 
-    def share(self, law: PowerContact, stiffness: float | None) -> float:
+    def share(self, law: ContactLaw, stiffness: float | None) -> float:
         """The penalty of the whole wall over the joint's stiffness at one station."""
         if stiffness is None:
             return float(len(self.joint.stations))
-        return stiffness * self.area / max(law.stiffness, law.below)
+        return stiffness * self.area / max(term.stiffness for term in law.terms)
 
     def points(
-        self, walls: Sequence[WallPoints], law: PowerContact, first: int, spatial: bool
+        self, walls: Sequence[WallPoints], law: ContactLaw, first: int, spatial: bool
     ) -> list[SurfacePoint]:
         """Those of the wall, under its law. ``first`` is the joint's first station."""
         right, left = (self._approaches(walls, half) for half in (1, -1))

@@ -76,7 +76,9 @@ def _middle(x: float, covered: Patch | None) -> float:
 
 def upper_rows(system: GapSystem) -> Array:
     """(num_stations, num_modes) the mean approach above each station, by the points' shares."""
-    above = np.array([law.stiffness for law in system.laws])
+    above = np.array(
+        [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
+    )
     at = np.equal.outer(np.arange(len(system.stations)), system.station_of_row) * above
     return np.asarray(at @ system.rows / at.sum(axis=1, keepdims=True))
 

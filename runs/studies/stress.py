@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
+from dynamics.contact import ContactLaw
 from geometry.boom import Boom
 from geometry.mesh import WALLS, mesh_segment, plate_thickness
 from runs.build import build_boom, contact_laws
@@ -95,7 +95,7 @@ class Pressed:
         return cls(boom, ShellStress.still(mesh, plate_thickness(segment, mesh), modes))
 
     @classmethod
-    def reduced(cls, boom: Boom, laws: Sequence[PowerContact], size: float) -> Pressed:
+    def reduced(cls, boom: Boom, laws: Sequence[ContactLaw], size: float) -> Pressed:
         """The same state from the coordinates that a run moves in.
 
         Args:
@@ -110,7 +110,7 @@ class Pressed:
         force = system.load.copy()
         for row, law, station in zip(system.rows, system.laws, system.station_of_row, strict=True):
             side, strength = needed[system.stations[station]]
-            if side == (1 if law.below == 0.0 else -1):
+            if side == law.terms[0].side:
                 force -= side * strength * row
         elastic = system.omega2 > 0.0
         state = np.divide(force, system.omega2, out=np.zeros_like(force), where=elastic)

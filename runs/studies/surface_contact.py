@@ -182,6 +182,11 @@ def _apart(tips: Mapping[str, Array], reference: str) -> float:
     return float(np.abs(one - other).max() / np.ptp(tips[reference]))
 
 
+def _upper_stiffness(system: GapSystem) -> float:
+    """Of all rows together where the inner segment presses up, in N/mⁿ."""
+    return sum(term.stiffness for law in system.laws for term in law.terms if term.side > 0.0)
+
+
 def _density(case: Case, sizes: Sizes, system: GapSystem) -> float:
     """The default penalty per area in N/mⁿ⁺²."""
     boom = build_boom(case)
@@ -189,7 +194,7 @@ def _density(case: Case, sizes: Sizes, system: GapSystem) -> float:
     section = boom.segments[joint.inner].section
     assert section is not None
     start, end = boom.overlap(joint)
-    return sum(law.stiffness for law in system.laws) / (section.width * (end - start))
+    return _upper_stiffness(system) / (section.width * (end - start))
 
 
 def _contact_table(
@@ -294,7 +299,7 @@ def _proofs(case: Case, system: GapSystem) -> list[Proof]:
     (joint,) = build_boom(case).joints
     start, end = build_boom(case).overlap(joint)
     law = system.laws[0]
-    whole = sum(law.stiffness for law in system.laws)
+    whole = _upper_stiffness(system)
     contact = model_of(case, "shell").contact
     assert contact is not None
     n, k = contact.exponent, contact.stiffness * len(joint.stations)
@@ -340,7 +345,7 @@ def _proofs(case: Case, system: GapSystem) -> list[Proof]:
         ),
         Proof(
             "contact rows of a surface without weight",
-            float(sum(max(w.stiffness, w.below) <= 1.0e-9 * whole for w in system.laws)),
+            float(sum(w.terms[0].stiffness <= 1.0e-9 * whole for w in system.laws)),
             0.0,
             "",
             "analytic",

@@ -49,7 +49,6 @@ def test_segments_that_do_not_touch_feel_nothing() -> None:
     y = np.array([-7.0e-3, -6.9e-3, 0.0, 6.9e-3, 7.0e-3])
     assert not LAW.force(y).any()
     assert not LAW.energy(y).any()
-    assert not LAW.penetration(y).any()
 
 
 def test_sides_add_up_to_the_whole() -> None:

@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.contact_kicks import law_columns
+from dynamics.contact import PowerContact, contact_terms
 from dynamics.contact_series import (
     ORDER,
     Series,
@@ -32,9 +31,9 @@ def series_of(
     a: Array, v: Array, omega2: Array, load: Array, rows: Array, law: PowerContact, pressed: Array
 ) -> Series:
     """The series of rows that have the same law."""
-    laws = law_columns([law] * len(rows))
-    series = Series.room(a.size, laws[3])
-    expand(series, a, v, (omega2, load, rows), laws, pressed)
+    terms = contact_terms([law] * len(rows))
+    series = Series.room(a.size, len(rows), terms)
+    expand(series, a, v, (omega2, load, rows), terms, pressed)
     return series
 
 
