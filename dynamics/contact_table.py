@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A contact whose force is measured: straight lines between points of a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from dynamics.contact import ContactLaw, Term
+
+
+@dataclass(frozen=True, slots=True)
+class TableContact(ContactLaw):
+    """Gap contact whose force follows a table of the penetration, beyond it its last line.
+
+    A change of slope is a linear spring that begins there, so that the law is a sum of such.
+
+    Args:
+        depths: penetrations in m, rising from above 0; the force is zero at zero.
+        forces: in N, positive, one for each depth.
+        clearance: Δ in m on each side (half the play), not negative.
+        damping: as in :class:`ContactLaw`, in s/m.
+        sides: 1 where the inner segment presses up, −1 where it presses down.
+
+    Raises:
+        ValueError: no force, or a force that is not positive, or would not be beyond the table.
+    """
+
+    depths: tuple[float, ...]
+    forces: tuple[float, ...]
+    clearance: float
+    damping: float = 0.0
+    sides: tuple[int, ...] = (1, -1)
+
+    def __post_init__(self) -> None:
+        if not 0 < len(self.depths) == len(self.forces):
+            raise ValueError("a table needs one force for each depth, and one at least")
+        if not (np.isfinite(self._slopes()).all() and (np.diff([0.0, *self.depths]) > 0.0).all()):
+            raise ValueError("depths must be finite and rise from above 0")
+        if min(self.forces) <= 0.0 or self._slopes()[-1] < 0.0:
+            raise ValueError("forces must be positive, and must not fall at the end")
+
+    def _slopes(self) -> list[float]:
+        points = [(0.0, 0.0), *zip(self.depths, self.forces, strict=True)]
+        with np.errstate(all="ignore"):
+            return [
+                float(np.divide(after[1] - before[1], after[0] - before[0]))
+                for before, after in pairwise(points)
+            ]
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        changes = np.diff([0.0, *self._slopes()]).tolist()
+        starts = [0.0, *self.depths[:-1]]
+        return tuple(
+            Term(float(side), change, self.clearance + start, 1.0)
+            for side in self.sides
+            for change, start in zip(changes, starts, strict=True)
+            if change != 0.0
+        )
+
+    def one_sided(self, side: int) -> TableContact | None:
+        return replace(self, sides=(side,)) if side in self.sides else None
+
+    def shared(self, weight: float) -> TableContact:
+        return replace(self, forces=tuple(weight * force for force in self.forces))
+
+    def widened(self, factor: float) -> TableContact:
+        return replace(self, clearance=factor * self.clearance)
+
+    def __str__(self) -> str:
+        return f"table to {1e-3 * self.forces[-1]:g} kN at {1e3 * self.depths[-1]:g} mm"
