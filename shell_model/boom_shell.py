@@ -116,7 +116,7 @@ def reduce_boom(
         BoomError: a segment has no box section, or the contact line does not suit the boom.
     """
     seconds = dict.fromkeys(("mesh", "assembly", "reduction"), 0.0)
-    planes: Mapping[Direction, Sequence[PowerContact]] = {"z": laws, "y": lateral_laws}
+    planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     shells: list[SegmentShell] = []
     meshes: list[SegmentMesh] = []
     tell = progress or (lambda stage, part: None)

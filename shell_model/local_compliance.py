@@ -78,7 +78,7 @@ def _opposite(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
     """Contacts that press up, and those that press down in the same place of their station."""
     for station in {contact.station for contact in contacts}:
         there = [i for i, contact in enumerate(contacts) if contact.station == station]
-        above = [i for i in there if contacts[i].law.below == 0.0]
-        below = [i for i in there if contacts[i].law.below > 0.0]
+        above = [i for i in there if contacts[i].law.terms[0].side > 0.0]
+        below = [i for i in there if contacts[i].law.terms[0].side < 0.0]
         if len(above) == len(below):
             yield from zip(above, below, strict=True)
