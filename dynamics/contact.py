@@ -65,7 +65,7 @@ class ContactLaw(ABC):
        Those of one side rise by their onset;
     2. ``clearance`` Δ in m, the least onset, and ``damping`` d in s/m of Hunt and Crossley (1975),
        F (1 + d ṗ) at the rate ṗ of the penetration, never adhesive;
-    3. :meth:`one_sided`, :meth:`shared` and :meth:`widened`, which give a law of the same class;
+    3. :meth:`one_sided`, :meth:`shared` and :meth:`behind`, which give a law of the same class;
     4. ``str(law)``, the few words by which a table tells it from others.
 
     Force, energy and the compiled loops follow from these.
@@ -90,8 +90,8 @@ class ContactLaw(ABC):
         """The part ``weight`` of the law, for one of several points that carry it together."""
 
     @abstractmethod
-    def widened(self, factor: float) -> ContactLaw:
-        """The same law behind ``factor`` times the clearance."""
+    def behind(self, clearance: float) -> ContactLaw:
+        """The same law behind another clearance in m."""
 
     def force(self, y: Array) -> Array:
         """Elastic force in N that the outer segment feels; the inner one feels its opposite.
@@ -117,7 +117,7 @@ class ContactLaw(ABC):
             value: in N or J, not negative.
         """
         # The least penetration would be lost beside a clearance.
-        law = self.widened(0.0)
+        law = self.behind(0.0)
         return max(law._slope_on(term.side, measure, value) for term in law.terms)
 
     def _slope_on(
@@ -203,8 +203,8 @@ class PowerContact(ContactLaw):
     def shared(self, weight: float) -> PowerContact:
         return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)
 
-    def widened(self, factor: float) -> PowerContact:
-        return replace(self, clearance=factor * self.clearance)
+    def behind(self, clearance: float) -> PowerContact:
+        return replace(self, clearance=clearance)
 
     def __str__(self) -> str:
         return f"k {self.stiffness:g}, n {self.exponent:g}"

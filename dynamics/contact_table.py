@@ -67,8 +67,8 @@ class TableContact(ContactLaw):
     def shared(self, weight: float) -> TableContact:
         return replace(self, forces=tuple(weight * force for force in self.forces))
 
-    def widened(self, factor: float) -> TableContact:
-        return replace(self, clearance=factor * self.clearance)
+    def behind(self, clearance: float) -> TableContact:
+        return replace(self, clearance=clearance)
 
     def __str__(self) -> str:
         return f"table to {1e-3 * self.forces[-1]:g} kN at {1e3 * self.depths[-1]:g} mm"

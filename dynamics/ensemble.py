@@ -69,7 +69,7 @@ def changed(
         excitations = [replace(x, load=factor * x.load) for x in system.excitations]
         return replace(system, load=factor * system.load, excitations=excitations), velocity
     if vary == "clearance":
-        laws = [law.widened(factor) for law in system.laws]
+        laws = [law.behind(factor * law.clearance) for law in system.laws]
         return replace(system, laws=laws), velocity
     return system, None if velocity is None else factor * velocity
 

@@ -44,7 +44,7 @@ def test_parts_are_tables_again() -> None:
     assert above.one_sided(-1) is None
     np.testing.assert_allclose(above.force(y) + below.force(y), LAW.force(y), atol=1e-8)
     np.testing.assert_allclose(LAW.shared(0.25).force(y), 0.25 * LAW.force(y), atol=1e-8)
-    np.testing.assert_allclose(LAW.widened(2.0).force(y + 7.0e-3), above.force(y), atol=1e-8)
+    np.testing.assert_allclose(LAW.behind(14.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8)
 
 
 def test_one_line_is_a_linear_stop() -> None:
@@ -53,8 +53,8 @@ def test_one_line_is_a_linear_stop() -> None:
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
     np.testing.assert_allclose(table.force(y), power.force(y), rtol=1e-14)
     for measure in (PowerContact.force, PowerContact.energy):
-        found = table.tangent_where(measure, 3.0)
-        assert found == pytest.approx(power.tangent_where(measure, 3.0), rel=1e-12)
+        found = table.slope_where(measure, 3.0)
+        assert found == pytest.approx(power.slope_where(measure, 3.0), rel=1e-12)
 
 
 def test_a_mass_on_a_table_keeps_its_energy() -> None:
