@@ -85,7 +85,12 @@ def _written(thing: Any, numbers: _Numbers) -> Any:
     if isinstance(thing, np.ndarray) and thing.dtype.kind in _KINDS:
         return {"array": numbers.add(thing)}
     if isinstance(thing, xr.Dataset):
-        return {"dataset": _written(thing.to_dict(data="array"), numbers)}
+        variables = {
+            str(name): (variable.dims, variable.values, variable.attrs)
+            for name, variable in thing.variables.items()
+        }
+        content = [variables, [str(name) for name in thing.coords], thing.attrs]
+        return {"dataset": _written(content, numbers)}
     if isinstance(thing, Mapping):
         entries = [
             [_written(name, numbers), _written(value, numbers)] for name, value in thing.items()
@@ -106,7 +111,9 @@ def _read(written: Any, numbers: memoryview) -> Any:
         case {"array": [str(dtype), list(shape), int(first), "C" | "F" as order]}:
             return np.ndarray(shape, dtype, numbers, first, order=order)
         case {"dataset": content}:
-            return xr.Dataset.from_dict(_read(content, numbers))
+            variables, coordinates, attributes = _read(content, numbers)
+            # Their order is that of a file that they are written to.
+            return xr.Dataset(variables, attrs=attributes).set_coords(coordinates)
         case {"mapping": list(entries)}:
             return {_read(name, numbers): _read(value, numbers) for name, value in entries}
         case {"list": list(parts)}:

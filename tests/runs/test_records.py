@@ -70,11 +70,13 @@ def test_numbers_texts_and_what_they_are_in(paper_law: PowerContact) -> None:
 def test_datasets_and_named_tuples() -> None:
     data = xr.Dataset(
         {"tip": (("model", "time"), np.arange(6.0).reshape(2, 3), {"units": "m"})},
-        coords={"model": ["a", "bc"], "time": ("time", np.arange(3.0), {"units": "s"})},
+        coords={"model": ["a", "bc"], "kind": ("model", ["beam", "shell"])},
         attrs={"step": 1.0e-3, "steps": 3},
-    )
+    ).assign(time=("time", np.arange(3.0), {"units": "s"}))
     again, observer = unpack(joined((data, Observer(np.ones(2), "rad"))), tuple)
     assert again.identical(data)
+    assert list(again.variables) == list(data.variables) == ["tip", "model", "kind", "time"]
+    assert bytes(again.to_netcdf(engine="scipy")) == bytes(data.to_netcdf(engine="scipy"))
     assert isinstance(observer, Observer)
     assert observer.unit == "rad"
 
