@@ -192,10 +192,12 @@ def reduce_boom(
     start = perf_counter()
     apart = BoomCoordinates(comm, shells, reduced, ())
     whole = compliance(apart.omega2, _stacked(apart, [contact.reading for contact in contacts]))
-    local = local_compliance(whole, contacts)
+    laws_of_rows, stations = system.laws, system.station_of_row.tolist()
+    local = local_compliance(whole, laws_of_rows, stations)
     coarse = assemble_segments(boom, options.coarser, comm)
     same, _ = contacts_and_frictions(boom, coarse, planes, options.contact_line, options.surface)
-    off = extrapolated_error(local, local_compliance(full_compliance(coarse, same), same))
+    coarser = local_compliance(full_compliance(coarse, same), laws_of_rows, stations)
+    off = extrapolated_error(local, coarser)
     seconds["mesh error"] = perf_counter() - start
     return ReducedShell(
         system=system,

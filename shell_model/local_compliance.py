@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from dynamics.contact import ContactLaw
 from shell_model.joint_rows import Contact
 from shell_model.products import gram
 from shell_model.segment_shell import SegmentShell
@@ -51,15 +52,17 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact])
     return found
 
 
-def local_compliance(whole: Array, contacts: Sequence[Contact]) -> Array:
-    """(num_contacts,) in m/N; NaN where nothing touches on the other side of the station.
+def local_compliance(
+    whole: Array, laws: Sequence[ContactLaw], station_of_row: Sequence[int]
+) -> Array:
+    """(num_rows,) in m/N; NaN where nothing touches on the other side of the station.
 
     Args:
-        whole: (num_contacts, num_contacts) the compliance.
-        contacts: its rows.
+        whole: (num_rows, num_rows) the compliance.
+        laws, station_of_row: of its rows.
     """
-    found = np.full(len(contacts), np.nan)
-    for up, down in _opposite(contacts):
+    found = np.full(len(laws), np.nan)
+    for up, down in _opposite(laws, station_of_row):
         opening = whole[up, up] + whole[down, down] - 2.0 * whole[up, down]
         found[[up, down]] = 0.5 * opening
     return found
@@ -74,11 +77,13 @@ def extrapolated_error(fine: Array, coarse: Array) -> Array:
     return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**ORDER - 1.0))
 
 
-def _opposite(contacts: Sequence[Contact]) -> Iterator[tuple[int, int]]:
-    """Contacts that press up, and those that press down in the same place of their station."""
-    for station in {contact.station for contact in contacts}:
-        there = [i for i, contact in enumerate(contacts) if contact.station == station]
-        above = [i for i in there if contacts[i].law.terms[0].side > 0.0]
-        below = [i for i in there if contacts[i].law.terms[0].side < 0.0]
+def _opposite(
+    laws: Sequence[ContactLaw], station_of_row: Sequence[int]
+) -> Iterator[tuple[int, int]]:
+    """Rows that press up, and those that press down in the same place of their station."""
+    for station in set(station_of_row):
+        there = [i for i, at in enumerate(station_of_row) if at == station]
+        above = [i for i in there if laws[i].terms[0].side > 0.0]
+        below = [i for i in there if laws[i].terms[0].side < 0.0]
         if len(above) == len(below):
             yield from zip(above, below, strict=True)

@@ -112,6 +112,15 @@ COMPLIANCES = (
         "tail squeeze",
         allowed=0.04,
     ),
+    Measured(
+        "free inner box, squeeze of its tail by pads",
+        "pads squeezed",
+        "m/N",
+        1,
+        BREATHING,
+        "pad squeeze",
+        allowed=0.04,
+    ),
 )
 
 

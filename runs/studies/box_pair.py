@@ -28,11 +28,12 @@ from runs.studies.motions import SLOW
 from shell_model.families import Folding
 from shell_model.krylov import KrylovOptions, reduce_family
 from shell_model.mirror import ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.outline import Outline, Row
+from shell_model.outline import Outline, Row, combine
 from shell_model.products import times
 from shell_model.segment_shell import Shell, assemble_segment
 from shell_model.shifted_solver import ShiftedSolver
 from shell_model.solid import assemble_solid
+from shell_model.surface_contact import gauss
 
 Array = npt.NDArray[np.float64]
 
@@ -44,6 +45,10 @@ INNER = (0.31, 0.21)
 # Where the outer box ends, which the inner one hits, in m.
 HEAD = 2.0
 TAIL, TIP = 1.5, 3.5
+
+# Pads of 0.1 m in the inner box's corners at its tail, pressed along three lines (Simpson's rule).
+PAD_WIDTH = 0.06
+PADDED = {TAIL: 1.0 / 6.0, TAIL + 0.05: 4.0 / 6.0, TAIL + 0.1: 1.0 / 6.0}
 
 # The blow: the inner box moves up as a whole and meets the head's webs across the play.
 SPEED = 1.0  # m/s
@@ -63,26 +68,43 @@ class Probe(NamedTuple):
     Args:
         what: its name.
         family: of the motions that it belongs to.
-        x: m.
-        read: of the section there.
+        places: x in m → weight of what is read there.
+        read: of the section.
     """
 
     what: str
     family: Family
-    x: float
+    places: Mapping[float, float]
     read: Callable[[Outline], Row]
+
+    def row(self, outline: Callable[[float], Outline]) -> Row:
+        """Over all places; ``outline`` gives the section at x."""
+        return combine(*((weight, self.read(outline(x))) for x, weight in self.places.items()))
+
+
+def pad_squeeze(outline: Outline) -> Row:
+    """How much farther the flanges are apart under pads in the corners, in m."""
+    half = 0.5 * outline.section.width
+    return combine(
+        *(
+            (side * weight, outline.flange_deflection(side, y))
+            for side in (1.0, -1.0)
+            for y, weight in zip(*gauss(half - PAD_WIDTH, half, 4), strict=True)
+        )
+    )
 
 
 PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
     (
-        Probe("head", ALONG_Z, HEAD, partial(Outline.wall_deflection, direction="z")),
-        Probe("head twist", TWISTING, HEAD, Outline.twist),
+        Probe("head", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("head twist", TWISTING, {HEAD: 1.0}, Outline.twist),
     ),
     (
-        Probe("struck", ALONG_Z, HEAD, partial(Outline.wall_deflection, direction="z")),
-        Probe("tip", ALONG_Z, TIP, partial(Outline.wall_deflection, direction="z")),
-        Probe("tip twist", TWISTING, TIP, Outline.twist),
-        Probe("tail squeeze", BREATHING, TAIL, Outline.distortion),
+        Probe("struck", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip", ALONG_Z, {TIP: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip twist", TWISTING, {TIP: 1.0}, Outline.twist),
+        Probe("tail squeeze", BREATHING, {TAIL: 1.0}, Outline.distortion),
+        Probe("pad squeeze", BREATHING, PADDED, pad_squeeze),
     ),
 )
 
@@ -192,7 +214,7 @@ def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[
     breaks = {str(x): x for x in _places(segment, probes)}
     mesh = mesh_segment(segment.section, breaks, size)
     whole = assemble_segment(MPI.COMM_SELF, segment, mesh)
-    rows = np.column_stack([whole.row(probe.read(whole.outline(probe.x))) for probe in probes])
+    rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
     jobs = Folding(whole).jobs(rows, np.zeros((len(rows), 0)))
     return {
         job.family: Part(
@@ -225,7 +247,7 @@ def solid_parts(
         parts[family] = Part(
             model,
             {
-                probe.what: model.row(probe.read(model.outline(probe.x)))
+                probe.what: model.row(probe.row(model.outline))
                 for probe in probes
                 if probe.family == family
             },
@@ -273,7 +295,9 @@ def blow(outer: Part, inner: Part, wall: float) -> Blow:
 def _places(segment: Segment, probes: Sequence[Probe]) -> list[float]:
     """x in m at which both meshes have outlines."""
     supports = [support.x for support in segment.supports]
-    return sorted({segment.start, segment.end, *supports, *(probe.x for probe in probes)})
+    return sorted(
+        {segment.start, segment.end, *supports, *(x for probe in probes for x in probe.places)}
+    )
 
 
 def box(

@@ -21,10 +21,10 @@ from runs.build import build_boom, contact_laws
 from runs.schema import Case, ShellTable
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO
-from runs.studies.motions import friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
-from runs.studies.working_load import OUTPUT_STEP, PHASE, finer
+from runs.studies.working_load import OUTPUT_STEP, PHASE
 from runs.systems import shell_options
 from runs.tables import TextTable
 from runs.theme import fixed, number
@@ -95,8 +95,9 @@ def squeezed(contact: Contact, part: float) -> Array:
     rows, _ = contacts_and_frictions(
         boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
     )
-    local = local_compliance(full_compliance(shells, rows), rows)
-    _, first = np.unique([row.station for row in rows], return_index=True)
+    stations = [row.station for row in rows]
+    local = local_compliance(full_compliance(shells, rows), [row.law for row in rows], stations)
+    _, first = np.unique(stations, return_index=True)
     return np.asarray(local[first])
 
 

@@ -14,9 +14,9 @@ from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.build import build_boom
 from runs.motion import Motion
-from runs.schema import Case
+from runs.schema import Case, ShellTable
 from runs.studies.grid_convergence import GridConvergence
-from runs.studies.motions import compliance, friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.study import Plot, Proof, Study
 from runs.tables import TextTable
 from runs.theme import fixed, number
@@ -33,14 +33,14 @@ class Sizes:
     """What is measured.
 
     Args:
-        meshes: edge lengths in m, each half the one before, three at least.
-        default: the one that a run takes unless told otherwise.
+        meshes: edge lengths over the default ones, each half the one before, three at least.
+        default: of them, which is judged.
         duration: of the motion in s.
         frequencies, peaks: how many of the lowest natural frequencies, of the first tip peaks.
     """
 
-    meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
-    default: float = 0.1
+    meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
+    default: float = 1.0
     duration: float = 3.0
     frequencies: int = 3
     peaks: int = 3
@@ -77,10 +77,12 @@ def measure(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> list[Quant
     time = case.time.model_copy(update={"duration": sizes.duration})
     case = case.model_copy(update={"time": time})
     boom = build_boom(case)
+    shell = model_of(case, "shell")
+    assert isinstance(shell, ShellTable)
     results: list[Mapping[tuple[str, str], float]] = []
-    for size in sizes.meshes:
-        tell(f"mesh of {size:g} m")
-        model = model_of(case, "shell").model_copy(update={"mesh_size": size})
+    for part in sizes.meshes:
+        tell(f"edges x {part:g}")
+        model = finer(shell, part)
         system = gap_system(case, boom, model)
         motion = Motion.of(system, case, model).trajectory(lambda part: None)
         results.append(_quantities(system, motion, sizes))
@@ -108,7 +110,7 @@ def table(quantities: Sequence[Quantity], sizes: Sizes) -> TextTable:
         "Meshes of the paper's boom, with friction",
         (
             "quantity",
-            *(f"{size:g} m" for size in sizes.meshes),
+            *(f"edges × {part:g}" for part in sizes.meshes),
             "order",
             "limit",
             "GCI (%)",
@@ -132,14 +134,14 @@ def proofs(quantities: Sequence[Quantity], sizes: Sizes) -> list[Proof]:
         extrapolated = np.isfinite(convergence.limit)
         found.append(
             Proof(
-                what=f"{quantity.what}, mesh of {sizes.default:g} m",
+                what=f"{quantity.what}, default mesh",
                 value=quantity.values[default],
                 reference=convergence.limit if extrapolated else quantity.values[-1],
                 unit=quantity.unit,
                 kind="other code",
                 source="limit of its refinement (Richardson 1911)"
                 if extrapolated
-                else f"mesh of {sizes.meshes[-1]:g} m",
+                else f"edges × {sizes.meshes[-1]:g}",
                 allowed=ALLOWED,
                 order=convergence.order if extrapolated else None,
             )
@@ -166,7 +168,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             Plot(
                 "mesh",
                 "The shell settles as its mesh refines",
-                "mesh size (m)",
+                "edges over the default ones",
                 "error against the limit",
                 curves,
                 "Relative distance from Richardson's limit of the three finest meshes, for the "
@@ -186,12 +188,15 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
 def _quantities(
     system: GapSystem, motion: Trajectory, sizes: Sizes
 ) -> dict[tuple[str, str], float]:
+    from shell_model.local_compliance import compliance, local_compliance
+
     elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]
     found = {(f"natural frequency {i}", "Hz"): float(f) for i, f in enumerate(elastic, start=1)}
-    flexible = compliance(system, system.rows)
+    whole = compliance(system.omega2, system.rows)
+    local = local_compliance(whole, system.laws, system.station_of_row.tolist())
     for station, x in enumerate(system.stations):
         row = int(np.argmax(system.station_of_row == station))
-        found[f"contact compliance at {x:g} m", "m/N"] = float(flexible[row])
+        found[f"local compliance at {x:g} m", "m/N"] = float(local[row])
     for i, height in enumerate(peak_heights(motion)[: sizes.peaks], start=1):
         found[f"tip peak {i}", "mm"] = 1.0e3 * height
     return found

@@ -50,6 +50,11 @@ def model_of(case: Case, name: str) -> Model:
     return next(model for model in case.models if model.name == name)
 
 
+def finer(shell: ShellTable, part: float) -> ShellTable:
+    """The shell with all edges this part of what they were."""
+    return shell.model_copy(update={"mesh_size": part * shell.mesh_size})
+
+
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
     if not isinstance(model, ShellTable):

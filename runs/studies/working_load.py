@@ -27,7 +27,7 @@ from runs.build import build_boom
 from runs.schema import Case, ShellTable
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO, peak_heights
-from runs.studies.motions import friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
 from runs.tables import TextTable
@@ -139,11 +139,6 @@ def at_point(system: GapSystem, point: Point) -> GapSystem:
     """The system with another play and load, its coordinates as they were."""
     laws = [law.behind(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
-
-
-def finer(shell: ShellTable, part: float) -> ShellTable:
-    """The shell with all edges this part of what they were."""
-    return shell.model_copy(update={"mesh_size": part * shell.mesh_size})
 
 
 def in_space(case: Case) -> Case:

@@ -7,7 +7,7 @@ import pytest
 
 from runs.studies.mesh import Sizes, study
 
-TINY = Sizes(meshes=(0.8, 0.4, 0.2), default=0.2, duration=0.9, frequencies=2, peaks=1)
+TINY = Sizes(meshes=(8.0, 4.0, 2.0), default=2.0, duration=0.9, frequencies=2, peaks=1)
 
 
 def test_coarse_meshes_close_in() -> None:
@@ -18,14 +18,14 @@ def test_coarse_meshes_close_in() -> None:
     """
     told: list[str] = []
     found = study(told.append, TINY)
-    assert told == ["mesh of 0.8 m", "mesh of 0.4 m", "mesh of 0.2 m"]
+    assert told == ["edges x 8", "edges x 4", "edges x 2"]
     values = {one["what"]: one["values"] for one in found.data["quantities"]}
     lowest = values["natural frequency 1"]
     assert lowest[0] > lowest[1] > lowest[2]
-    for what in ("contact compliance at 9 m", "contact compliance at 10 m"):
+    for what in ("local compliance at 9 m", "local compliance at 10 m"):
         assert values[what][0] < values[what][1] < values[what][2]
     proofs = {proof.what: proof for proof in found.proofs}
-    frequency = proofs["natural frequency 1, mesh of 0.2 m"]
+    frequency = proofs["natural frequency 1, default mesh"]
     assert frequency.holds
     assert frequency.error < 0.005
     assert frequency.order is not None
