@@ -7,15 +7,18 @@ Everything else in this room is written to today's interface.
 from __future__ import annotations
 
 import inspect
+from pathlib import Path
 from typing import Any
 
 import dolfinx.fem.petsc as fem_petsc
 import numpy as np
 import numpy.typing as npt
 import ufl
-from dolfinx import cpp, fem, mesh
+from dolfinx import cpp, fem, jit, mesh
 from mpi4py import MPI
 from petsc4py import PETSc
+
+from shell_model import form_cache
 
 try:
     import basix.ufl
@@ -23,6 +26,15 @@ try:
     _HAS_BASIX_UFL = hasattr(basix.ufl, "mixed_element")
 except ImportError:
     _HAS_BASIX_UFL = False
+
+# All of DOLFINx asks for its compiler by this name.
+_JIT_OPTIONS = getattr(jit, "get_options", None) or jit.get_parameters
+_JIT_DEFAULTS = getattr(jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or (
+    jit.DOLFINX_DEFAULT_JIT_PARAMETERS
+)
+_FORMS, *_MEANING = _JIT_DEFAULTS["cache_dir"]
+_JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / form_cache.OWN, *_MEANING)
+jit.ffcx_jit = form_cache.one_at_a_time(jit.ffcx_jit, lambda: Path(_JIT_OPTIONS()["cache_dir"]))
 
 # Two walls and a diaphragm meet on an edge.
 _CELLS_OF_AN_EDGE = 3

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a killed process has begun to compile does not keep the next one from it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
+
+ROOT = Path(__file__).parents[2]
+COMPILE = """
+import os, signal
+import ffcx.codegeneration.jit as compiler
+from mpi4py import MPI
+from dolfinx import fem, mesh
+import ufl
+from shell_model import compat
+domain = mesh.create_unit_interval(MPI.COMM_SELF, 2)
+if {killed}:
+    compiler._compile_objects = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
+one = fem.Constant(domain, 3.0)
+print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
+"""
+
+
+def compile_form(folder: Path, killed: bool) -> subprocess.CompletedProcess[str]:
+    """Reference: analytic, the integral of 3 over a unit."""
+    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
+    return subprocess.run(
+        [sys.executable, "-c", COMPILE.format(killed=killed)],
+        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_next_process_compiles_what_a_killed_one_began(tmp_path: Path) -> None:
+    assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
+    assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
