@@ -3,14 +3,22 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 from rich.console import Console
 from rich.table import Table
 
+from dynamics.damping import pressed_ratios
 from geometry.boom import Boom, Joint
 from geometry.section import BoxSection
+from runs import actions
 from runs.build import build_boom, contact_laws
 from runs.estimates import of_run
 from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.systems import beam_system, damped, joint_stations
+
+# Modes whose damping is shown.
+SHOWN_MODES = 3
 
 
 def print_inferred(case: Case, console: Console) -> None:
@@ -24,6 +32,9 @@ def print_inferred(case: Case, console: Console) -> None:
     if boom.joints:
         console.print(_joints(boom))
     console.print(_models(case))
+    ratios = _damping_ratios(case, boom)
+    if ratios.rows:
+        console.print(ratios)
     console.print(f"A run may take {of_run(case)}.", highlight=False)
 
 
@@ -117,6 +128,28 @@ def _models(case: Case) -> Table:
         contact = "tied" if tied else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, _resolution(model), contact)
     return table
+
+
+def _damping_ratios(case: Case, boom: Boom) -> Table:
+    """What the first modes of the boom get in each model, its joints pressed, from all damping."""
+    shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
+    table = Table("damping, joints pressed", *shapes)
+    for model in case.models:
+        # A shell would have to be computed first.
+        beam = _beam_like(model) if isinstance(model, ShellTable) else model
+        system = damped(actions.start(beam_system(case, boom, beam), case)[0], case)
+        if system.damped:
+            found = zip(*pressed_ratios(system, joint_stations(system, case)), strict=True)
+            cells = (f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in found)
+            name = model.name if beam is model else f"{model.name}, as beam elements"
+            table.add_row(name, *islice(cells, SHOWN_MODES))
+    return table
+
+
+def _beam_like(shell: ShellTable) -> FiniteElementTable:
+    """Beam elements in the place of a shell."""
+    given = {"kind": "finite-element", "theory": "timoshenko", "name": shell.name}
+    return FiniteElementTable.model_validate(given | {"contact": shell.contact})
 
 
 def _resolution(model: Model) -> str:

@@ -352,10 +352,10 @@ class StartTable(Table):
 
 
 class DampingTable(Table):
-    """Damping of all modes."""
+    """Damping of the boom."""
 
     modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] = Field(
-        0.0, description="the damping ratio of every mode, 0.02 for 2 %"
+        0.0, description="the damping ratio of the boom's modes with pressed joints, 0.02 for 2 %"
     )
     mass: NotNegative = Field(0.0, description="Rayleigh's factor of the mass in 1/s")
     stiffness: NotNegative = Field(0.0, description="Rayleigh's factor of the stiffness in s")
@@ -486,7 +486,7 @@ class Case(Table):
         StartTable.model_validate({}), description="the table of the state at t = 0"
     )
     damping: DampingTable = Field(
-        DampingTable.model_validate({}), description="the table of the damping of all modes"
+        DampingTable.model_validate({}), description="the table of the boom's damping"
     )
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model", description="the models to run, one [[model]] each"
