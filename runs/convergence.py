@@ -40,6 +40,7 @@ STUDIES = (
     "stress",
     "surface_contact",
     "stiffeners",
+    "damping",
     "refinement",
     "walk",
     "histories",

@@ -254,6 +254,10 @@ def test_without_contact_it_is_the_flow(one_mass: OneMass) -> None:
             "a damped system has no closed form from contact to contact",
         ),
         (
+            {"dashpots": np.ones((1, 2))},
+            "a damped system has no closed form from contact to contact",
+        ),
+        (
             {"excitations": [Excitation(np.ones(2), Ramp(1.0))]},
             "loads that change with time leave no closed form from contact to contact",
         ),

@@ -18,6 +18,7 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
 
 pytestmark = pytest.mark.quick
 
@@ -212,6 +213,22 @@ def test_what_sticks_does_not_creep() -> None:
     assert np.abs(run.states @ rows.T).max() < 1e-15
     assert np.abs(run.data["friction_force"].values).max() < 50.0
     assert float(run.data["friction_loss"][-1]) < 1e-8 * float(run.data["work"][-1])
+
+
+def test_dashpots_leave_what_sticks_at_rest_and_the_order_at_two() -> None:
+    """Reference: the same motion by steps of a sixty-fourth of the finest."""
+    system = replace(COUPLED, damping=np.full(3, 0.2), dashpots=np.array([[0.3, -0.4, 0.6]]))
+
+    def run(step: float) -> Trajectory:
+        return integrate(system, 3.0, output_step=0.1, step=step, velocity=THROWN)
+
+    exact = run(0.0125 / 256.0)
+    assert exact.energy_residual < 1e-6
+    errors = [np.abs(run(step).states - exact.states).max() for step in 0.05 / 2.0 ** np.arange(5)]
+    assert np.log2(errors[0] / errors[-1]) / 4.0 == pytest.approx(2.0, abs=0.3)
+    held = replace(system, frictions=[replace(f, normal_force=1e3) for f in system.frictions])
+    states = integrate(held, 3.0, output_step=0.1, step=0.01).states
+    assert np.abs(states @ system.friction_rows.T).max() < 1e-14
 
 
 def test_rows_that_say_the_same_share_the_force() -> None:

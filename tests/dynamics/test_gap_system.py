@@ -57,6 +57,17 @@ def test_friction_excitations_and_directions_are_optional() -> None:
     assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
 
 
+def test_rates_and_dashpots_are_one_matrix() -> None:
+    """Reference: analytic, diag(c) + Gᵀ G."""
+    rates = GapSystem(**parts() | {"damping": np.array([0.0, 3.0, 0.0])})
+    both = replace(rates, dashpots=np.array([[1.0, -2.0, 0.0]]))
+    assert not GapSystem(**parts()).damped
+    assert rates.damped
+    assert replace(both, damping=np.zeros(3)).damped
+    expected = [[1.0, -2.0, 0.0], [-2.0, 7.0, 0.0], [0.0, 0.0, 0.0]]
+    np.testing.assert_array_equal(both.damping_matrix, expected)
+
+
 def test_rest_under_a_force() -> None:
     system = GapSystem(**parts() | {"omega2": np.array([4.0, 1.0, 2.0])})
     assert system.static_response(np.array([1.0, 2.0, 3.0])) == pytest.approx([0.25, 2.0, 1.5])
@@ -77,6 +88,8 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ("laws", [LAW], "rows must have the shape (1, 3), got (2, 3)"),
         ("station_of_row", np.array([0]), "station_of_row must have the shape (2,), got (1,)"),
         ("damping", np.ones(4), "damping must have the shape (3,), got (4,)"),
+        ("dashpots", np.ones((2, 2)), "dashpots must have the shape (2, 3), got (2, 2)"),
+        ("dashpots", np.full((1, 3), np.nan), "dashpots must be finite"),
         (
             "observers",
             {"tip": Observer(np.ones(2))},

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Damping ratios asked for against those with which pressed booms swing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import find_peaks
+
+from dynamics.damping import pressed_modes, with_ratio
+from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
+from runs import case as case_file
+from runs.build import build_boom
+from runs.schema import ShellTable
+from runs.studies.motions import gap_system, model_of
+from runs.studies.study import Proof, Study
+from runs.tables import TextTable
+from runs.theme import number
+
+Array = npt.NDArray[np.float64]
+
+CASES = Path(__file__).parents[1] / "cases"
+
+# Booms, and their cases.
+BOOMS = {
+    "two segments": "friction-walk.toml",
+    "three segments": "three-segments.toml",
+    "in space": "spatial.toml",
+}
+
+# Of each boom, all with a linear contact.
+MODELS = ("kantorovich-24", "timoshenko", "shell")
+
+RATIOS = (0.005, 0.02, 0.05)
+MODES = 3
+
+# The numbers of the loads of the cases are those of the masses.
+GRAVITY = 9.80665
+
+MESH_SIZE = 0.2
+
+# What a swing changes of a contact's penetration.
+SWING = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class PressedBoom:
+    """A boom that its weight presses, at rest.
+
+    Args:
+        name: of the boom and the model.
+        system: under its weight, without damping and friction.
+        rest: (num_modes,) in √kg·m.
+        omega: (MODES,) of the first modes in rad/s.
+        shapes: (num_modes, MODES).
+        joint_stations: as :func:`dynamics.damping.pressed_modes` wants it.
+    """
+
+    name: str
+    system: GapSystem
+    rest: Array
+    omega: Array
+    shapes: Array
+    joint_stations: int
+
+    @classmethod
+    def of(cls, name: str, system: GapSystem) -> PressedBoom:
+        """A boom without stops under a load whose numbers are its masses."""
+        system = replace(
+            system,
+            load=-GRAVITY * system.load,
+            friction_rows=np.zeros((0, system.num_modes)),
+            frictions=(),
+        )
+        stations = len(system.stations)
+        omega, shapes = pressed_modes(system, stations)
+        rest = equilibrium(system, system.load)
+        return cls(name, system, rest, omega[:MODES], shapes[:, :MODES], stations)
+
+    def swing(self, ratio: float) -> Trajectory:
+        """The first modes together over two periods of the slowest, by default steps."""
+        gaps = self.system.rows @ self.rest
+        deep = np.array([w.penetration(y) for w, y in zip(self.system.laws, gaps, strict=True)])
+        pressed = deep > 0.0
+        reach = np.abs(self.system.rows[pressed] @ self.shapes).sum(axis=1)
+        start = self.shapes.sum(axis=1) * SWING * (deep[pressed] / reach).min()
+        return integrate(
+            with_ratio(self.system, ratio, self.joint_stations),
+            2.2 * 2.0 * np.pi / self.omega[0],
+            2.0 * np.pi / self.omega[-1] / 100.0,
+            position=self.rest + start,
+        )
+
+    def measured(self, run: Trajectory) -> Array:
+        """(MODES,) damping ratios by the logarithmic decrements of a swing."""
+        swings = (run.states - self.rest) @ self.shapes
+        found = []
+        for swing in swings.T:
+            peaks, _ = find_peaks(swing)
+            decrement = np.log(swing[peaks[0]] / swing[peaks[-1]]) / (peaks.size - 1)
+            found.append(decrement / np.hypot(2.0 * np.pi, decrement))
+        return np.array(found)
+
+
+def study(tell: Callable[[str], None]) -> Study:
+    """Every boom and model at every ratio."""
+    rows: list[Sequence[str]] = []
+    proofs = []
+    data = {}
+    worst = 0.0
+    for boom, file in BOOMS.items():
+        for model in MODELS:
+            pressed = PressedBoom.of(f"{boom}, {model}", _system(CASES / file, model))
+            tell(pressed.name)
+            for ratio in RATIOS:
+                run = pressed.swing(ratio)
+                ratios = pressed.measured(run)
+                worst = max(worst, run.energy_residual)
+                farthest = int(np.abs(ratios - ratio).argmax())
+                percent = [number(100.0 * found, 4) for found in ratios]
+                rows.append((pressed.name, number(100.0 * ratio), *percent))
+                data[f"{pressed.name}, {ratio:g}"] = ratios.tolist()
+                proofs.append(
+                    Proof(
+                        f"damping ratio of {pressed.name}: the mode of the first {MODES} that is "
+                        "farthest off",
+                        100.0 * float(ratios[farthest]),
+                        100.0 * ratio,
+                        "%",
+                        "analytic",
+                        "logarithmic decrement 2πζ/√(1 − ζ²)",
+                        0.05,
+                    )
+                )
+    proofs.append(
+        Proof(
+            "energy residual of these swings, the largest",
+            worst,
+            0.0,
+            "",
+            "analytic",
+            "conservation of energy",
+            1.0e-4,
+        )
+    )
+    table = TextTable(
+        "Damping ratios of pressed booms",
+        ("boom", "asked\n%", *(f"mode {mode}\n%" for mode in range(1, MODES + 1))),
+        rows,
+        (
+            "From the logarithmic decrements of a small swing about rest under the boom's weight, "
+            "in space under a third of it sideways too.",
+        ),
+        name="damping",
+    )
+    return Study("damping", "Damping ratios asked for and measured", [table], proofs, data=data)
+
+
+def _system(path: Path, name: str) -> GapSystem:
+    case = case_file.load(str(path))
+    model = model_of(case, name)
+    if isinstance(model, ShellTable):
+        model = model.model_copy(update={"mesh_size": MESH_SIZE})
+    return gap_system(case, build_boom(case), model)

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Damped booms that their weight presses keep their energy ledger at the steps chosen for them.
+
+Reference of all: analytic, conservation of energy.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runs import case as case_file
+from runs.build import build_boom
+from runs.motion import Motion
+from runs.systems import beam_system
+
+pytestmark = pytest.mark.quick
+
+HEAD = """
+title = "Under its weight"
+
+[time]
+duration = 0.5
+output_step = 1e-2
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[start]
+state = "equilibrium"
+
+[[model]]
+name = "elements"
+kind = "finite-element"
+element_length = 2.5
+"""
+
+# Three segments of 18 m with a cage, on which a load comes.
+LIFT = """
+[[segment]]
+name = "base"
+span = [0.0, 7.0]
+supports = [0.0, 1.5]
+section = { height = 0.40, width = 0.26, flange = 0.008, web = 0.006 }
+load = -640.0
+
+[[segment]]
+name = "middle"
+span = [6.0, 12.5]
+section = { height = 0.36, width = 0.22, flange = 0.006, web = 0.005 }
+load = -480.0
+
+[[segment]]
+name = "fly"
+span = [11.5, 18.0]
+section = { height = 0.32, width = 0.18, flange = 0.005, web = 0.004 }
+load = -330.0
+
+[[joint]]
+outer = "base"
+inner = "middle"
+stations = [6.0, 7.0]
+play = 0.006
+stiffness = 1e9
+exponent = 1.0
+
+[[joint]]
+outer = "middle"
+inner = "fly"
+stations = [11.5, 12.5]
+play = 0.006
+stiffness = 1e9
+exponent = 1.0
+
+[payload]
+mass = 230.0
+
+[[load]]
+segment = "fly"
+x = 18.0
+magnitude = -300.0
+ramp = 0.2
+"""
+
+# An arm in space in a gust from a file.
+ARM = """
+[[segment]]
+name = "base"
+span = [0.0, 8.0]
+supports = [0.0, 1.5]
+section = { height = 0.50, width = 0.32, flange = 0.008, web = 0.006 }
+load = -800.0
+
+[[segment]]
+name = "fly"
+span = [7.0, 14.0]
+section = { height = 0.46, width = 0.28, flange = 0.006, web = 0.005 }
+load = -500.0
+
+[[joint]]
+outer = "base"
+inner = "fly"
+stations = [7.0, 8.0]
+play = 0.006
+lateral_play = 0.006
+stiffness = 1e9
+exponent = 1.0
+
+[[load]]
+segment = "fly"
+direction = "y"
+magnitude = 120.0
+file = "gust.csv"
+"""
+
+
+@pytest.mark.parametrize("damping", ["modal = 0.015", "stiffness = 3e-4"])
+@pytest.mark.parametrize("boom", [LIFT, ARM], ids=["lift", "arm in space"])
+def test_a_pressed_boom_keeps_its_ledger(tmp_path: Path, boom: str, damping: str) -> None:
+    gust = np.column_stack([np.linspace(0.0, 1.0, 21), np.abs(np.sin(np.linspace(0.0, 9.0, 21)))])
+    np.savetxt(tmp_path / "gust.csv", gust, delimiter=",")
+    path = tmp_path / "case.toml"
+    path.write_text(HEAD + boom + f"[damping]\n{damping}\n", encoding="utf-8")
+    case = case_file.load(str(path))
+    (model,) = case.models
+    motion = Motion.of(beam_system(case, build_boom(case), model), case, model)
+    run = motion.trajectory(lambda part: None)
+    assert run.energy_residual < 1e-4
+    loss = np.diff(run.data["damping_loss"].values)
+    assert loss.min() >= 0.0
+    assert loss.sum() > 0.0
