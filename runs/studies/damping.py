@@ -87,10 +87,11 @@ class PressedBoom:
     def swing(self, ratio: float) -> Trajectory:
         """The first modes together over two periods of the slowest, by default steps."""
         gaps = self.system.rows @ self.rest
-        deep = np.array([w.penetration(y) for w, y in zip(self.system.laws, gaps, strict=True)])
-        pressed = deep > 0.0
-        reach = np.abs(self.system.rows[pressed] @ self.shapes).sum(axis=1)
-        start = self.shapes.sum(axis=1) * SWING * (deep[pressed] / reach).min()
+        laws = list(zip(self.system.laws, gaps, strict=True))
+        pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]
+        deep = np.array([abs(gap) - law.clearance for law, gap in laws])
+        reach = np.abs(self.system.rows @ self.shapes).sum(axis=1)
+        start = self.shapes.sum(axis=1) * SWING * (deep / reach)[pressed].min()
         return integrate(
             with_ratio(self.system, ratio, self.joint_stations),
             2.2 * 2.0 * np.pi / self.omega[0],
