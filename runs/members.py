@@ -46,16 +46,24 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 def slow_below(boom: Boom, time: TimeTable) -> float | None:
     """Cut-off in Hz of the slow motion: part of the lowest elastic frequency without play.
 
-    None where the run is too short for it, or too coarsely reported.
+    None where the run is too short for it, too coarsely reported, or about a boom that no model
+    can compute either, as each of them will say.
     """
-    segments = [
-        finite_element_segment(
-            segment, ELEMENT_LENGTH, boom.stations_of(number), "euler-bernoulli", True
-        )
-        for number, segment in enumerate(boom.segments)
-    ]
-    frequencies = tied_system(boom, segments).frequencies
-    cutoff = CUTOFF_SHARE * float(frequencies[frequencies > 0.0][0])
+    try:
+        with np.errstate(all="ignore"):
+            segments = [
+                finite_element_segment(
+                    segment, ELEMENT_LENGTH, boom.stations_of(number), "euler-bernoulli", True
+                )
+                for number, segment in enumerate(boom.segments)
+            ]
+            frequencies = tied_system(boom, segments).frequencies
+    except (ArithmeticError, np.linalg.LinAlgError, ValueError):
+        return None
+    elastic = frequencies[frequencies > 0.0]
+    if elastic.size == 0:
+        return None
+    cutoff = CUTOFF_SHARE * float(elastic[0])
     if not 2.0 * time.output_step < 1.0 / cutoff < time.duration:
         return None
     return cutoff

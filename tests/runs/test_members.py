@@ -102,6 +102,23 @@ def test_slow_is_below_the_closed_boom(case: Case) -> None:
         assert slow_below(boom, case.time.model_copy(update=change)) is None
 
 
+def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
+    """A mass that no eigenproblem survives is each model's to complain about."""
+    heavy = case.segments[0].model_copy(update={"mass_per_length": 1e300})
+    boom = build_boom(
+        case.model_copy(
+            update={
+                "segments": (
+                    heavy.model_copy(update={"height_to_width": None}),
+                    *case.segments[1:],
+                ),
+                "models": case.models[:1],
+            }
+        )
+    )
+    assert slow_below(boom, case.time) is None
+
+
 def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
     results = Results.load(folder)
     assert results.ensembles is not None
