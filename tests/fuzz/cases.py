@@ -39,13 +39,15 @@ def slip(text: str, random: Random) -> str:
 
 
 def scaled(text: str, random: Random) -> str:
-    """A case file with one to three numbers of another size, which most often can be run."""
-    for _ in range(random.choice((1, 2, 3))):
-        number = random.choice(list(_NUMBER.finditer(text)))
-        other = float(number[0]) * random.choice(
-            (-1.0, 0.0, 1e-9, 1e-3, 0.1, 0.9, 1.1, 10, 1e3, 1e9)
-        )
-        text = f"{text[: number.start()]}{other!r}{text[number.end() :]}"
+    """A case file with one or two numbers of another size, which most often can be run."""
+    for _ in range(random.choice((1, 1, 2))):
+        line = random.choice(list(_LINE.finditer(text)))
+        number = random.choice(list(_NUMBER.finditer(line["value"])) or [None])
+        if number is not None:
+            place = line.start("value")
+            factor = random.choice((1e-12, 1e-6, 1e-3, 0.1, 0.9, 10, 1e3, 1e9, 1e60))
+            other = factor * float(number[0])
+            text = f"{text[: place + number.start()]}{other!r}{text[place + number.end() :]}"
     return text
 
 
