@@ -10,7 +10,8 @@ from pydantic import Field
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Exponent = Annotated[float, Field(strict=True, ge=1.0, allow_inf_nan=False)]
+# Hertz has 3/2; series of a press have as many terms as the exponent, and more.
+Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False)]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
 Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0)]
 Flag = Annotated[bool, Field(strict=True)]

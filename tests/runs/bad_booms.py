@@ -75,6 +75,11 @@ NUMBERS = {
         "exponent = 0.5",
         "joint[1].exponent: must be a number not less than 1, got 0.5",
     ),
+    "exponent without end": (
+        "exponent = 2.0",
+        "exponent = 2e9",
+        "joint[1].exponent: must be a number not greater than 10, got 2000000000.0",
+    ),
     "no terms": (
         "terms = [2, 3]",
         "terms = [2, 0]",
