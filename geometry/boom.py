@@ -42,8 +42,10 @@ __all__ = [
 
 Direction = Literal["z", "y"]
 
-# Along x in m, as slide pads are long: what stations and stops press of a segment's corners.
-CONTACT_LENGTH = 0.1
+# What stations press of a segment's corners, over the overlap, and stops, over the height of the
+# box: about 0.1 m in the paper's boom, as slide pads are long.
+_OF_OVERLAP = 0.1
+_OF_HEIGHT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +73,7 @@ class Joint:
             is the contact force of the other plane.
         tied: the segments deflect (and in space twist) alike at the stations, without play.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
-        contact_length: of these in m; unless given it is ``CONTACT_LENGTH``, or the overlap where
-            that is shorter.
+        contact_length: of these in m; a tenth of the overlap unless given.
     """
 
     outer: int
@@ -123,8 +124,8 @@ class Stop:
         stiffness: k of (4) in N/mⁿ against a deflection upwards; 0 where nothing is above.
         stiffness_below: k against a deflection downwards.
         exponent: n of (4).
-        contact_length: of the segment's corners that it presses, in m; unless given it is
-            ``CONTACT_LENGTH``, or the segment's where that is shorter.
+        contact_length: of the segment's corners that it presses, in m; a fifth of the height of
+            its box unless given.
     """
 
     segment: int
@@ -221,10 +222,14 @@ class Boom:
         return _overlap(joint, self.segments)
 
     def contact_length(self, place: Joint | Stop) -> float:
-        """What a joint's stations or a stop press along the corners, in m."""
+        """What a joint's stations or a stop press along the corners of boxes, in m."""
         if place.contact_length is not None:
             return place.contact_length
-        return min(CONTACT_LENGTH, self._room(place))
+        if isinstance(place, Joint):
+            return _OF_OVERLAP * self._room(place)
+        section = self.segments[place.segment].section
+        assert section is not None
+        return min(_OF_HEIGHT * section.height, self._room(place))
 
     def _room(self, place: Joint | Stop) -> float:
         """Length in m on which they may press."""

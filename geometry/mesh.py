@@ -11,10 +11,8 @@ with the walls: there an edge has three triangles.
 
 from __future__ import annotations
 
-import errno
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -59,13 +57,41 @@ class SegmentMesh:
             self.points, [("triangle", self.triangles)], cell_data={"wall": [self.walls]}
         ).write(path)
 
+    def write_gmsh(self, path: Path, closed: Sequence[str] = ()) -> None:
+        """Write gmsh's own file with a physical group for each plate and each line.
+
+        Args:
+            path: of the file.
+            closed: names of the diaphragms, in the order of their numbers.
+
+        Raises:
+            OSError: it cannot be written whole; names the file.
+        """
+        groups = {name: np.array([k, 2]) for k, name in enumerate([*WALLS, *closed], start=1)}
+        first = len(groups) + 1
+        groups |= {name: np.array([k, 1]) for k, name in enumerate(self.lines, start=first)}
+        of_edges = np.repeat(
+            np.arange(first, first + len(self.lines)), [len(line) for line in self.lines.values()]
+        )
+        tags = [self.walls + 1, of_edges]
+        mesh = meshio.Mesh(
+            self.points,
+            [("triangle", self.triangles), ("line", np.concatenate(list(self.lines.values())))],
+            cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+            field_data=groups,
+        )
+        try:
+            mesh.write(path, file_format="gmsh22", binary=False)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(path)) from None
+
 
 def mesh_segment(
     section: BoxSection,
     breaks: Mapping[str, float],
     size: float,
-    msh: Path | None = None,
     closed: Sequence[str] = (),
+    along: Mapping[float, float] | None = None,
 ) -> SegmentMesh:
     """Mesh the four walls of a box, and the plates that close it.
 
@@ -74,9 +100,9 @@ def mesh_segment(
         breaks: name → x in m of each outline that must be a mesh line; the smallest and the
             largest x are the ends of the segment. Two names may share a place.
         size: target edge length in m; every patch gets the nearest whole number of edges.
-        msh: where to write gmsh's own file, with a physical group for each wall and diaphragm,
-            and for each break and wall the line ``NAME:WALL``.
         closed: names of the breaks at which a diaphragm stands, in their order.
+        along: x in m of further outlines → target edge length in m along the boom from there on;
+            ``size`` before the first of them.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.
@@ -84,27 +110,25 @@ def mesh_segment(
     """
     if not (np.isfinite(size) and size > 0.0):
         raise ValueError(f"mesh size must be a positive number of m, got {size}")
-    outlines = _merge_places(breaks.values())
-    if len(outlines) < 2:
+    if len(_merge_places(breaks.values())) < 2:
         raise ValueError("a segment needs breaks at two places at least, its ends")
+    zones = {-np.inf: size} | dict(along or {})
+    outlines = _merge_places([*breaks.values(), *(along or {})])
+    lengths = [zones[max(start for start in zones if start <= x)] for x in outlines[:-1]]
     corners, walls = _ring(section)
     at = {name: int(np.abs(np.array(outlines) - x).argmin()) for name, x in breaks.items()}
     with _gmsh_model():
-        plates, rings = _build_patches(outlines, corners, walls, size)
+        plates, rings = _build_patches(outlines, corners, walls, size, lengths)
         plates |= {
             name: _close(outlines[at[name]], rings[at[name]], section, size) for name in closed
         }
         gmsh.model.geo.synchronize()
-        for plate, surfaces in plates.items():
-            gmsh.model.addPhysicalGroup(2, surfaces, name=plate)
         for name in breaks:
             ring = rings[at[name]].curves
             for wall in WALLS:
                 curves = [c for c, w in zip(ring, walls, strict=True) if w == wall]
                 gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{wall}")
         gmsh.model.mesh.generate(2)
-        if msh is not None:
-            _write(msh)
         return _extract(plates)
 
 
@@ -172,31 +196,6 @@ def _gmsh_model() -> Iterator[None]:
         gmsh.finalize()
 
 
-def _write(msh: Path) -> None:
-    """Write gmsh's own file; gmsh itself says nothing of a disk that is full."""
-    with suppress(Exception):
-        # Of a file that it cannot open it says it in an exception of no class.
-        gmsh.write(str(msh))
-    if not (msh.is_file() and _is_whole(msh.read_text())):
-        raise OSError(errno.EIO, "gmsh could not write all of it; is the disk full?", str(msh))
-
-
-def _is_whole(text: str) -> bool:
-    """Whether each section in gmsh's format 4.1 has as many lines as its first one tells."""
-    told: dict[str, Callable[..., int]] = {
-        "MeshFormat": lambda *_: 0,
-        "PhysicalNames": lambda names: names,
-        "Entities": lambda *of_dimension: sum(of_dimension),
-        "Nodes": lambda blocks, nodes, *_: blocks + 2 * nodes,
-        "Elements": lambda blocks, elements, *_: blocks + elements,
-    }
-    sections = re.findall(r"^\$(\w+)\n(.*)\n((?:[^$].*\n)*)\$End\1$", text, re.MULTILINE)
-    return [name for name, _, _ in sections] == list(told) and all(
-        lines.count("\n") == told[name](*(int(float(number)) for number in first.split()))
-        for name, first, lines in sections
-    )
-
-
 class _Ring(NamedTuple):
     """gmsh's points and curves once around the box; a curve begins at the point of its number."""
 
@@ -208,9 +207,13 @@ def _build_patches(
     outlines: Sequence[float],
     corners: Sequence[tuple[float, float]],
     walls: Sequence[str],
-    size: float,
+    across: float,
+    along: Sequence[float],
 ) -> tuple[dict[str, list[int]], list[_Ring]]:
-    """Transfinite patches; gives surfaces by wall, and the ring of each outline."""
+    """Transfinite patches; gives surfaces by wall, and the ring of each outline.
+
+    Edges are ``across`` long around the box, ``along`` the boom as long as each stretch says.
+    """
     geo = gmsh.model.geo
     n = len(corners)
     points = [[geo.addPoint(x, y, z) for y, z in corners] for x in outlines]
@@ -232,9 +235,9 @@ def _build_patches(
                 [points[i][j], points[i + 1][j], points[i + 1][k], points[i][k]],
             )
             for ring in (rings[i][j], rings[i + 1][j]):
-                _divide(ring, float(np.hypot(y1 - y0, z1 - z0)), size)
+                _divide(ring, float(np.hypot(y1 - y0, z1 - z0)), across)
             for rail in (rails[i][j], rails[i][k]):
-                _divide(rail, x1 - x0, size)
+                _divide(rail, x1 - x0, along[i])
     return surfaces, [_Ring(p, curves) for p, curves in zip(points, rings, strict=True)]
 
 

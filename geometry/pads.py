@@ -21,6 +21,7 @@ from geometry.segment import Segment
 
 Array = npt.NDArray[np.float64]
 
+ContactLine = Literal["near webs", "across", "surface"]
 Side = Literal[-1, 0, 1]
 Offset = tuple[float, float]
 

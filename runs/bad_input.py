@@ -107,6 +107,8 @@ def _explain(
         what = f"must be a number not greater than {limits['le']:g}"
     elif fault == "modes":
         what = "must be a whole number above 0, or 'auto'"
+    elif fault == "contact_tolerance":
+        what = f"must be a number from {limits['least']} to below 1, or 'any'"
     elif fault == "literal_error":
         what = f"must be {limits['expected']}"
     elif fault == "too_short":

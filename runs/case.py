@@ -94,7 +94,7 @@ def select(
         case: a checked one.
         path: of its file, for messages.
         models: names; all unless given.
-        mesh_size: in m.
+        mesh_size: in m, of uniform meshes.
         members: of each ensemble; 0 for none.
         modes: of the shells: a number, or ``auto``.
 
@@ -120,7 +120,9 @@ def select(
             _check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         except BoomError as error:
             raise BadInput(path, error.where, error.what) from None
-        chosen = _with_shells(chosen, path, "--mesh-size", {"mesh_size": mesh_size})
+        chosen = _with_shells(
+            chosen, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
+        )
     if modes is not None:
         if modes != "auto" and not (_WHOLE.fullmatch(modes) and int(modes) > 0):
             what = f"must be a whole number above 0, or auto, got {modes!r}"

@@ -45,7 +45,7 @@ app = typer.Typer(
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
 ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run these models alone.")]
 MeshSize = Annotated[
-    float | None, typer.Option(metavar="M", help="Edge length of the shells' triangles in m.")
+    float | None, typer.Option(metavar="M", help="Edge length of uniform shell meshes in m.")
 ]
 Modes = Annotated[
     str | None,

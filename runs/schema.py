@@ -253,9 +253,8 @@ class JointTable(Table):
     )
     contact_length: Positive | None = Field(
         None,
-        description="the length along x in m on which stations press the corners, which shells "
-        "alone heed; 0.1, as slide pads are long, or the overlap where that is shorter, unless "
-        "given",
+        description="the length along x in m on which stations press the corners, as long as a "
+        "slide pad, which shells alone heed; a tenth of the overlap unless given",
     )
 
 
@@ -288,7 +287,7 @@ class StopTable(Table):
     contact_length: Positive | None = Field(
         None,
         description="the length along x in m on which it presses the corners, which shells alone "
-        "heed; 0.1, or the segment's where that is shorter, unless given",
+        "heed; a fifth of the box's height unless given",
     )
 
 
@@ -415,11 +414,37 @@ Modes = Annotated[
 ]
 
 
+# Below it a mesh is too fine for one machine.
+LEAST_CONTACT_TOLERANCE = 1.0e-3
+
+
+def _contact_tolerance(given: Any) -> Any:
+    """A part or a word."""
+    number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
+    if given == "any" or number:
+        return given
+    raise PydanticCustomError(
+        "contact_tolerance",
+        "a number from {least} to below 1, or 'any'",
+        {"least": f"{LEAST_CONTACT_TOLERANCE:g}"},
+    )
+
+
+ContactTolerance = Annotated[float | Literal["any"], BeforeValidator(_contact_tolerance)]
+
+
 class ShellTable(ModelTable):
     """Flat facet shells on the folded box, reduced to the contact's inputs."""
 
     kind: Literal["shell"] = Field(description="the kind of model")
-    mesh_size: Positive = Field(0.1, description="the edge length of the triangles in m")
+    mesh_size: Positive = Field(
+        0.1, description="the edge length of the triangles in m, far from all that presses"
+    )
+    contact_tolerance: ContactTolerance = Field(
+        0.01,
+        description="the relative error of how much pressed walls give way, which makes the mesh "
+        "finer there, or 'any' for a uniform mesh",
+    )
     modes: Modes | None = Field(
         None,
         description="the number of coordinates of each segment, at most, or 'auto' for as many as "

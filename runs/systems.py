@@ -101,6 +101,7 @@ def shell_options(model: ShellTable) -> ShellOptions:
         contact_line=model.contact_line,
         surface=SurfaceOptions(model.surface_points or POINTS, model.surface_stiffness),
         krylov=_krylov(model),
+        contact_tolerance=None if model.contact_tolerance == "any" else model.contact_tolerance,
     )
 
 

@@ -18,7 +18,10 @@ from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
 from geometry.boom import Boom, BoomError, Direction, Load
+from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.pads import ContactLine
+from geometry.spots import spots
 from shell_model.coordinates import BoomCoordinates
 from shell_model.fields import gather_fields
 from shell_model.joint_rows import contacts_and_frictions, ties
@@ -32,7 +35,6 @@ from shell_model.outline import Outline, Reading, Row
 from shell_model.reduction import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.surface_contact import SurfaceOptions, without_stiff_modes
-from shell_model.touches import ContactLine
 
 Array = npt.NDArray[np.float64]
 
@@ -42,13 +44,15 @@ class ShellOptions:
     """How a boom becomes shells.
 
     Args:
-        mesh_size: target edge length in m.
+        mesh_size: edge length in m, of a graded mesh far from all that presses.
         contact_line: ``near webs`` passes the force from the inner segment's webs to the outer
             one's, as pads in the corners do; ``across`` spreads it over the width of the
             inner segment's flanges, which then bow, in a flat boom; ``surface`` touches over the
             whole overlap of facing walls.
         surface: its points and penalty, and its own shifts and moments of the reduction.
         krylov: the reduction.
+        contact_tolerance: relative error of what gives way where something presses, which grades
+            the mesh (:mod:`geometry.spots`); uniform unless given, and at a surface.
         mesh_folder: where gmsh's files ``SEGMENT.msh`` go, if anywhere.
     """
 
@@ -56,12 +60,19 @@ class ShellOptions:
     contact_line: ContactLine = "near webs"
     surface: SurfaceOptions = field(default_factory=SurfaceOptions)
     krylov: KrylovOptions = field(default_factory=KrylovOptions)
+    contact_tolerance: float | None = None
     mesh_folder: Path | None = None
 
     @property
     def coarser(self) -> ShellOptions:
         """With edges of twice the length, beside which a mesh tells its own error."""
-        return replace(self, mesh_size=2.0 * self.mesh_size, mesh_folder=None)
+        tolerance = self.contact_tolerance
+        return replace(
+            self,
+            mesh_size=2.0 * self.mesh_size,
+            contact_tolerance=None if tolerance is None else 4.0 * tolerance,
+            mesh_folder=None,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,14 +244,16 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
-    folder = options.mesh_folder
-    return mesh_segment(
-        segment.section,
-        breaks,
-        options.mesh_size,
-        msh=None if folder is None else folder / f"{segment.name}.msh",
-        closed=tuple(diaphragm_breaks(segment)),
-    )
+    box = segment.section, breaks, options.mesh_size
+    closed = tuple(diaphragm_breaks(segment))
+    if options.contact_tolerance is None or options.contact_line == "surface":
+        mesh = mesh_segment(*box, closed=closed)
+    else:
+        fine = spots(boom, number, options.contact_tolerance, options.contact_line)
+        mesh = graded_mesh(*box, fine, closed=closed)
+    if options.mesh_folder is not None:
+        mesh.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
+    return mesh
 
 
 def assemble_segments(boom: Boom, options: ShellOptions, comm: MPI.Comm) -> list[SegmentShell]:

@@ -15,13 +15,12 @@ from typing import NamedTuple
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.friction import DryFriction
 from geometry.boom import Boom, BoomError, Direction
-from geometry.pads import Pad, Stretch, pads, patch
+from geometry.pads import ContactLine, Pad, Stretch, pads, patch
 from shell_model.corner_lines import CornerLines
 from shell_model.outline import Reading, relative
 from shell_model.segment_shell import SegmentShell
 from shell_model.surface_contact import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.touches import (
-    ContactLine,
     Touch,
     across,
     corner,

@@ -8,7 +8,7 @@ law (4) exactly.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,8 +21,6 @@ from shell_model.surface_contact import gauss
 from shell_model.wall_points import Wall, WallPoints
 
 Array = npt.NDArray[np.float64]
-
-ContactLine = Literal["near webs", "across", "surface"]
 
 _SIDES: tuple[Side, Side] = (1, -1)
 

@@ -50,11 +50,6 @@ def model_of(case: Case, name: str) -> Model:
     return next(model for model in case.models if model.name == name)
 
 
-def finer(shell: ShellTable, part: float) -> ShellTable:
-    """The shell with all edges this part of what they were."""
-    return shell.model_copy(update={"mesh_size": part * shell.mesh_size})
-
-
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
     if not isinstance(model, ShellTable):
@@ -62,6 +57,15 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     with TemporaryDirectory(prefix="protractile-") as scratch:
         folder = Path(scratch) / model.name
         return reduce_shell(case, boom, model, MPI.COMM_SELF, folder, lambda *_: None).system
+
+
+def finer(shell: ShellTable, part: float) -> ShellTable:
+    """The shell with all edges this part of what they were."""
+    tolerance = shell.contact_tolerance
+    if tolerance != "any":
+        tolerance *= part**2
+    sizes = {"mesh_size": part * shell.mesh_size, "contact_tolerance": tolerance}
+    return shell.model_copy(update=sizes)
 
 
 def trajectories(case: Case) -> list[Trajectory]:

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
-from runs.studies.motions import friction_case, model_of, trajectories
+from runs.studies.motions import finer, friction_case, model_of, trajectories
 from runs.studies.study import Study
 from runs.tables import TextTable
 from runs.theme import number
@@ -166,4 +166,4 @@ def _with_elements(model: Model, length: float) -> Model:
 
 def _with_mesh(model: Model, size: float) -> Model:
     assert isinstance(model, ShellTable)
-    return model.model_copy(update={"mesh_size": size})
+    return finer(model, size / model.mesh_size)

@@ -159,7 +159,7 @@ def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
 def _shell(case: Case, sizes: Sizes) -> ShellTable:
     shell = model_of(case, "shell")
     assert isinstance(shell, ShellTable)
-    return shell.model_copy(update={"mesh_size": sizes.mesh})
+    return shell.model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
 
 
 def _move(system: GapSystem, duration: float) -> Trajectory:

@@ -210,6 +210,16 @@ NUMBERS = {
         "mesh_size = 0.25\nmodes = 0",
         "model[6].modes: must be a whole number above 0, or 'auto', got 0",
     ),
+    "a contact tolerance that no mesh meets": (
+        'contact_tolerance = "any"',
+        "contact_tolerance = 1e-4",
+        "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got 0.0001",
+    ),
+    "a contact tolerance in words": (
+        'contact_tolerance = "any"',
+        'contact_tolerance = "fine"',
+        "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got 'fine'",
+    ),
     "too many triangles": (
         "mesh_size = 0.25",
         "mesh_size = 1e-9",

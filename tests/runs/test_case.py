@@ -153,6 +153,7 @@ def test_selection_keeps_the_order_and_meshes_the_shells_anew() -> None:
     case = select(load(str(CASES / "coarse.toml")), "coarse.toml", ["shell", "beam-fe"], 0.5)
     assert [model.name for model in case.models] == ["beam-fe", "shell"]
     assert case.models[1].model_dump()["mesh_size"] == 0.5
+    assert case.models[1].model_dump()["contact_tolerance"] == "any"
 
 
 def test_selection_changes_the_members_of_ensembles() -> None:

@@ -18,12 +18,12 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, PadSize
+from geometry.pads import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.outline import COMPONENT
 from shell_model.reduction import KrylovOptions
 from shell_model.segment_shell import SegmentShell
 from shell_model.surface_contact import SurfaceOptions
-from shell_model.touches import ContactLine
 from shell_model.wall_points import Wall, WallPoints
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX

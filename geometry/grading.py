@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Meshes that are fine where something presses, and grow coarser away from it.
+
+Rectangles first: near a spot they are square, far from all they are four times as long along the
+boom as across, since a boom's walls bend across much more sharply than along. Then newest-vertex
+bisection (Mitchell 1989): a triangle is cut from its newest corner to the middle of the edge
+opposite, the first time across the diagonal of its rectangle. Its grandchildren have its shape, and
+neighbours are cut with it, so that no node hangs. Places are compared as they are in the quarter at
+positive y and z, rounded, so that a mirror image is cut where its original is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.mesh import SegmentMesh, mesh_segment
+from geometry.section import BoxSection
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+# Lengths are compared in this part of a mesh's extent: below any edge, above round-off.
+_ROUNDED = 1.0e-9
+
+# Rectangles in parts of the mesh size: across everywhere, along the boom from spots outwards.
+_ACROSS = 0.5
+_ALONG = (0.5, 1.0, 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a segment's mesh is to be fine: the same place in all four quarters of the box.
+
+    Args:
+        low, high: (x, \\|y\\|, \\|z\\|) in m between which it lies.
+        size: edge length there in m.
+        growth: how much longer edges may be for each unit of distance from it.
+    """
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    size: float
+    growth: float
+
+    def allowed(self, places: Array) -> Array:
+        """(num_places,) edge length in m at places (num_places, 3) of that quarter."""
+        outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
+        return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
+
+    def reach(self, size: float) -> tuple[float, float]:
+        """x in m between which edges of a size are too long for it."""
+        distance = max((size - self.size) / self.growth, 0.0)
+        return self.low[0] - distance, self.high[0] + distance
+
+
+def graded_mesh(
+    section: BoxSection,
+    breaks: Mapping[str, float],
+    size: float,
+    spots: Sequence[Spot],
+    closed: Sequence[str] = (),
+) -> SegmentMesh:
+    """Mesh the walls of a box as :func:`mesh_segment` does, fine at the spots.
+
+    Args:
+        section, breaks, closed: see :func:`mesh_segment`.
+        size: edge length in m of squares that are as large as the rectangles far from all spots.
+        spots: where it is to be fine.
+
+    Raises:
+        ValueError: as :func:`mesh_segment`.
+    """
+    along = _along(breaks, size, spots)
+    mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
+    while (cut := _too_large(mesh, spots)).any():
+        mesh = _bisected(mesh, cut)
+    return mesh
+
+
+def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> dict[float, float]:
+    """x in m of outlines → length in m of rectangles from there on."""
+    start, end = min(breaks.values()), max(breaks.values())
+    fine, middle, coarse = (part * size for part in _ALONG)
+    ends = {x for spot in spots for length in (middle, coarse) for x in spot.reach(length)}
+    # No outline beside a break: nothing is gained there but slender triangles.
+    apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
+    found: dict[float, float] = {}
+    for x in sorted([start, *(x for x in apart if start < x < end)]):
+        if found and x - max(found) < fine:
+            continue
+        found[x] = coarse
+    places = sorted([*found, end])
+    for x, beyond in pairwise(places):
+        here = 0.5 * (x + beyond)
+        for length, longer in ((middle, coarse), (fine, middle)):
+            if any(low < here < high for low, high in (spot.reach(longer) for spot in spots)):
+                found[x] = length
+    return found
+
+
+def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
+    """The mesh with the longest edge of each triangle first, which two of them share."""
+    corners = mesh.points[mesh.triangles]
+    turn = _edges(corners).argmax(axis=1)[:, None] + np.arange(3)
+    return replace(mesh, triangles=np.take_along_axis(mesh.triangles, turn % 3, axis=1))
+
+
+def _edges(corners: Array) -> Array:
+    """(num_triangles, 3) lengths of edges in m, from corners (num_triangles, 3, 3)."""
+    return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
+
+
+def _too_large(mesh: SegmentMesh, spots: Sequence[Spot]) -> npt.NDArray[np.bool_]:
+    """(num_triangles,) which are larger than a spot allows at their nearest corner."""
+    near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
+    places = np.column_stack([mesh.points[:, 0], np.abs(mesh.points[:, 1:])])
+    places = near * np.round(places / near)
+    allowed = np.min([spot.allowed(places) for spot in spots], axis=0, initial=np.inf)
+    # Of the right triangle with equal sides and the same longest edge.
+    sides = _edges(places[mesh.triangles]).max(axis=1) / np.sqrt(2.0)
+    return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)
+
+
+def _bisected(mesh: SegmentMesh, cut: npt.NDArray[np.bool_]) -> SegmentMesh:
+    """The mesh with the marked triangles cut, and others as far as no node may hang."""
+    edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
+    ends, edge_of = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+    edge_of = edge_of.reshape(-1, 3)
+    halved = np.zeros(len(ends), dtype=bool)
+    halved[edge_of[cut, 0]] = True
+    while (more := halved[edge_of].any(axis=1) & ~halved[edge_of[:, 0]]).any():
+        halved[edge_of[more, 0]] = True
+    middle = np.full(len(ends), -1)
+    middle[halved] = len(mesh.points) + np.arange(halved.sum())
+    points = np.concatenate([mesh.points, mesh.points[ends[halved]].mean(axis=1)])
+    triangles, walls, middles = mesh.triangles, mesh.walls, middle[edge_of]
+    while (split := middles[:, 0] >= 0).any():
+        a, b, c = triangles[split].T
+        new, after, before = middles[split].T
+        # The edge opposite to the new corner is first, and is cut next.
+        halves = np.column_stack([b, c, new]), np.column_stack([c, a, new])
+        whole = np.full(len(new), -1)
+        left = np.column_stack([after, whole, whole]), np.column_stack([before, whole, whole])
+        triangles = np.concatenate([triangles[~split], *halves])
+        middles = np.concatenate([middles[~split], *left])
+        walls = np.concatenate([walls[~split], walls[split], walls[split]])
+    new_of = {(a, b): m for (a, b), m in zip(ends.tolist(), middle.tolist(), strict=True) if m >= 0}
+    lines = {name: _with_middles(line, new_of) for name, line in mesh.lines.items()}
+    return SegmentMesh(points, triangles, walls, lines)
+
+
+def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
+    """The edges of a line, those with a new middle as their halves."""
+    found: list[tuple[int, int]] = []
+    for a, b in line.tolist():
+        new = new_of.get((min(a, b), max(a, b)))
+        found += [(a, b)] if new is None else [(a, new), (new, b)]
+    return np.array(found, dtype=np.int64)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where the mesh of a boom's segment is to be fine, so that what presses there gives way rightly.
+
+Sizes are parts of what presses: of the length of a corner, of the smaller side of a pad, of the
+box where a force is spread over its walls. The parts are measured: with them the compliance of
+each, less that of the same force spread over the webs, is within the tolerance of that of meshes
+without end, and its error goes with the square of the size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from geometry.boom import Boom
+from geometry.grading import Spot
+from geometry.pads import ContactLine, Pad, Stretch, pads, patch
+from geometry.section import BoxSection
+
+# The tolerance at which the parts below were measured.
+MEASURED_AT = 0.01
+
+# Edge length over the length of a corner that is pressed, the smaller side of a pad, the smaller
+# side of the box; and how much longer edges may be for each unit of distance.
+_CORNER, _CORNER_GROWTH = 0.2, 0.5
+_PAD, _PAD_GROWTH = 0.18, 0.3
+_WALLS, _WALLS_GROWTH = 0.2, 0.5
+
+
+def spots(boom: Boom, number: int, tolerance: float, line: ContactLine) -> list[Spot]:
+    """Of a segment with a box section.
+
+    Args:
+        boom: of the segment.
+        number: its position in ``Boom.segments``.
+        tolerance: relative error of the local compliance.
+        line: where walls touch.
+    """
+    finer = float(np.sqrt(tolerance / MEASURED_AT))
+    return [
+        Spot(low, high, finer * size, finer * growth)
+        for low, high, size, growth in _measured(boom, number, line)
+    ]
+
+
+_Place = tuple[float, float, float]
+_Measured = tuple[_Place, _Place, float, float]
+
+
+def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]:
+    """Ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
+    segment = boom.segments[number]
+    section = segment.section
+    assert section is not None
+    b, h = 0.5 * section.width, 0.5 * section.height
+    for x in _walls(boom, number):
+        yield (x, 0.0, 0.0), (x, b, h), _WALLS * 2.0 * min(b, h), _WALLS_GROWTH
+    for stop in boom.stops:
+        if stop.segment == number:
+            stretch = Stretch.on(segment, stop.x, boom.contact_length(stop))
+            yield _corner(stretch, section)
+    for pad in pads(boom):
+        if number in (pad.joint.outer, pad.joint.inner):
+            yield _pressed(boom, pad, number, line)
+
+
+def _walls(boom: Boom, number: int) -> Iterator[float]:
+    """x of supports, ties, loads and masses, which walls take in their plane, and of stiffeners."""
+    segment = boom.segments[number]
+    yield from (support.x for support in segment.supports)
+    yield from (mass.x for mass in segment.masses)
+    yield from (load.x for load in boom.loads if load.segment == number and load.x is not None)
+    for joint in boom.joints:
+        if joint.tied and number in (joint.outer, joint.inner):
+            yield from joint.stations
+    for collar in segment.collars:
+        yield from (collar.start, collar.end)
+    yield from (plate.x for plate in segment.diaphragms)
+
+
+def _corner(stretch: Stretch, section: BoxSection) -> _Measured:
+    b, h = 0.5 * section.width, 0.5 * section.height
+    size = _CORNER * (stretch.end - stretch.start)
+    return (stretch.start, b, h), (stretch.end, b, h), size, _CORNER_GROWTH
+
+
+def _pressed(boom: Boom, pad: Pad, number: int, line: ContactLine) -> _Measured:
+    """What a pad presses of a segment."""
+    section = boom.segments[number].section
+    assert section is not None
+    b, h = 0.5 * section.width, 0.5 * section.height
+    covered = patch(boom, pad)
+    if covered is None:
+        length = boom.contact_length(pad.joint)
+        low, high, size, growth = _corner(Stretch.on(boom.segments[number], pad.x, length), section)
+        return (low[0], 0.0 if line == "across" else b, h), high, size, growth
+    size = _PAD * min(covered.end - covered.start, covered.far - covered.near)
+    if pad.direction == "z":
+        low, high = (covered.start, covered.near, h), (covered.end, covered.far, h)
+    else:
+        low, high = (covered.start, b, covered.near), (covered.end, b, covered.far)
+    return low, high, size, _PAD_GROWTH
