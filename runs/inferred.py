@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from itertools import islice
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from dynamics.damping import pressed_ratios
+from dynamics.failure import NumericsError
 from geometry.boom import Boom, Joint
 from geometry.section import BoxSection
 from runs import actions
@@ -134,16 +136,24 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
     """What the first modes of the boom get in each model, its joints pressed, from all damping."""
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
     table = Table("damping, joints pressed", *shapes)
-    for model in case.models:
+    given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
+    for model in case.models if any(given) else ():
         # A shell would have to be computed first.
         beam = _beam_like(model) if isinstance(model, ShellTable) else model
-        system = damped(actions.start(beam_system(case, boom, beam), case)[0], case)
-        if system.damped:
-            found = zip(*pressed_ratios(system, joint_stations(system, case)), strict=True)
-            cells = (f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in found)
-            name = model.name if beam is model else f"{model.name}, as beam elements"
-            table.add_row(name, *islice(cells, SHOWN_MODES))
+        name = model.name if beam is model else f"{model.name}, as beam elements"
+        table.add_row(name, *islice(_ratios(case, boom, beam), SHOWN_MODES))
     return table
+
+
+def _ratios(case: Case, boom: Boom, model: KantorovichTable | FiniteElementTable) -> list[str]:
+    try:
+        with np.errstate(all="ignore"):
+            system = damped(actions.start(beam_system(case, boom, model), case)[0], case)
+            found = pressed_ratios(system, joint_stations(system, case))
+    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+        return ["cannot be computed"]
+    both = zip(*found, strict=True)
+    return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
 
 
 def _beam_like(shell: ShellTable) -> FiniteElementTable:
