@@ -49,7 +49,7 @@ MESH_SIZE = 0.2
 PHASE = 0.2
 
 # For which each mode swings.
-PERIODS = 2.2
+PERIODS = 1.1
 
 # What a swing changes of a contact's penetration.
 SWING = 0.02
@@ -109,7 +109,7 @@ class PressedBoom:
         )
         swing = (run.states - self.rest) @ shape
         peaks, _ = find_peaks(swing)
-        decrement = np.log(swing[peaks[0]] / swing[peaks[-1]]) / (peaks.size - 1)
+        decrement = np.log(swing[0] / swing[peaks[-1]]) / peaks.size
         return float(decrement / np.hypot(2.0 * np.pi, decrement)), run.energy_residual
 
 
