@@ -64,6 +64,11 @@ class ShellOptions:
     mesh_folder: Path | None = None
 
     @property
+    def order(self) -> float:
+        """Of the local compliance in the edge length, at least."""
+        return 1.0 if self.contact_tolerance is None or self.contact_line == "surface" else 2.0
+
+    @property
     def coarser(self) -> ShellOptions:
         """With edges of twice the length, beside which a mesh tells its own error."""
         tolerance = self.contact_tolerance
@@ -208,7 +213,7 @@ def reduce_boom(
     coarse = assemble_segments(boom, options.coarser, comm)
     same, _ = contacts_and_frictions(boom, coarse, planes, options.contact_line, options.surface)
     coarser = local_compliance(full_compliance(coarse, same), laws_of_rows, stations)
-    off = extrapolated_error(local, coarser)
+    off = extrapolated_error(local, coarser, options.order)
     seconds["mesh error"] = perf_counter() - start
     return ReducedShell(
         system=system,

@@ -25,9 +25,6 @@ Array = npt.NDArray[np.float64]
 # Hz: above rigid motion, below all elastic motion.
 SLOW = 20.0
 
-# Of the local compliance in the edge length, at least.
-ORDER = 1.0
-
 
 def compliance(omega2: Array, rows: Array) -> Array:
     """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)².
@@ -68,13 +65,14 @@ def local_compliance(
     return found
 
 
-def extrapolated_error(fine: Array, coarse: Array) -> Array:
+def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
     """How far values of a mesh are from the limit of finer ones, as parts (Richardson 1911).
 
     Args:
         fine, coarse: of the mesh, and of one with edges of twice the length.
+        order: of the values in the edge length.
     """
-    return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**ORDER - 1.0))
+    return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**order - 1.0))
 
 
 def _opposite(
