@@ -54,7 +54,7 @@ class Sizes:
     default: float = 1.0
     lengths: Sequence[float] = (0.05, 0.1, 0.2)
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
-    plate: Sequence[float] = (0.025, 0.0125, 0.00625)
+    plate: Sequence[float] = (0.0125, 0.00625)
     peak: float = 0.9
     loads: Sequence[float] = (1.0, 10.0)
 

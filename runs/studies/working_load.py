@@ -40,8 +40,9 @@ OUTPUT_STEP = 1.0e-3
 # third of it changes the tip by 0.02 % of its range in a second at the paper's play and ten times
 # its load.
 PHASE = 0.2
-# What is allowed of the first peak, and of the tip near webs and with pads, which give way more.
-OF_PEAK, OF_TIP, OF_TIP_WITH_PADS = 0.002, 0.01, 0.02
+# What is allowed of the first peak and of the tip, near webs and with pads, which give way more.
+# Frequencies 0.02 % too high, as the far mesh leaves them, are 0.5 % of the tip's range after 5 s.
+NEAR_WEBS, WITH_PADS = (0.002, 0.025), (0.004, 0.03)
 # Outputs over which a pad's force is averaged: single blows are a matter of microseconds.
 HELD = 20
 
@@ -103,12 +104,12 @@ class Contact:
 
     Args:
         name: of it.
-        allowed: of the tip, as a part of its range.
+        allowed: of the first peak, and of the tip as a part of its range.
         moved: point → its motions, from the coarsest mesh to the finest.
     """
 
     name: str
-    allowed: float
+    allowed: tuple[float, float]
     moved: Mapping[Point, Sequence[Moved]]
 
     def peak_change(self, point: Point, which: int = 0) -> float:
@@ -171,7 +172,12 @@ def _move(system: GapSystem, duration: float, peaks: int) -> Moved:
 
 
 def measure(
-    name: str, case: Case, points: Sequence[Point], duration: float, allowed: float, sizes: Sizes
+    name: str,
+    case: Case,
+    points: Sequence[Point],
+    duration: float,
+    allowed: tuple[float, float],
+    sizes: Sizes,
 ) -> Contact:
     """All points on all meshes."""
     systems = _systems(case, sizes)
@@ -301,8 +307,8 @@ def proofs(contacts: Sequence[Contact]) -> list[Proof]:
     for contact in contacts:
         count = len(contact.moved)
         for what, change, allowed in (
-            ("first tip peak", contact.peak_change, OF_PEAK),
-            ("tip, part of its range", contact.tip_change, contact.allowed),
+            ("first tip peak", contact.peak_change, contact.allowed[0]),
+            ("tip, part of its range", contact.tip_change, contact.allowed[1]),
         ):
             value, point = contact.worst(change)
             found.append(
@@ -329,12 +335,12 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     case = friction_case()
     contacts = []
     for name, touching, allowed in (
-        ("near webs", case, OF_TIP),
+        ("near webs", case, NEAR_WEBS),
         *(
             (
                 f"pads of {length:g} m x {width:g} m",
                 with_pads(case, length, width),
-                OF_TIP_WITH_PADS,
+                WITH_PADS,
             )
             for length, width in sizes.pads
         ),
@@ -348,7 +354,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             in_space(case),
             sizes.in_space,
             sizes.spatial_duration,
-            OF_TIP,
+            NEAR_WEBS,
             sizes,
         )
     )
