@@ -24,6 +24,8 @@ from runs.theme import fixed, number
 Array = npt.NDArray[np.float64]
 
 RATIO = 2.0
+# Below it the meshes do not tell where they lead.
+LEAST_ORDER = 0.5
 # What is allowed of the default mesh, relative to the limit of infinitely fine ones.
 ALLOWED = 0.01
 
@@ -131,7 +133,7 @@ def proofs(quantities: Sequence[Quantity], sizes: Sizes) -> list[Proof]:
     found = []
     for quantity in quantities:
         convergence = quantity.convergence
-        extrapolated = np.isfinite(convergence.limit)
+        extrapolated = convergence.order > LEAST_ORDER  # False where there is none
         found.append(
             Proof(
                 what=f"{quantity.what}, default mesh",
