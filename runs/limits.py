@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
@@ -30,3 +31,25 @@ MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS = 20, 50, 50
 Few = Field(max_length=100)
 # Measured accelerations of a minute at a thousand a second, and more.
 MOST_TIMES = 100_000
+
+
+# Below it a mesh is too fine for one machine.
+LEAST_CONTACT_TOLERANCE = 1.0e-3
+
+
+def _contact_tolerance(given: Any) -> Any:
+    """A part or a word; a union's own complaints would name its branches."""
+    number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
+    if given == "any" or number:
+        return given
+    raise PydanticCustomError(
+        "contact_tolerance",
+        "a number from {least} to below 1, or 'any'",
+        {"least": f"{LEAST_CONTACT_TOLERANCE:g}"},
+    )
+
+
+ContactTolerance = Annotated[
+    float | Literal["any"],
+    BeforeValidator(_contact_tolerance, json_schema_input_type=Part | Literal["any"]),
+]

@@ -18,6 +18,7 @@ from runs.limits import (
     MOST_SEGMENTS,
     MOST_STATIONS,
     MOST_TIMES,
+    ContactTolerance,
     Count,
     Exponent,
     Few,
@@ -412,25 +413,6 @@ Modes = Annotated[
     int | Literal["auto"],
     BeforeValidator(_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]),
 ]
-
-
-# Below it a mesh is too fine for one machine.
-LEAST_CONTACT_TOLERANCE = 1.0e-3
-
-
-def _contact_tolerance(given: Any) -> Any:
-    """A part or a word."""
-    number = isinstance(given, float) and LEAST_CONTACT_TOLERANCE <= given < 1.0
-    if given == "any" or number:
-        return given
-    raise PydanticCustomError(
-        "contact_tolerance",
-        "a number from {least} to below 1, or 'any'",
-        {"least": f"{LEAST_CONTACT_TOLERANCE:g}"},
-    )
-
-
-ContactTolerance = Annotated[float | Literal["any"], BeforeValidator(_contact_tolerance)]
 
 
 class ShellTable(ModelTable):
