@@ -33,6 +33,19 @@ Few = Field(max_length=100)
 MOST_TIMES = 100_000
 
 
+def _modes(given: Any) -> Any:
+    """A number of modes or a word; a union's own complaints would name its branches."""
+    if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
+        return given
+    raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
+
+
+Modes = Annotated[
+    int | Literal["auto"],
+    BeforeValidator(_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]),
+]
+
+
 # Below it a mesh is too fine for one machine.
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 

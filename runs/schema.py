@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core import PydanticCustomError
 
 from runs.limits import (
     MOST_MEMBERS,
@@ -23,6 +22,7 @@ from runs.limits import (
     Exponent,
     Few,
     Flag,
+    Modes,
     Name,
     NotNegative,
     Number,
@@ -400,19 +400,6 @@ class FiniteElementTable(ModelTable):
     tied: Flag = Field(
         False, description="whether the segments deflect alike at the stations, without play"
     )
-
-
-def _modes(given: Any) -> Any:
-    """A number of modes or a word; a union's own complaints would name its branches."""
-    if given == "auto" or (isinstance(given, int) and not isinstance(given, bool) and given > 0):
-        return given
-    raise PydanticCustomError("modes", "a whole number above 0, or 'auto'")
-
-
-Modes = Annotated[
-    int | Literal["auto"],
-    BeforeValidator(_modes, json_schema_input_type=Annotated[int, Field(gt=0)] | Literal["auto"]),
-]
 
 
 class ShellTable(ModelTable):
