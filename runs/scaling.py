@@ -41,7 +41,7 @@ EXPONENT_GOAL = 1.2
 DEFAULT_GOAL, MOTION_GOAL = 5.0, 1.5
 MILLION_GOALS = 300.0, 8.0
 
-STAGES = ("mesh", "assembly", "rows", "reduction", "fields")
+STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
 
 # Of the motions in s: that of the goal, and one that keeps the energy of a shell.
 STEPS = (1.0e-5, 2.5e-6)

@@ -17,7 +17,7 @@ from runs.bad_input import BadInput
 from runs.build import build_boom
 from runs.figures import draw
 from runs.members import slow_below
-from runs.output import prepare, write
+from runs.output import write
 from runs.pipeline import Run, run_case
 from runs.results import Results
 from runs.schema import Case, EnsembleTable
@@ -54,7 +54,7 @@ def run(
 
 @pytest.fixture(scope="module")
 def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
+    out = tmp_path_factory.mktemp("run")
     write(run, out, out)
     return out
 
@@ -129,20 +129,15 @@ def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
     assert results.case.ensemble == run.results.case.ensemble
 
 
-def test_a_run_without_ensembles_leaves_no_file_of_an_earlier_one(
-    run: Run, case: Case, folder: Path, tmp_path: Path
-) -> None:
-    out = prepare(str(tmp_path / "out"), "")
-    write(run, out, out)
-    assert (out / "ensembles.nc").is_file()
+def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path) -> None:
     short = case.model_copy(
         update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
     )
     without = run_case(short, "", None, tmp_path, lambda *_: None)
     assert without is not None
-    write(without, out, out)
-    assert not (out / "ensembles.nc").exists()
-    assert Results.load(out).ensembles is None
+    write(without, tmp_path, tmp_path)
+    assert not (tmp_path / "ensembles.nc").exists()
+    assert Results.load(tmp_path).ensembles is None
 
 
 def test_figures_have_bands_and_horizons(
