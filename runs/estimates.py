@@ -29,14 +29,14 @@ from runs.systems import beam_system
 ROOM, PATIENCE = 4.0e9, 3600.0
 
 # Libraries of a beam's run and of a shell's, in bytes.
-_LIBRARIES, _SHELL_LIBRARIES = 0.42e9, 1.0e9
+_LIBRARIES, _SHELL_LIBRARIES = 0.9e9, 1.25e9
 
 # Numbers of 8 bytes for each output and model: columns, for each coordinate, for each station.
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
 # s for each output and model: files and figures.
 _WRITING = 3.0e-5
 # Numbers for each output and member of an ensemble.
-_OF_MEMBER = 12.0
+_OF_MEMBER = 22.0
 
 # s for a step and for a coordinate in it: where segments rub, or loads change; where they do not.
 _ROUGH_STEP, _SMOOTH_STEP = (0.7e-6, 1.7e-8), (0.1e-6, 1.5e-9)
@@ -52,6 +52,8 @@ _BUILT = 400
 _FLAT, _SPATIAL = 60, 210
 # Dofs of a shell for each square of the mesh size; bytes for a dof, for a coordinate of it; s.
 _DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
+# How many times as many dofs a graded mesh has, at corners and at pads.
+_GRADED, _PADDED = 2.0, 4.0
 # Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
 _ELEMENTS, _SHORTER = 20, 10.0
 
@@ -181,7 +183,9 @@ def _of_shell(model: ShellTable, boom: Boom) -> _StandIn:
         for segment in boom.segments
         if segment.section is not None
     )
-    dofs = _DOFS * area / model.mesh_size**2
+    padded = any(joint.pad is not None for joint in boom.joints)
+    graded = 1.0 if model.contact_tolerance == "any" else _PADDED if padded else _GRADED
+    dofs = graded * _DOFS * area / model.mesh_size**2
     usual = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
     coordinates = usual
     if isinstance(model.modes, int):

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from runs.files import whole, whole_folder
+from runs.files import alone, changed_folder, whole, whole_folder
 from runs.quantities import QUANTITIES, Quantity
 from runs.sweep import Outcome
 from runs.sweep_figures import draw
@@ -63,12 +63,14 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
-    """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones in the end."""
+    """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones at once."""
     data = gather(plan, outcomes)
     with (
-        whole(folder / NETCDF) as netcdf,
-        whole(folder / CSV) as table,
-        whole_folder(folder / "figures") as figures,
+        alone(folder),
+        changed_folder(folder) as part,
+        whole(part / NETCDF) as netcdf,
+        whole(part / CSV) as table,
+        whole_folder(part / "figures") as figures,
     ):
         data.to_netcdf(netcdf, engine="scipy")
         _write_csv(plan, outcomes, table)

@@ -11,11 +11,14 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
+# The distributions that compute.
+_LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx", "petsc4py"
 
-def own_version() -> str | None:
-    """This program's; None where it is not installed."""
+
+def installed_version(name: str) -> str | None:
+    """A distribution's; None where it is not installed."""
     try:
-        return version("protractile")
+        return version(name)
     except PackageNotFoundError:
         return None
 
@@ -26,7 +29,7 @@ def versions() -> dict[str, str | None]:
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
     return {
-        "protractile": own_version(),
+        "protractile": installed_version("protractile"),
         "python": platform.python_version(),
         **{name: getattr(sys.modules.get(name), "__version__", None) for name in modules},
     }
@@ -55,8 +58,8 @@ def sources(folders: Iterable[Path]) -> str:
 
 def program() -> dict[str, str | None]:
     """What decides a result beside its data: the sources, and the libraries that compute."""
-    # Ranks only share the work, and a beam's points do not load what asks for them.
-    libraries = {name: number for name, number in versions().items() if name != "mpi4py"}
+    # As installed: what a process has loaded says nothing of what another one will compute.
+    libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}
 
 

@@ -403,10 +403,12 @@ def charts(sweeping: Plan) -> list[str]:
         )
         for i in range(len(sweeping.points))
     ]
-    sweep_output.write(sweeping, outcomes, Path())
-    names = sorted(path.name for path in Path("figures").glob("*.png"))
+    out = Path("out")
+    out.mkdir()
+    sweep_output.write(sweeping, outcomes, out)
+    names = sorted(path.name for path in (out / "figures").glob("*.png"))
     for name in names:
-        with Image.open(Path("figures") / name) as image:
+        with Image.open(out / "figures" / name) as image:
             assert image.size[0] == round(theme.WIDTH * theme.DPI)
             assert np.asarray(image.convert("L")).min() < 128
     return names

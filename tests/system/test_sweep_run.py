@@ -46,7 +46,8 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     assert "Sweep over joint.play: 3 points" in out
     before = stamps("out")
     assert len(before) == 3
-    expected = {"sweep.nc", "sweep.csv", "figures/sweep-lines.png", "figures/.manifest"}
+    expected = {".manifest", "sweep.nc", "sweep.csv"}
+    expected |= {"figures/sweep-lines.png", "figures/.manifest"}
     expected |= {f"points/{k}/{name}" for k in before for name in ("point.json", "SHA256SUMS")}
     assert files(Path("out")) == expected
     with Image.open("out/figures/sweep-lines.png") as image:

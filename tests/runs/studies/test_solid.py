@@ -105,4 +105,4 @@ def test_tables_and_proofs_have_every_quantity() -> None:
     proofs = shell_proofs(found)
     assert all(proof.holds for proof in proofs)
     assert [proof.error for proof in proofs[:8]] == pytest.approx([0.004] * 8)
-    assert proofs[8].what == "blow, largest force, walls of 5 mm"
+    assert proofs[9].what == "blow, largest force, walls of 5 mm"

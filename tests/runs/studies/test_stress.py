@@ -25,7 +25,8 @@ def test_contact_forces_hold_the_segment() -> None:
 
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     """Reference: analytic away from contacts; near them the refinement itself. Half the mesh
-    doubles the stress of the nearest triangle beside a force at a point.
+    would double the stress of the nearest triangle beside a force at a point; beside one along a
+    length it still grows.
     """
     found = study(lambda what: None, TINY)
     assert all(proof.holds for proof in found.proofs)
@@ -34,5 +35,5 @@ def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     near = {(one["x"], one["what"]): one["von_mises"] for one in found.data["near"]}
     for x in (9.0, 10.0):
         triangle, patch = near[x, "triangle"], near[x, "patch"]
-        assert triangle[2] / triangle[1] == pytest.approx(2.0, abs=0.3)
+        assert 1.2 < triangle[2] / triangle[1] < 1.7
         assert patch[2] == pytest.approx(patch[1], rel=0.03)
