@@ -12,6 +12,7 @@ import errno
 import io
 import os
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import ExitStack, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
@@ -178,12 +179,19 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
     def dot(sheet: Sheet, path: Path, **options: object) -> None:
         Image.new("L", (1, 1)).save(path)
 
+    def here(*arguments: object) -> Executor:
+        return ThreadPoolExecutor(1)
+
     status: object = None
     said = io.StringIO()
     with redirect_stdout(io.StringIO()), redirect_stderr(said), suppress(SystemExit):
         try:
-            # What is drawn takes all the time, and its writing is not ours.
-            with patch("runs.output.render_snapshots", refuse), patch.object(Sheet, "savefig", dot):
+            # Drawings and processes take all the time, and this disk is one process's.
+            with (
+                patch("runs.output.render_snapshots", refuse),
+                patch("runs.sweep.ProcessPoolExecutor", here),
+                patch.object(Sheet, "savefig", dot),
+            ):
                 cli.main(command)
         except SystemExit as ended:
             status = ended.code
