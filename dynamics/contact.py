@@ -36,8 +36,8 @@ TERM = np.dtype(
 # The gaps in m between which a row is open, and its damping in s/m.
 LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
 
-# A penetration in m, smaller than any that matters.
-_LEAST = 1.0e-30
+# In m, N and J: smaller than any that matters; and the logarithm of a penetration beyond all.
+_LEAST, _DEEPEST = 1.0e-300, 500.0
 
 
 class Term(NamedTuple):
@@ -123,14 +123,16 @@ class ContactLaw(ABC):
     def _slope_on(
         self, side: float, measure: Callable[[ContactLaw, Array], Array], value: float
     ) -> float:
-        def excess(depth: float) -> float:
-            return abs(float(measure(self, np.array(side * depth)))) - value
+        def excess(log_depth: float) -> float:
+            found = abs(float(measure(self, np.array(side * np.exp(log_depth)))))
+            return float(np.log(max(found, _LEAST)) - np.log(max(value, _LEAST)))
 
-        deep = 1.0
-        while excess(deep) < 0.0:
-            deep *= 2.0
-        depth = max(brentq(excess, 0.0, deep, xtol=_LEAST, rtol=1.0e-12), _LEAST)
-        return float(self.slope(np.array(side * depth)))
+        # In logarithms a power is a straight line, however deep or stiff.
+        high, up = 0.0, 1.0 if excess(0.0) < 0.0 else -1.0
+        while up * excess(high) < 0.0 and abs(high) < _DEEPEST:
+            high += up
+        depth = brentq(excess, high, high - up) if up * excess(high) > 0.0 else high
+        return float(self.slope(np.array(side * np.exp(depth))))
 
     def _sum(self, of_term: Callable[[np.void, float], float], y: Array) -> Array:
         gaps = np.asarray(y, dtype=np.float64)

@@ -101,3 +101,28 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
 def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, "clearance": 7.0e-3, **arguments})
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
+@pytest.mark.parametrize("value", [1.0e-40, 1.0e-18, 1.0e-3, 1.0e5, 1.0e200])
+def test_the_slope_is_known_at_any_energy_and_force(exponent: float, value: float) -> None:
+    """Reference: analytic. k pⁿ⁺¹/(n+1) = E, or k pⁿ = F, on the stiffer side; far less than a
+    clearance and far more than any number of a case among them.
+    """
+    n, k = exponent, 1.0e13
+    law = PowerContact(0.5 * k, n, clearance=7.0e-3, stiffness_below=k)
+    deep = ((n + 1.0) * value / k) ** (1.0 / (n + 1.0))
+    assert law.slope_where(PowerContact.energy, value) == pytest.approx(
+        n * k * deep ** (n - 1.0), rel=1e-9
+    )
+    assert law.slope_where(PowerContact.force, value) == pytest.approx(
+        n * k * (value / k) ** ((n - 1.0) / n), rel=1e-9
+    )
+
+
+def test_the_slope_at_no_energy_and_at_none_that_is_a_number() -> None:
+    """Reference: analytic, for a linear law; else there is one to be had at all."""
+    linear = PowerContact(1.0e9, 1.0, 0.0)
+    for value in (0.0, np.inf, np.nan):
+        assert linear.slope_where(PowerContact.energy, value) == pytest.approx(1.0e9)
+    assert LAW.slope_where(PowerContact.energy, 0.0) == pytest.approx(0.0, abs=1e-6)
