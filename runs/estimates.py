@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a run will take, told before it starts: memory and time from the numbers of its case.
 
-Estimates are to be high by a factor of up to about three rather than low. Steps of beams are those
+Estimates are to be high by a factor of up to about four rather than low. Steps of beams are those
 that they will make; a shell has not been meshed yet, and its steps follow from a beam's. The
 constants were measured on one core of an AMD EPYC (``python -m runs.bench``, and
 tests/runs/test_estimates.py for the memory).

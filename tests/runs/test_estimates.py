@@ -67,12 +67,14 @@ def memory(*arguments: str) -> int:
 def test_memory_is_not_above_the_estimate_and_not_far_below(
     edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
 ) -> None:
-    """Reference: external, what the operating system has counted."""
+    """Reference: external, what the operating system has counted; a first run of all, which
+    compiles, takes three times as much as a later one.
+    """
     write(*edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
     used = memory(*options, "--members", str(members or 0))
-    assert used <= of_run(case).memory <= 3.0 * used
+    assert used <= of_run(case).memory <= 4.0 * used
 
 
 @pytest.mark.quick
