@@ -31,7 +31,7 @@ def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> 
         monkeypatch.setattr("sys.stderr", stderr)
         pool.submit(read_late)
         with pytest.raises(AssertionError, match="MPI_Abort returned"):
-            ranks.fail("protractile: no number is finite", 3, comm)  # type: ignore[arg-type]
+            ranks.fail("protractile: no number is finite", 3, comm)
     os.close(reader)
     assert at_abort == [[b"protractile: no number is finite\n"]]
 
@@ -41,5 +41,5 @@ def test_aborts_at_once_where_nothing_is_a_pipe(monkeypatch: pytest.MonkeyPatch)
     comm = SimpleNamespace(size=2, rank=0, Abort=codes.append)
     monkeypatch.setattr("sys.stderr", io.StringIO())
     with pytest.raises(AssertionError, match="MPI_Abort returned"):
-        ranks.fail("protractile: no number is finite", 3, comm)  # type: ignore[arg-type]
+        ranks.fail("protractile: no number is finite", 3, comm)
     assert codes == [3]
