@@ -12,7 +12,7 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from threading import Event, Lock, Thread
+from threading import Event, RLock, Thread
 from time import sleep
 
 from runs import ranks
@@ -26,7 +26,8 @@ GRACE = 1.0
 _CLEAR = b"\r\x1b[K\x1b[?25h"
 
 _undone: list[Callable[[], object]] = []
-_ending = Lock()
+_ending = RLock()
+_signals: list[int] = []
 
 
 def listen() -> None:
@@ -65,6 +66,10 @@ def _end(number: int, frame: object = None) -> None:
     if not _ending.acquire(blocking=False):
         # The other one is at it.
         Event().wait()
+    _signals.append(number)
+    if len(_signals) > 1:
+        # A second one interrupts this very function, which goes on.
+        return
     # The first rank speaks for all; it is interrupted when another one is.
     if ranks.launched_rank() == 0:
         with suppress(OSError):

@@ -18,6 +18,21 @@ from tests.system.run_folder import COARSE, ROOT
 RUN = "run", COARSE, "--models", "kantorovich-4,timoshenko", "--no-cache"
 SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0.014:8"
 
+# A second signal comes while the first one is being obeyed.
+AGAIN = """
+import signal, time
+from runs import interruption
+
+def clean():
+    signal.raise_signal(signal.SIGTERM)
+    print("clean", flush=True)
+
+interruption.listen()
+with interruption.undone(clean):
+    signal.raise_signal(signal.SIGINT)
+    time.sleep(60.0)
+"""
+
 
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     """A command in a process group of its own, as a terminal starts it."""
@@ -80,3 +95,11 @@ def test_a_sweep_ends_with_its_processes(
     assert process.returncode == 128 + number
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["points"]
+
+
+def test_who_presses_twice_does_not_wait_for_ever() -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", AGAIN], cwd=ROOT, capture_output=True, text=True, timeout=30
+    )
+    assert (ended.stdout, ended.stderr) == ("clean\n", "protractile: interrupted\n")
+    assert ended.returncode == 128 + signal.SIGINT
