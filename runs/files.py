@@ -120,8 +120,9 @@ def _hidden(path: Path) -> str:
 def _locked(part: Path) -> IO[str]:
     """The manifest of a new folder, locked as long as it is open."""
     while True:
-        part.mkdir(exist_ok=True)
         # Another process may clear it away before it is locked.
+        with suppress(FileExistsError):
+            part.mkdir()
         with suppress(FileNotFoundError, BlockingIOError):
             manifest = (part / MANIFEST).open("a", encoding="utf-8")
             _lock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -133,17 +134,24 @@ def _clear(path: Path) -> None:
     """Take away what killed processes have left beside a path."""
     for left in path.parent.glob(f"{escape(_hidden(path))}*"):
         with suppress(OSError):
-            if not (left / MANIFEST).exists():
-                # The manifest is the first file of all: either it is about to come, or has gone.
-                left.rmdir() if not any(left.iterdir()) else shutil.rmtree(left)
-                continue
-            with (left / MANIFEST).open("r+", encoding="utf-8") as lock:
-                if not _lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB):
-                    continue
-                if left.suffix == _AWAY and not path.exists():
-                    left.rename(path)
-                else:
-                    shutil.rmtree(left, ignore_errors=True)
+            # One look: the manifest is the first file of all, and may come at any moment.
+            names = os.listdir(left)
+            if MANIFEST in names:
+                with (left / MANIFEST).open("r+", encoding="utf-8") as lock:
+                    if _lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB):
+                        _put_away(left, path)
+            elif names or left.suffix == _AWAY:
+                _put_away(left, path)
+            else:
+                left.rmdir()
+
+
+def _put_away(left: Path, path: Path) -> None:
+    """What nobody writes any more goes, or back to where it has been."""
+    if left.suffix == _AWAY and not path.exists():
+        left.rename(path)
+    else:
+        shutil.rmtree(left, ignore_errors=True)
 
 
 def _lock(file: IO[str], how: int) -> bool:

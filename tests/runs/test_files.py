@@ -8,10 +8,11 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from runs.files import MANIFEST, alone, changed_folder, whole, whole_folder
+from runs.files import MANIFEST, alone, beside, changed_folder, whole, whole_folder
 
 pytestmark = pytest.mark.quick
 
@@ -181,6 +182,35 @@ def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path:
     folder.rename(tmp_path / ".out.protractile-01234567.away")
     with alone(folder):
         assert contents(folder) == {"earlier": "earlier"}
+
+
+def test_so_does_one_that_has_never_had_a_manifest(tmp_path: Path) -> None:
+    write(tmp_path / ".out.protractile-01234567.away", "mine")
+    with alone(tmp_path / "out"):
+        assert contents(tmp_path / "out") == {"mine": "mine"}
+
+
+def test_what_another_process_has_just_begun_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its files come right after each look at its folder."""
+    other = tmp_path / ".out.protractile-01234567"
+    other.mkdir()
+
+    def look_early(look: Any) -> Any:
+        def looked(path: Any, *arguments: Any, **named: Any) -> Any:
+            try:
+                return look(path, *arguments, **named)
+            finally:
+                if str(path).startswith(str(other)) and not os.path.lexists(other / MANIFEST):
+                    os.close(os.open(other / MANIFEST, os.O_CREAT))
+
+        return looked
+
+    for name in ("stat", "listdir"):
+        monkeypatch.setattr(os, name, look_early(getattr(os, name)))
+    with beside(tmp_path / "out"):
+        assert (other / MANIFEST).exists()
 
 
 def test_what_a_killed_process_leaves_goes_and_what_a_live_one_writes_stays(
