@@ -7,7 +7,7 @@ import json
 import sys
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -31,6 +31,7 @@ from runs.results import FIELDS, Results
 from runs.schema import Case, ShellTable, case_schema
 from runs.shown import message, printable, shown
 from runs.terminal import Terminal, say
+from runs.user_files import check_left
 from shell_model.rendering import RenderingUnavailable
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def report(
     for folder in folders:
         with alone(Path(folder)):
             runs[folder] = results = Results.load(Path(folder))
+            check_left(Path(folder), folder, "folder")
             surveyed = readings.load(Path(folder), results.case)
             with changed_folder(Path(folder)) as part:
                 output.write_report(results, part, surveyed)
@@ -130,6 +132,7 @@ def snapshot(
     """Render the deformed shells of a run, and its report again with the pictures."""
     with alone(Path(folder)):
         results = Results.load(Path(folder))
+        check_left(Path(folder), folder, "folder")
         surveyed = readings.load(Path(folder), results.case)
         last = results.case.time.duration
         for t in time or []:
@@ -204,7 +207,9 @@ def check(case: CaseFile) -> int:
 @app.command()
 def schema() -> int:
     """Print the JSON Schema of a case file."""
-    print(json.dumps(case_schema(), indent=1))
+    # Longer than what is kept until the end, where who reads no more is known to have had enough.
+    with suppress(BrokenPipeError):
+        print(json.dumps(case_schema(), indent=1))
     return 0
 
 

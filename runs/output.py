@@ -32,6 +32,7 @@ from runs.results import (
 )
 from runs.schema import ShellTable
 from runs.tables import TextTable
+from runs.user_files import check_left
 from shell_model.field_series import write_field_series
 from shell_model.rendering import RenderingUnavailable, render_snapshots
 
@@ -54,7 +55,7 @@ def prepare(out: str, file: str) -> Path:
         file: the case file, for messages.
 
     Raises:
-        BadInput: it cannot be made or replaced, or holds something else.
+        BadInput: it cannot be made or replaced, holds something else, or its user is in it.
     """
     folder = Path(out)
     key = f"--out {out}"
@@ -75,6 +76,7 @@ def prepare(out: str, file: str) -> Path:
         raise BadInput(
             file, key, "holds files that are not a run's; give a new folder or an earlier run's"
         )
+    check_left(folder, file, key)
     return folder
 
 

@@ -34,6 +34,7 @@ from runs.pipeline import Progress, run_case
 from runs.quantities import QUANTITIES, Measured, measure
 from runs.schema import Case, ShellTable
 from runs.sweep_points import Point
+from runs.user_files import check_left
 from runs.versions import program
 
 if TYPE_CHECKING:
@@ -72,15 +73,17 @@ def prepare(folder: Path, file: str) -> None:
         file: the case file, for messages.
 
     Raises:
-        BadInput: it holds something else.
+        BadInput: it holds something else, or its user is in it.
         OSError: it cannot be made.
     """
+    key = f"--out {folder}"
     if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
         raise BadInput(
             file,
-            f"--out {folder}",
+            key,
             "holds files that are not a sweep's; give a new folder or an earlier sweep's",
         )
+    check_left(folder, file, key)
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
 
 

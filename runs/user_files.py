@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Files that a user names: regular ones of a sensible size, or none of them is read."""
+"""What a user names: regular files of a sensible size are read, folders around nobody replaced."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import errno
 import os
 import stat
 from pathlib import Path
+
+from runs.bad_input import BadInput
 
 # Bytes of a text: a case of as many tabulated times as are allowed has less.
 LARGEST = 16_000_000
@@ -23,6 +25,22 @@ def check_regular(path: Path) -> None:
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not stat.S_ISREG(mode):
         raise OSError(errno.EINVAL, "not a regular file", str(path))
+
+
+def check_left(folder: Path, file: str, key: str) -> None:
+    """Refuse a folder that its user is in: a shell stays in what has been replaced, and is empty.
+
+    Args:
+        folder: that another one is to take the place of.
+        file, key: for messages.
+
+    Raises:
+        BadInput: this process has been started in it.
+    """
+    if Path.cwd().is_relative_to(folder.resolve()):
+        raise BadInput(
+            file, key, "is where you are, and will be replaced; start from another folder"
+        )
 
 
 def read_text(path: Path) -> str:

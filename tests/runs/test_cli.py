@@ -214,6 +214,16 @@ def test_a_demand_that_is_not_met_is_said_and_counts(protractile: Protractile) -
     assert Path("out/report.html").exists()
 
 
+def test_a_report_is_not_replaced_around_its_reader(
+    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert protractile("run", "case.toml", *SERIES, "--out", "out").status == 0
+    monkeypatch.chdir("out")
+    for command in ("report", "snapshot"):
+        line = ".: folder: is where you are, and will be replaced; start from another folder"
+        assert protractile(command, ".") == (2, "", f"protractile: {line}\n")
+
+
 def test_a_shell_without_fenicsx_is_one_line(
     protractile: Protractile, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,7 +20,11 @@ ROOT = Path(__file__).parents[2]
 
 def check(redirection: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """``protractile check`` of the coarse case in a shell, its output redirected."""
-    command = f"{sys.executable} -m runs check {COARSE} {redirection}"
+    return in_a_shell(f"check {COARSE} {redirection}", **environment)
+
+
+def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = f"{sys.executable} -m runs {line}"
     return subprocess.run(
         ["bash", "-o", "pipefail", "-c", command],
         cwd=ROOT,
@@ -42,6 +46,11 @@ def test_a_full_disk_is_one_line() -> None:
 @pytest.mark.parametrize("redirection", [">&-", "2>&- >/dev/null", "| head -n 1", "| true"])
 def test_whom_nobody_hears_ends_in_peace(redirection: str) -> None:
     answer = check(redirection)
+    assert (answer.returncode, answer.stderr) == (0, "")
+
+
+def test_who_leaves_in_the_middle_of_a_long_text_does_so_in_peace() -> None:
+    answer = in_a_shell("schema | true")
     assert (answer.returncode, answer.stderr) == (0, "")
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from runs import output
 from runs.bad_input import BadInput
 from runs.case import load
-from runs.user_files import LARGEST
+from runs.user_files import LARGEST, check_left
 from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.quick
@@ -77,4 +78,22 @@ def test_a_history_s_file_is_a_printable_path() -> None:
     Path("case.toml").write_text(text, encoding="utf-8")
     assert complaint("case.toml") == (
         "case.toml: base[1].file: must be a line of printable characters, got 'a\\x00b.csv'"
+    )
+
+
+@pytest.mark.parametrize("inside", ["", "figures"])
+def test_nobody_s_folder_is_replaced_around_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inside: str
+) -> None:
+    folder = tmp_path / "out"
+    (folder / "figures").mkdir(parents=True)
+    (folder / "trajectories.nc").touch()
+    monkeypatch.chdir(folder / inside)
+    for other in (folder / "other", tmp_path / "other", tmp_path / "ou"):
+        check_left(other, "case.toml", "--out other")
+    with pytest.raises(BadInput) as refused:
+        output.prepare(str(folder), "case.toml")
+    assert str(refused.value) == (
+        f"case.toml: --out {folder}: is where you are, and will be replaced; start from another "
+        "folder"
     )
