@@ -7,7 +7,7 @@
 VERIFY_CASES := paper paper-friction three-segments spatial
 
 ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
-SOURCES := pyproject.toml $(wildcard runs/templates/*) \
+SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 READINGS := runs/out/readings/readings.json
@@ -42,16 +42,16 @@ snapshots: $(REPORTS) ## pictures of the verify cases
 	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
 gallery: $(REPORTS) ## the pictures of docs/gallery.md, from the verify cases
-	$(BIN)/python -m runs.gallery
+	$(BIN)/python -m runs.report.gallery
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
-	$(BIN)/python -m runs.bench
+	$(BIN)/python -m runs.benchmarks.bench
 
 readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
-	$(BIN)/python -m runs.readings
+	$(BIN)/python -m runs.paper.readings
 
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
-	$(BIN)/python -m runs.convergence
+	$(BIN)/python -m runs.studies.convergence
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
@@ -92,7 +92,7 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 
 $(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
 	@echo "surveying readings of $< ..."
-	@$(BIN)/python -m runs.readings >/dev/null
+	@$(BIN)/python -m runs.paper.readings >/dev/null
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -20,7 +20,7 @@ from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from geometry.boom import Boom, Direction
-from geometry.pads import Pad, pads
+from geometry.contact_places import Pad, pads
 
 Array = npt.NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import minimize
 
 from dynamics.contact import ContactLaw, contact_terms
-from dynamics.contact_kicks import contact_energy, contact_forces, contact_slopes
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.contact_kicks import contact_energy, contact_forces, contact_slopes
 
 Array = npt.NDArray[np.float64]
 

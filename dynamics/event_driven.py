@@ -3,8 +3,9 @@
 
 While no row touches, every gap is a sum of cosines and parabolas: the motion jumps, each time as
 far as the gaps cannot shut even if all modes pulled together, so that no contact is missed however
-short (:mod:`dynamics.flight`). While rows press, it goes on by its Taylor series
-(:mod:`dynamics.contact_series`), a few of which make a contact. Outputs are read on the way.
+short (:mod:`dynamics.kernels.flight`). While rows press, it goes on by its Taylor series
+(:mod:`dynamics.kernels.contact_series`), a few of which make a contact. Outputs are read on the
+way.
 """
 
 from __future__ import annotations
@@ -14,11 +15,19 @@ import numpy.typing as npt
 from numba import njit
 
 from dynamics.contact import Terms, contact_limits, contact_terms, term_force
-from dynamics.contact_series import Series, evaluate, exit_time, expand, farthest, impulse, reach
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
-from dynamics.flight import jump, pulls, safe_time, tabulate
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.contact_series import (
+    Series,
+    evaluate,
+    exit_time,
+    expand,
+    farthest,
+    impulse,
+    reach,
+)
+from dynamics.kernels.flight import jump, pulls, safe_time, tabulate
 from dynamics.step import closing_speeds, initial_speeds
 from dynamics.trajectory import Trajectory
 

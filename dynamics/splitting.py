@@ -6,9 +6,9 @@ impulse at the new place (Strang 1968; for stiff springs known as the impulse me
 et al. 1991). It is second order, symplectic without damping and time-reversible, so the energy
 error stays bounded over any number of contacts, which Newmark's method does not give. Damping acts
 outside the contact impulses, where speeds are smooth: between them a mode that rests under a force
-swings by the impulses alone, and would be damped in vain (:mod:`dynamics.decay`). Dry
-friction acts in the middle of the flow (:mod:`dynamics.friction_step`); a step in which a sliding
-row turns is made in two, so that it turns between them.
+swings by the impulses alone, and would be damped in vain (:mod:`dynamics.kernels.decay`). Dry
+friction acts in the middle of the flow (:mod:`dynamics.kernels.friction_step`); a step in which a
+sliding row turns is made in two, so that it turns between them.
 
 While the gaps are so wide that none can shut for some steps, these are made at once: the flow is
 exact over any time.
@@ -23,11 +23,11 @@ import numpy.typing as npt
 from numba import njit
 
 from dynamics.contact import Limits
-from dynamics.contact_kicks import contact_energy, contact_forces, elastic_kick
-from dynamics.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.gap_system import GapSystem
-from dynamics.integrator_state import (
+from dynamics.kernels.contact_kicks import contact_energy, contact_forces, elastic_kick
+from dynamics.kernels.decay import Damping, damp, damping_arrays, drag, kept_after
+from dynamics.kernels.integrator_state import (
     CHANGES,
     DAMPING,
     FIRST_CONTACT,
@@ -45,8 +45,8 @@ from dynamics.integrator_state import (
     look,
     system_arrays,
 )
-from dynamics.lossy_steps import Space, lossy_steps, space_for
-from dynamics.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
+from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
+from dynamics.kernels.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
 from dynamics.step import DRAGGED, contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 

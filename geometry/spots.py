@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from geometry.boom import Boom
+from geometry.contact_places import ContactLine, Pad, Stretch, pads, patch
 from geometry.grading import Spot
-from geometry.pads import ContactLine, Pad, Stretch, pads, patch
 from geometry.section import BoxSection
 
 # The tolerance at which the parts below were measured.

@@ -4,7 +4,11 @@
 import logging
 import os
 import warnings
+from pathlib import Path
 from typing import Any
+
+# Of the cases that come with the program.
+CASES = Path(__file__).parent / "cases"
 
 # Before numpy reads it. Parallelism is ranks, members and points; what BLAS sums over threads
 # differs in the last bit between one process and several, and contact amplifies that.

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from runs.interruption import listen
+from runs.process.interruption import listen
 
 
 def main() -> None:

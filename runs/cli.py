@@ -17,22 +17,27 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
 from dynamics.failure import NumericsError
-from runs import case as case_file
-from runs import estimates, notices, output, ranks, readings, sweep_output, sweep_points, terminal
-from runs import sweep as sweep_runs
-from runs.bad_input import BadInput
-from runs.cache import Cache, default_folder
-from runs.files import alone, beside, changed_folder, whole_folder
-from runs.inferred import print_inferred
-from runs.pipeline import Progress as Tell
-from runs.pipeline import run_case
-from runs.printed import print_models, print_verdicts
-from runs.results import FIELDS, Results
-from runs.schema import Case, ShellTable, case_schema
-from runs.shown import message, printable, shown
-from runs.terminal import Terminal, say
-from runs.user_files import check_left
-from shell_model.rendering import RenderingUnavailable
+from runs.case import reading as case_file
+from runs.case.messages import BadInput
+from runs.case.schema import Case, ShellTable, case_schema
+from runs.case.user_files import check_left
+from runs.folder.cache import Cache, default_folder
+from runs.folder.files import alone, beside, changed_folder, whole_folder
+from runs.paper import readings
+from runs.pipeline import estimates
+from runs.pipeline.inferred import print_inferred
+from runs.pipeline.results import FIELDS, Results
+from runs.pipeline.run import Progress as Tell
+from runs.pipeline.run import run_case
+from runs.process import notices, ranks, terminal
+from runs.process.shown import message, printable, shown
+from runs.process.terminal import Terminal, say
+from runs.report import output
+from runs.report.printed import print_models, print_verdicts
+from runs.sweep import output as sweep_output
+from runs.sweep import points
+from runs.sweep import run as sweep_runs
+from shell_model.pictures.rendering import RenderingUnavailable
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -177,7 +182,7 @@ def sweep(
     those of its own play, whatever play a point has. Under mpirun the ranks but the first run the
     points, else the cores do. Ensembles are left out.
     """
-    plan = sweep_points.plan(case, vary, _names(models), mesh_size)
+    plan = points.plan(case, vary, _names(models), mesh_size)
     if not large:
         estimates.refuse_large(estimates.of_sweep([point.case for point in plan.points]), case)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
@@ -347,7 +352,7 @@ def _show_models_that_failed(file: str, results: Results) -> int:
     return 3
 
 
-def _show_failures(plan: sweep_points.Plan, outcomes: Sequence[sweep_runs.Outcome]) -> int:
+def _show_failures(plan: points.Plan, outcomes: Sequence[sweep_runs.Outcome]) -> int:
     """A line for each model that failed at a point; the exit status, 3 if nothing else is left."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():

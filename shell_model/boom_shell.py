@@ -18,23 +18,23 @@ from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
 from geometry.boom import Boom, BoomError, Direction, Load
+from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.pads import ContactLine
 from geometry.spots import spots
-from shell_model.coordinates import BoomCoordinates
-from shell_model.fields import gather_fields
-from shell_model.joint_rows import contacts_and_frictions, ties
-from shell_model.local_compliance import (
+from shell_model.contact.local_compliance import (
     compliance,
     extrapolated_error,
     full_compliance,
     local_compliance,
 )
-from shell_model.outline import Outline, Reading, Row
-from shell_model.reduction import KrylovOptions, reduce_segment
+from shell_model.contact.rows import contacts_and_frictions, ties
+from shell_model.contact.surface import SurfaceOptions, without_stiff_modes
+from shell_model.cross_section import Outline, Reading, Row
+from shell_model.reduction.coordinates import BoomCoordinates
+from shell_model.reduction.segment import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
-from shell_model.surface_contact import SurfaceOptions, without_stiff_modes
+from shell_model.stress.fields import gather_fields
 
 Array = npt.NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class ReducedShell:
             part of the local one, NaN where there is none, ``readings`` relative, and
             ``frequency_limit_in_hz`` up to which each mode is right in itself.
         local_compliance: (num_rows,) of the contacts in m/N, see
-            :func:`shell_model.local_compliance.local_compliance`.
+            :func:`shell_model.contact.local_compliance.local_compliance`.
         mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
             there is none.
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their

@@ -19,9 +19,9 @@ from geometry.boom import Direction, Segment, Support
 from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
 from geometry.section import BoxSection
 from shell_model import compat
-from shell_model.attachments import Attached
+from shell_model.contact.attachments import Attached
+from shell_model.cross_section import COMPONENT, ON_WALL, Outline, Row
 from shell_model.forms import ShellForms, shell_forms
-from shell_model.outline import COMPONENT, ON_WALL, Outline, Row
 
 Array = npt.NDArray[np.float64]
 

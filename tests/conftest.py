@@ -18,7 +18,7 @@ from hypothesis import settings
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import infer_inner_section, infer_outer_section
-from runs.cache import VARIABLE
+from runs.folder.cache import VARIABLE
 from tests.space import in_space
 
 # The same examples every time, however slow the machine.

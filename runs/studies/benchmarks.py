@@ -9,17 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from runs.build import build_boom
+from runs.case.build import build_boom
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Refined, refined_plot, refined_table
 from runs.studies.study import Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, scientific
-from shell_model import benchmarks
-from shell_model.benchmarks import PUBLISHED, SHEAR_RIGID
 from shell_model.forms import DRILLING, DRILLING_OF_CURVED
-from shell_model.members import ANGLE, BOX, PlainBox
-from shell_model.plates import OBLIQUE, Patch, SupportedPlate, constant_strains
+from shell_model.verification import benchmarks
+from shell_model.verification.benchmarks import PUBLISHED, SHEAR_RIGID
+from shell_model.verification.plates import OBLIQUE, Patch, SupportedPlate, constant_strains
+from shell_model.verification.prismatic import ANGLE, BOX, PlainBox
 
 Array = npt.NDArray[np.float64]
 

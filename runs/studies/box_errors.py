@@ -22,7 +22,7 @@ from runs.studies.box_pair import (
     solid_parts,
 )
 from runs.studies.grid_convergence import GridConvergence
-from shell_model.mirror import ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 
 Boxes = tuple[Segment, Segment]
 Parts = Sequence[Mapping[Family, Part]]

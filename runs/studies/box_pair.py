@@ -23,17 +23,17 @@ from dynamics.splitting import integrate
 from geometry.boom import Material, Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
-from geometry.solid_mesh import mesh_quarter
 from runs.studies.motions import SLOW
-from shell_model.families import Folding
-from shell_model.krylov import KrylovOptions, reduce_family
-from shell_model.mirror import ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.outline import Outline, Row, combine
-from shell_model.products import times
+from shell_model.contact.surface import gauss
+from shell_model.cross_section import Outline, Row, combine
+from shell_model.reduction.krylov import KrylovOptions, reduce_family
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.reduction.products import times
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding
 from shell_model.segment_shell import Shell, assemble_segment
-from shell_model.shifted_solver import ShiftedSolver
-from shell_model.solid import assemble_solid
-from shell_model.surface_contact import gauss
+from shell_model.verification.solid import assemble_solid
+from shell_model.verification.solid_mesh import mesh_quarter
 
 Array = npt.NDArray[np.float64]
 

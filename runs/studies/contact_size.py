@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What the walls give way under contacts of every size, on ever finer meshes and by plate theory.
 
-The paper's boom with friction, its stations squeezed (:mod:`shell_model.local_compliance`), without
-a reduction; and its first peak, which tells what that is worth.
+The paper's boom with friction, its stations squeezed
+(:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which tells
+what that is worth.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ from mpi4py import MPI
 
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
-from runs.build import build_boom, contact_laws
-from runs.schema import Case, ShellTable
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case, ShellTable
+from runs.pipeline.models import shell_options
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO
 from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
 from runs.studies.working_load import OUTPUT_STEP, PHASE
-from runs.systems import shell_options
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 Array = npt.NDArray[np.float64]
 
@@ -84,8 +85,8 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
 def squeezed(contact: Contact, part: float) -> Array:
     """(num_stations,) local compliance in m/N, edges so many times as long as the default ones."""
     from shell_model.boom_shell import assemble_segments
-    from shell_model.joint_rows import contacts_and_frictions
-    from shell_model.local_compliance import full_compliance, local_compliance
+    from shell_model.contact.local_compliance import full_compliance, local_compliance
+    from shell_model.contact.rows import contacts_and_frictions
 
     boom = build_boom(contact.case)
     model = finer(_shell(contact.case), part)
@@ -206,7 +207,7 @@ def proofs(found: Sequence[Found], sizes: Sizes) -> list[Proof]:
 
 def plate_proofs(sizes: Sizes) -> list[Proof]:
     """A wall under a patch beside its edge."""
-    from shell_model.pressed_plate import flange
+    from shell_model.verification.pressed_plate import flange
 
     found = []
     for edges in ("simply supported", "clamped"):

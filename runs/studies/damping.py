@@ -15,17 +15,17 @@ from dynamics.damping import pressed_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
-from runs import case as case_file
-from runs.build import build_boom
-from runs.schema import ShellTable
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import ShellTable
+from runs.report.tables import TextTable
+from runs.report.theme import number
 from runs.studies.motions import gap_system, model_of
 from runs.studies.study import Proof, Study
-from runs.tables import TextTable
-from runs.theme import number
 
 Array = npt.NDArray[np.float64]
 
-CASES = Path(__file__).parents[1] / "cases"
 
 # Booms, and their cases.
 BOOMS = {

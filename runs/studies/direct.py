@@ -18,14 +18,14 @@ import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.energy import ENERGY_BOUND
-from runs.build import build_boom, contact_laws
-from runs.motion import Motion
-from runs.schema import Case, ShellTable
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case, ShellTable
+from runs.pipeline.motion import Motion
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.motions import friction_case, gap_system, loaded, model_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 Array = npt.NDArray[np.float64]
 
@@ -123,8 +123,8 @@ def compare(
         tell: told what is being moved.
     """
     from shell_model.boom_shell import ShellOptions, reduce_boom
-    from shell_model.direct import assemble_boom, integrate_directly
-    from shell_model.reduction import KrylovOptions
+    from shell_model.reduction.segment import KrylovOptions
+    from shell_model.verification.unreduced import assemble_boom, integrate_directly
 
     time = case.time.model_copy(update={"duration": sizes.duration})
     case = case.model_copy(update={"time": time})

@@ -12,14 +12,14 @@ from scipy.signal import find_peaks
 
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
-from runs.build import build_boom
-from runs.motion import Motion
-from runs.schema import Case, ShellTable
+from runs.case.build import build_boom
+from runs.case.schema import Case, ShellTable
+from runs.pipeline.motion import Motion
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 Array = npt.NDArray[np.float64]
 
@@ -190,7 +190,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
 def _quantities(
     system: GapSystem, motion: Trajectory, sizes: Sizes
 ) -> dict[tuple[str, str], float]:
-    from shell_model.local_compliance import compliance, local_compliance
+    from shell_model.contact.local_compliance import compliance, local_compliance
 
     elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]
     found = {(f"natural frequency {i}", "Hz"): float(f) for i, f in enumerate(elastic, start=1)}

@@ -18,15 +18,16 @@ from mpi4py import MPI
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
-from runs import case as case_file
-from runs.build import build_boom
-from runs.motion import Motion
-from runs.schema import Case, Model, ShellTable
-from runs.systems import beam_system, reduce_shell
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import Case, Model, ShellTable
+from runs.pipeline.models import beam_system, reduce_shell
+from runs.pipeline.motion import Motion
 
 Array = npt.NDArray[np.float64]
 
-CASE = Path(__file__).parents[1] / "cases" / "friction-walk.toml"
+CASE = CASES / "friction-walk.toml"
 
 # At which the flexibility of a station is read: below all elastic modes, above the rigid ones.
 SLOW = 5.0

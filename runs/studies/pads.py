@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from geometry.pads import Patch, pads, patch
-from runs.build import build_boom
-from runs.schema import Case, PadTable
+from geometry.contact_places import Patch, pads, patch
+from runs.case.build import build_boom
+from runs.case.schema import Case, PadTable
+from runs.report.tables import TextTable
 from runs.studies.motions import SLOW, compliance, gap_system, model_of
 from runs.studies.study import Proof
-from runs.tables import TextTable
 
 Array = npt.NDArray[np.float64]
 

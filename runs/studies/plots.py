@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
-from runs import theme
-from runs.pen import Figure
+from runs.report import theme
+from runs.report.figure_context import Figure
 from runs.studies.study import Plot
 
 MARKERS = "osD^vPX"

@@ -7,10 +7,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.study import Kind, Plot, Proof
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 RATIO = 2.0
 

@@ -8,11 +8,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from runs.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.report.tables import TextTable
+from runs.report.theme import number
 from runs.studies.motions import finer, friction_case, model_of, trajectories
 from runs.studies.study import Study
-from runs.tables import TextTable
-from runs.theme import number
 
 # The models whose integration is refined, and parts of the case's own step.
 STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.box_errors import (
     COMPLIANCES,
     FREQUENCIES,
@@ -24,8 +26,6 @@ from runs.studies.box_errors import (
 from runs.studies.box_pair import PROBES, SPEED, Blow, pair, solid_parts
 from runs.studies.solid_itself import solid_proofs
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 # Errors of which the table says how thick a wall they take.
 LIMITS = (0.01, 0.02, 0.05)

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.solid_mesh import mesh_quarter
 from runs.studies.box_pair import box
 from runs.studies.study import Proof
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.mirror import ALONG_Z, BREATHING, Family
-from shell_model.products import quadratic_form
-from shell_model.solid import SolidFamily, assemble_solid
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, Family
+from shell_model.reduction.products import quadratic_form
+from shell_model.verification.eigenmodes import natural_frequencies
+from shell_model.verification.solid import SolidFamily, assemble_solid
+from shell_model.verification.solid_mesh import mesh_quarter
 
 # Thick and slender: as a rod in its length, its section cannot breathe.
 BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)

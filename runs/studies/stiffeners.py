@@ -19,16 +19,16 @@ from mpi4py import MPI
 from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
-from runs.build import build_boom
+from runs.case.build import build_boom
+from runs.report.tables import TextTable
+from runs.report.theme import fixed
 from runs.studies.motions import friction_case
 from runs.studies.study import Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.outline import Outline, Row, combine
-from shell_model.products import gram, times
+from shell_model.cross_section import Outline, Row, combine
+from shell_model.reduction.products import gram, times
+from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
-from shell_model.shifted_solver import ShiftedSolver
+from shell_model.verification.eigenmodes import natural_frequencies
 
 Array = npt.NDArray[np.float64]
 

@@ -17,21 +17,21 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom
+from geometry.contact_places import Stretch
 from geometry.mesh import WALLS, mesh_segment, plate_thickness
-from geometry.pads import Stretch
-from runs.build import build_boom, contact_laws
+from runs.case.build import build_boom, contact_laws
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.motions import friction_case, model_of
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.corner_lines import CornerLines
-from shell_model.recovery import gather_stress_modes
+from shell_model.contact.corner_lines import CornerLines
+from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import assemble_segment
-from shell_model.shifted_solver import ShiftedSolver
-from shell_model.stress import ShellStress, wall_forces
-from shell_model.stress_history import near_places
+from shell_model.stress.history import near_places
+from shell_model.stress.recovery import gather_stress_modes
+from shell_model.stress.stresses import ShellStress, wall_forces
 
 INNER = 1
 RATIO = 2.0

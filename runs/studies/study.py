@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from runs.tables import TextTable
+from runs.report.tables import TextTable
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.

@@ -17,13 +17,13 @@ from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
-from runs.build import build_boom
-from runs.schema import Case, ShellTable
+from runs.case.build import build_boom
+from runs.case.schema import Case, ShellTable
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.motions import friction_case, gap_system, model_of
 from runs.studies.pads import flexibility_table, pad_proofs, with_pads
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 Array = npt.NDArray[np.float64]
 

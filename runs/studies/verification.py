@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.study import Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 INTRODUCTION = """\
 <!-- SPDX-License-Identifier: LGPL-3.0-or-later -->

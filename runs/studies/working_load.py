@@ -23,15 +23,15 @@ import numpy.typing as npt
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
-from runs.build import build_boom
-from runs.schema import Case, ShellTable
+from runs.case.build import build_boom
+from runs.case.schema import Case, ShellTable
+from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO, peak_heights
 from runs.studies.motions import finer, friction_case, gap_system, model_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
-from runs.tables import TextTable
-from runs.theme import fixed, number
 
 Array = npt.NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from dynamics.bounded_impulses import (
+from dynamics.kernels.bounded_impulses import (
     FREE,
     HIGH,
     IMPULSE,

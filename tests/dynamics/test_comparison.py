@@ -8,9 +8,15 @@ import pytest
 import xarray as xr
 from scipy.stats import norm
 
-from dynamics.comparison import Comparison, Distributions, PeakDifferences, Pointwise, compare
-from dynamics.ensemble import integrate_ensemble
-from dynamics.slow_motion import SlowPeaks
+from dynamics.predictability.comparison import (
+    Comparison,
+    Distributions,
+    PeakDifferences,
+    Pointwise,
+    compare,
+)
+from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability.low_pass import SlowPeaks
 from tests.dynamics.two_stops import CHAOTIC
 
 pytestmark = pytest.mark.quick

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.quick
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
 from numba import config
-import dynamics.modal_flow
+import dynamics.kernels.modal_flow
 print(config.CACHE_DIR)
 """
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from dynamics.contact import PowerContact, contact_terms
-from dynamics.contact_series import (
+from dynamics.kernels.contact_series import (
     ORDER,
     Series,
     evaluate,

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from dynamics.ensemble import Vary, integrate_ensemble, perturbations
 from dynamics.event_driven import integrate_events
 from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
 from dynamics.integrators import Events, Integrator, Splitting
+from dynamics.predictability.ensemble import Vary, integrate_ensemble, perturbations
 from dynamics.splitting import integrate
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
@@ -94,7 +94,7 @@ OTHER_RANK = """
 import os
 from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
-from dynamics.ensemble import integrate_ensemble
+from dynamics.predictability.ensemble import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 
 with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics.flight import jump, pulls, safe_time, stay, tabulate
+from dynamics.kernels.flight import jump, pulls, safe_time, stay, tabulate
 
 pytestmark = pytest.mark.quick
 

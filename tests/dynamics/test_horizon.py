@@ -9,9 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.ensemble import integrate_ensemble
-from dynamics.horizon import Growth, Horizons, horizon, horizons_of, measure_horizons, spread
 from dynamics.integrators import Events, Integrator, Splitting
+from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability.horizon import (
+    Growth,
+    Horizons,
+    horizon,
+    horizons_of,
+    measure_horizons,
+    spread,
+)
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 pytestmark = pytest.mark.quick

@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.modal_flow import ModalFlow, tabulate
+from dynamics.kernels.modal_flow import ModalFlow, tabulate
 from dynamics.splitting import integrate
 
 pytestmark = pytest.mark.quick

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.modal_flow import ModalFlow
+from dynamics.kernels.modal_flow import ModalFlow
 from dynamics.splitting import integrate
 from dynamics.step import PHASE
 from dynamics.trajectory import Trajectory

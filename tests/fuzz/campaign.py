@@ -10,8 +10,8 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
+from runs import CASES
 from tests.fuzz import cases, command_lines, contract, histories
-from tests.runs.coarse_case import CASES
 
 SHORT = "duration = 0.02"
 # Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.

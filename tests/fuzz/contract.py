@@ -15,9 +15,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from runs import case as case_file
-from runs import cli, estimates
-from runs.shown import LONGEST
+from runs import cli
+from runs.case import reading as case_file
+from runs.pipeline import estimates
+from runs.process.shown import LONGEST
 
 MOST_MEMORY = 4.0e9
 MOST_CPU = 60

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from runs import CASES
 
-CASES = Path(__file__).parents[2] / "runs" / "cases"
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
 # From the law of its joint on, for slips in several lines of it.

@@ -10,14 +10,14 @@ import pytest
 
 from dynamics.excitation import Ramp, Sine, Step, Table
 from dynamics.integrators import Events
-from runs import case as case_file
-from runs.bad_input import BadInput
-from runs.build import build_boom
-from runs.motion import Motion
-from runs.pipeline import run_case
-from runs.results import Results
-from runs.schema import FiniteElementTable
-from runs.systems import beam_system
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import FiniteElementTable
+from runs.pipeline.models import beam_system
+from runs.pipeline.motion import Motion
+from runs.pipeline.results import Results
+from runs.pipeline.run import run_case
 
 pytestmark = pytest.mark.quick
 

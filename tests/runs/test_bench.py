@@ -12,9 +12,17 @@ import pytest
 from rich.console import Console
 
 from dynamics.event_driven import TOLERANCE, integrate_events
-from runs import case as case_file
-from runs.bench import COMPILED, LEVELS, NUMPY, PAPER, Sizes, bench, five_terms, pressed_system
-from runs.generic_solvers import (
+from runs.benchmarks.bench import (
+    COMPILED,
+    LEVELS,
+    NUMPY,
+    PAPER,
+    Sizes,
+    bench,
+    five_terms,
+    pressed_system,
+)
+from runs.benchmarks.generic_solvers import (
     SOLVERS,
     array_rates,
     compiled_rates,
@@ -22,6 +30,7 @@ from runs.generic_solvers import (
     matched,
     residual_of,
 )
+from runs.case import reading as case_file
 
 SIZES = Sizes(
     duration=0.2,

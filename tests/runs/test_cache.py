@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from geometry.boom import Boom
-from runs.cache import Cache, default_folder, key
-from runs.shown import shown
+from runs.folder.cache import Cache, default_folder, key
+from runs.process.shown import shown
 
 pytestmark = pytest.mark.quick
 
@@ -77,7 +77,7 @@ def test_the_least_recently_used_goes(tmp_path: Path) -> None:
 
 def test_what_a_killed_process_has_left_goes(tmp_path: Path) -> None:
     program = (
-        "import os; from pathlib import Path; from runs.cache import Cache; "
+        "import os; from pathlib import Path; from runs.folder.cache import Cache; "
         "Path.rename = lambda *_: os._exit(9); "
         f"Cache(Path({str(tmp_path)!r})).keep('a', {{'text': [b'first']}})"
     )

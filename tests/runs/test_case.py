@@ -9,13 +9,14 @@ from typing import Any
 
 import pytest
 
-from runs import toml
-from runs.bad_input import BadInput
-from runs.build import build_boom, contact_laws
-from runs.case import load, select
-from runs.schema import Case, ShellTable
+from runs import CASES
+from runs.case import toml
+from runs.case.build import build_boom, contact_laws
+from runs.case.messages import BadInput
+from runs.case.reading import load, select
+from runs.case.schema import Case, ShellTable
 from tests.runs.bad_edits import BAD_EDITS
-from tests.runs.coarse_case import CASES, COARSE
+from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.quick
 

@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from runs import case as case_file
-from runs.comparisons import compare_models, reference_of, rubs
-from runs.schema import Case
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.schema import Case
+from runs.pipeline.comparisons import compare_models, reference_of, rubs
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 SERIES = ["kantorovich-4", "kantorovich-5"]
 TIME = np.arange(10_001) / 1000
 CUTOFF = 2.0

@@ -11,10 +11,9 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from runs import convergence
-from runs.studies import verification
+from runs.report.tables import TextTable
+from runs.studies import convergence, verification
 from runs.studies.study import Plot, Proof, Study
-from runs.tables import TextTable
 
 pytestmark = pytest.mark.quick
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs import case as case_file
-from runs.build import build_boom
-from runs.motion import Motion
-from runs.systems import beam_system
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.pipeline.models import beam_system
+from runs.pipeline.motion import Motion
 
 pytestmark = pytest.mark.quick
 

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from runs import case as case_file
-from runs import sweep_points
-from runs.bad_input import BadInput
-from runs.estimates import Cost, of_run, of_sweep, refuse_large
-from tests.runs.coarse_case import CASES, COARSE
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.messages import BadInput
+from runs.pipeline.estimates import Cost, of_run, of_sweep, refuse_large
+from runs.sweep import points as sweep_points
+from tests.runs.coarse_case import COARSE
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from dynamics.trajectory import Trajectory
-from runs.cache import VARIABLE
-from runs.motion import Motion
-from runs.results import Results
+from runs.folder.cache import VARIABLE
+from runs.pipeline.motion import Motion
+from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile, trajectories
 

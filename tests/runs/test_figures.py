@@ -14,18 +14,19 @@ from matplotlib import image
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
-from runs import case as case_file
-from runs import theme
-from runs.contact_figures import contact_peaks, first_contacts, friction
-from runs.deflection_figures import close_up, heads, lateral_tip, tip
-from runs.energy_figures import energies, residuals
-from runs.figures import draw
-from runs.horizon_figures import horizons
-from runs.pen import Figure, Pen
-from runs.pipeline import run_case
-from runs.results import Results
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.results import Results
+from runs.pipeline.run import run_case
+from runs.report import theme
+from runs.report.contact_figures import contact_peaks, first_contacts, friction
+from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
+from runs.report.energy_figures import energies, residuals
+from runs.report.figure_context import Figure, Pen
+from runs.report.figures import draw
+from runs.report.horizon_figures import horizons
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 WITH_PLAY = ["kantorovich-4", "kantorovich-5", "beam-fe"]
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from runs.files import MANIFEST, alone, beside, changed_folder, whole, whole_folder
+from runs.folder.files import MANIFEST, alone, beside, changed_folder, whole, whole_folder
 
 pytestmark = pytest.mark.quick
 
@@ -50,7 +50,7 @@ def test_a_killed_write_leaves_the_file_that_was_there(tmp_path: Path) -> None:
     program = f"""
 import os, signal
 from pathlib import Path
-from runs.files import whole
+from runs.folder.files import whole
 with whole(Path({str(path)!r})) as part:
     part.write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
@@ -84,7 +84,7 @@ def in_the_making(path: Path) -> subprocess.Popen[str]:
     """A process that has begun to write a folder, says where, and goes on at a line of input."""
     program = f"""
 from pathlib import Path
-from runs.files import beside
+from runs.folder.files import beside
 with beside(Path({str(path)!r})) as part:
     (part / "half").write_text("half")
     print(part, flush=True)

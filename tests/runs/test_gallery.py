@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from runs import gallery
+from runs.report import gallery
 
 pytestmark = pytest.mark.quick
 

@@ -3,22 +3,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 import xarray as xr
 
-from dynamics.comparison import Distributions, PeakDifferences, Pointwise
-from runs import case as case_file
-from runs.knowledge import compared_tables, known_tables
-from runs.model_tables import law_table, model_table, step_table
-from runs.results import Results
-from runs.tables import TextTable
+from dynamics.predictability.comparison import Distributions, PeakDifferences, Pointwise
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.results import Results
+from runs.report.knowledge import compared_tables, known_tables
+from runs.report.model_tables import law_table, model_table, step_table
+from runs.report.tables import TextTable
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")
 
 

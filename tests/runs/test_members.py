@@ -12,19 +12,19 @@ import xarray as xr
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Sheet
 
-from runs import case as case_file
-from runs.bad_input import BadInput
-from runs.build import build_boom
-from runs.figures import draw
-from runs.members import slow_below
-from runs.output import write
-from runs.pipeline import Run, run_case
-from runs.results import Results
-from runs.schema import Case, EnsembleTable
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case, EnsembleTable
+from runs.pipeline.members import slow_below
+from runs.pipeline.results import Results
+from runs.pipeline.run import Run, run_case
+from runs.report.figures import draw
+from runs.report.output import write
 
 pytestmark = pytest.mark.quick
 
-CASES = Path(case_file.__file__).parent / "cases"
 SERIES = ["kantorovich-4", "kantorovich-5"]
 MODELS = [*SERIES, "beam-fe-tied"]
 

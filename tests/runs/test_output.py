@@ -10,17 +10,19 @@ from pathlib import Path
 
 import pytest
 
-from runs import case as case_file
-from runs import readings, toml
-from runs.bad_input import BadInput
-from runs.output import write, write_report
-from runs.pipeline import Run, run_case
-from runs.reading import JUDGED, MODELS, Finding, Judged, Reading
-from runs.results import Results
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.messages import BadInput
+from runs.paper import readings
+from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
+from runs.pipeline.results import Results
+from runs.pipeline.run import Run, run_case
+from runs.report.output import write, write_report
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +44,7 @@ def folder(run: Run, tmp_path: Path) -> Path:
 
 
 def leave_survey(folder: Path, case_hash: str) -> None:
-    """Readings as ``python -m runs.readings`` leaves them: one of 7 mm, reproduced."""
+    """Readings as ``python -m runs.paper.readings`` leaves them: one of 7 mm, reproduced."""
     findings = {key: Finding("reproduced", (0.1,)) for key in JUDGED}
     peaks = dict.fromkeys(MODELS, 0.17)
     judged = Judged(Reading(0.007, "restored", "as printed", 2.0), findings, peaks, 1e-5)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from runs.parting import apart_at_the_end, peaks_apart
+from runs.paper.parting import apart_at_the_end, peaks_apart
 
 pytestmark = pytest.mark.quick
 

@@ -5,20 +5,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from io import StringIO
-from pathlib import Path
 
 import pytest
 import xarray as xr
 from rich.console import Console
 
-from runs import case as case_file
-from runs.printed import decisive, print_models, print_verdicts
-from runs.results import Results
-from runs.statements import STATEMENTS, Judgement, Verdict
+from runs import CASES
+from runs.case import reading as case_file
+from runs.paper.statements import STATEMENTS, Judgement, Verdict
+from runs.pipeline.results import Results
+from runs.report.printed import decisive, print_models, print_verdicts
 
 pytestmark = pytest.mark.quick
-
-CASES = Path(case_file.__file__).parent / "cases"
 
 
 def run(case: str, **judgements: Judgement) -> Results:
@@ -79,7 +77,7 @@ def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPat
     shell = {"modes": 110, "reduction_errors": errors, "mesh_error": 0.0083}
     summary = {"models": {"shell": shell}}
     results = replace(RUNS["paper"], summary=summary)
-    monkeypatch.setattr("runs.printed.model_rows", lambda results: [])
+    monkeypatch.setattr("runs.report.printed.model_rows", lambda results: [])
     monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)
     print_models(results, console)

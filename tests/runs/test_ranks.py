@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from runs import ranks
+from runs.process import ranks
 
 pytestmark = pytest.mark.quick
 

@@ -12,13 +12,13 @@ import pytest
 from rich.console import Console
 
 from dynamics.contact import PowerContact
-from runs import case as case_file
-from runs.bad_input import BadInput
-from runs.build import build_boom, contact_laws
-from runs.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
-from runs.readings import PAPER, all_readings, conclude, load, shown, survey
-from runs.schema import Case, KantorovichTable
-from runs.statements import Judgement
+from runs.case import reading as case_file
+from runs.case.build import build_boom, contact_laws
+from runs.case.messages import BadInput
+from runs.case.schema import Case, KantorovichTable
+from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
+from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
+from runs.paper.statements import Judgement
 
 LITERAL = Reading(0.007, "literal", "as printed", 2.0)
 RESTORED = Reading(0.007, "restored", "as printed", 2.0)

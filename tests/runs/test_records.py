@@ -16,7 +16,7 @@ import xarray as xr
 from dynamics.contact import PowerContact
 from dynamics.gap_system import Observer
 from geometry.boom import Boom
-from runs.records import pack, unpack
+from runs.folder.records import pack, unpack
 
 pytestmark = pytest.mark.quick
 
@@ -96,8 +96,8 @@ def test_what_is_no_data_is_not_kept(thing: object) -> None:
     [
         '{"record": ["os", "system"], "parts": {"command": "false"}}',
         '{"record": ["pathlib", "Path"], "parts": {}}',
-        '{"record": ["runs.records", "Path"], "parts": {}}',
-        '{"record": ["runs.cache", "json"], "parts": {}}',
+        '{"record": ["runs.folder.records", "Path"], "parts": {}}',
+        '{"record": ["runs.folder.cache", "json"], "parts": {}}',
         '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
         '{"record": ["dynamics.contact", "PowerContact"], "parts": {"stiffness": -1.0}}',
         '{"record": ["dynamics.contact", "restitution_damping"], "parts": {}}',

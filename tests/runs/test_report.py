@@ -14,19 +14,20 @@ import pytest
 from matplotlib import image
 from rich.console import Console
 
-from runs import case as case_file
-from runs import toml
-from runs.pen import Figure
-from runs.pipeline import run_case
-from runs.printed import print_models, print_verdicts
-from runs.report import render
-from runs.results import Results
-from runs.statements import STATEMENTS
-from runs.tables import TextTable
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.paper.statements import STATEMENTS
+from runs.pipeline.results import Results
+from runs.pipeline.run import run_case
+from runs.report.document import render
+from runs.report.figure_context import Figure
+from runs.report.printed import print_models, print_verdicts
+from runs.report.tables import TextTable
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
 GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
 

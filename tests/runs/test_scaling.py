@@ -11,7 +11,7 @@ from rich.console import Console
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.scaling import STAGES, STEPS, Sizes, scaling
+from runs.benchmarks.scaling import STAGES, STEPS, Sizes, scaling
 
 SIZES = Sizes(meshes=(0.5, 0.3), default=0.5, ranks=(1,), duration=0.2)
 

@@ -12,10 +12,10 @@ from typing import Any
 import jsonschema
 import pytest
 
-from runs import toml
-from runs.case import load
-from runs.schema import case_schema
-from tests.runs.coarse_case import CASES
+from runs import CASES
+from runs.case import toml
+from runs.case.reading import load
+from runs.case.schema import case_schema
 
 pytestmark = pytest.mark.quick
 

@@ -13,15 +13,15 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from runs import case as case_file
-from runs import records
-from runs.build import build_boom
-from runs.cache import Cache
-from runs.schema import Case, ShellTable
-from runs.shown import shown
-from runs.systems import reduce_shell
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import Case, ShellTable
+from runs.folder import records
+from runs.folder.cache import Cache
+from runs.pipeline.models import reduce_shell
+from runs.process.shown import shown
 from shell_model.boom_shell import ReducedShell
-from tests.runs.coarse_case import CASES
 
 
 @pytest.fixture

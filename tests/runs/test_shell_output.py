@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Stop
-from runs.shell_output import ShellOutput
+from runs.pipeline.shell_output import ShellOutput
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 

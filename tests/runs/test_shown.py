@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runs.shown import LONGEST, message, shown
+from runs.process.shown import LONGEST, message, shown
 
 pytestmark = pytest.mark.quick
 

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs import case as case_file
-from runs.results import Results
-from runs.snapshots import describe
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.results import Results
+from runs.report.snapshots import describe
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
 
 

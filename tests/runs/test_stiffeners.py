@@ -11,8 +11,8 @@ import pytest
 
 from geometry.boom import Boom, BoomError, Collar, Diaphragm
 from runs import cli
-from runs.build import build_boom
-from runs.case import load
+from runs.case.build import build_boom
+from runs.case.reading import load
 from tests.runs.coarse_case import COARSE
 from tests.shell_model.booms import three_segments
 

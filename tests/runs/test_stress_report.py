@@ -12,16 +12,17 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from runs import case as case_file
-from runs import theme
-from runs.pen import Pen
-from runs.results import Results
-from runs.stress_figures import stress_history
-from runs.stress_tables import wall_table
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.results import Results
+from runs.report import theme
+from runs.report.figure_context import Pen
+from runs.report.stress_figures import stress_history
+from runs.report.stress_tables import wall_table
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 STRESS: dict[str, Any] = {
     "von_mises": 9.16e7,
     "time": 0.5,

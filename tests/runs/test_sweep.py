@@ -17,22 +17,25 @@ import xarray as xr
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
-from runs import case as case_file
-from runs import sweep, sweep_output, theme
-from runs.bad_input import BadInput
-from runs.build import build_boom
-from runs.cache import Cache
-from runs.files import beside
-from runs.pipeline import run_case
-from runs.quantities import QUANTITIES, measure, settling_time
-from runs.schema import Case
-from runs.shown import shown
-from runs.sweep import Outcome
-from runs.sweep_points import Plan, plan
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.folder.files import beside
+from runs.pipeline.run import run_case
+from runs.process.shown import shown
+from runs.report import theme
+from runs.sweep import output
+from runs.sweep import run as sweep
+from runs.sweep.points import Plan, plan
+from runs.sweep.quantities import QUANTITIES, measure, settling_time
+from runs.sweep.run import Outcome
 
 pytestmark = pytest.mark.quick
 
-COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+COARSE = CASES / "coarse.toml"
 FAST = ["kantorovich-4", "beam-fe-tied"]
 
 Planned = Callable[..., Plan]
@@ -245,7 +248,7 @@ def test_what_swings_on_does_not_settle_and_what_rests_has() -> None:
 def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> None:
     """Reference: run_case on case files with each play, both models at a time."""
     sweeping = planned("joint.play=0.008,0.014")
-    data = sweep_output.write(sweeping, run(sweeping), Path("out"))
+    data = output.write(sweeping, run(sweeping), Path("out"))
     text = Path("case.toml").read_text(encoding="utf-8")
     for play in (0.008, 0.014):
         Path("single.toml").write_text(
@@ -268,7 +271,7 @@ def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> N
 
 def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
     sweeping = planned("joint.play=0.008,0.014")
-    sweep_output.write(sweeping, run(sweeping), Path("out"))
+    output.write(sweeping, run(sweeping), Path("out"))
     data = xr.load_dataset("out/sweep.nc", engine="scipy")
     assert data["tip_amplitude"].dims == ("joint.play", "model")
     assert data["joint.play"].attrs["units"] == "m"
@@ -365,7 +368,7 @@ def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> N
     outcomes = run(sweeping)
     assert run(sweeping) == outcomes
     assert len(ran) == 2
-    data = sweep_output.write(sweeping, outcomes, Path("out"))
+    data = output.write(sweeping, outcomes, Path("out"))
     assert data["failed"].values.tolist() == [[0, 0], [1, 0]]
     assert np.isnan(data["tip_amplitude"].values).tolist() == [[False, False], [True, False]]
     (failure,) = outcomes[1].failures.values()
@@ -405,7 +408,7 @@ def charts(sweeping: Plan) -> list[str]:
     ]
     out = Path("out")
     out.mkdir()
-    sweep_output.write(sweeping, outcomes, out)
+    output.write(sweeping, outcomes, out)
     names = sorted(path.name for path in (out / "figures").glob("*.png"))
     for name in names:
         with Image.open(out / "figures" / name) as image:

@@ -8,7 +8,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from runs.tables import ROOMY, TextTable
+from runs.report.tables import ROOMY, TextTable
 
 pytestmark = pytest.mark.quick
 

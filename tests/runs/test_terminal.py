@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.runs.coarse_case import CASES
+from runs import CASES
 
 pytestmark = pytest.mark.quick
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from runs import theme
+from runs.report import theme
 
 pytestmark = pytest.mark.quick
 

@@ -8,8 +8,8 @@ from functools import partial
 
 import pytest
 
-from runs import timing
-from runs.timing import MEASURABLE, by_turns, shown
+from runs.benchmarks import timing
+from runs.benchmarks.timing import MEASURABLE, by_turns, shown
 
 pytestmark = pytest.mark.quick
 

@@ -121,7 +121,7 @@ def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
         from mpi4py import MPI
 
         from shell_model.boom_shell import ShellOptions, reduce_boom
-        from shell_model.surface_contact import SurfaceOptions
+        from shell_model.contact.surface import SurfaceOptions
 
         options = ShellOptions(
             mesh_size=0.05 * boom.segments[0].length,

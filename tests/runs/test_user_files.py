@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import output
-from runs.bad_input import BadInput
-from runs.case import load
-from runs.user_files import LARGEST, check_left
+from runs.case.messages import BadInput
+from runs.case.reading import load
+from runs.case.user_files import LARGEST, check_left
+from runs.report import output
 from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.quick

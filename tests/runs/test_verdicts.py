@@ -15,16 +15,17 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
-from runs import case as case_file
-from runs.build import build_boom, contact_laws
-from runs.pipeline import run_case
-from runs.schema import Case, ContactTable
-from runs.statements import STATEMENTS, Verdict
-from runs.verdicts import PEAK_SCATTER, judge
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case, ContactTable
+from runs.paper.rules import PEAK_SCATTER, judge
+from runs.paper.statements import STATEMENTS, Verdict
+from runs.pipeline.run import run_case
 
 pytestmark = pytest.mark.quick
 
-PAPER = Path(case_file.__file__).parent / "cases" / "paper.toml"
+PAPER = CASES / "paper.toml"
 FIRST_CONTACT = 0.12
 PERIOD = 1.1
 # First tip peaks in m, of about the heights that the models have.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from runs.versions import packages, program, sources
+from runs.folder.versions import packages, program, sources
 
 pytestmark = pytest.mark.quick
 

@@ -16,8 +16,8 @@ from mpi4py import MPI
 from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
-from shell_model.outline import Row
-from shell_model.reduction import ShiftedSolver
+from shell_model.cross_section import Row
+from shell_model.reduction.segment import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import box_segment
 

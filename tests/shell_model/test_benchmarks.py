@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from shell_model.benchmarks import (
+from shell_model.verification.benchmarks import (
     PUBLISHED,
     SHEAR_RIGID,
     hemisphere,

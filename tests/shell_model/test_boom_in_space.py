@@ -18,7 +18,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, Load
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.reduction import KrylovOptions
+from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 
 Array = npt.NDArray[np.float64]

@@ -12,9 +12,9 @@ from mpi4py import MPI
 
 from dynamics.splitting import integrate
 from geometry.boom import BoomError
-from geometry.pads import ContactLine
+from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
-from shell_model.reduction import KrylovOptions
+from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom
 
 

@@ -22,10 +22,10 @@ from dynamics.energy import energy_residual
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, Stop
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.direct import FullShell, assemble_boom, integrate_directly
-from shell_model.generalised_alpha import GeneralisedAlpha
-from shell_model.reduction import KrylovOptions
+from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
+from shell_model.verification.generalised_alpha import GeneralisedAlpha
+from shell_model.verification.unreduced import FullShell, assemble_boom, integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 
 Array = npt.NDArray[np.float64]
@@ -37,7 +37,7 @@ import json
 from dataclasses import replace
 from mpi4py import MPI
 from shell_model.boom_shell import ShellOptions
-from shell_model.direct import assemble_boom, integrate_directly
+from shell_model.verification.unreduced import assemble_boom, integrate_directly
 from tests.shell_model.booms import LAW, flat_boom
 comm = MPI.COMM_WORLD
 law = replace(LAW, stiffness=1.0e9, exponent=1.0)

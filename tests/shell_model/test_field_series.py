@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from shell_model.field_series import write_field_series
-from shell_model.stress import ShellStress
+from shell_model.pictures.field_series import write_field_series
+from shell_model.stress.stresses import ShellStress
 
 pytestmark = pytest.mark.quick
 

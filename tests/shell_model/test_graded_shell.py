@@ -10,9 +10,9 @@ from mpi4py import MPI
 
 from geometry.boom import Boom, PadSize, Support
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.joint_rows import contacts_and_frictions
-from shell_model.outline import combine
-from shell_model.surface_contact import SurfaceOptions
+from shell_model.contact.rows import contacts_and_frictions
+from shell_model.contact.surface import SurfaceOptions
+from shell_model.cross_section import combine
 from tests.shell_model.booms import LAW, flat_boom
 from tests.shell_model.conftest import compliance
 

@@ -19,9 +19,9 @@ from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom, Load, Stop
-from geometry.pads import ContactLine
+from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.reduction import KrylovOptions
+from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
 
 Array = npt.NDArray[np.float64]

@@ -13,8 +13,8 @@ from mpi4py import MPI
 
 from geometry.boom import Boom, Stop
 from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
-from shell_model.local_compliance import SLOW, compliance
-from shell_model.reduction import KrylovOptions
+from shell_model.contact.local_compliance import SLOW, compliance
+from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 
 SIZES = (0.8, 0.4, 0.2)

@@ -18,9 +18,9 @@ from geometry.mesh import (
     diaphragm_breaks,
     mesh_segment,
 )
-from shell_model.families import Folding, Job
-from shell_model.mirror import ALONG_Y, ALONG_Z, BREATHING, FAMILIES, TWISTING, Family
-from shell_model.products import times
+from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, FAMILIES, TWISTING, Family
+from shell_model.reduction.products import times
+from shell_model.reduction.symmetry import Folding, Job
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX

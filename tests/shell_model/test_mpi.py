@@ -18,9 +18,9 @@ from mpi4py import MPI
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.reduction import KrylovOptions
+from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
+from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom
 
 OnRanks = Callable[..., subprocess.CompletedProcess[str]]
@@ -29,7 +29,7 @@ TwoRanks = Callable[..., subprocess.CompletedProcess[str]]
 _FREQUENCIES = """
 import json
 from mpi4py import MPI
-from shell_model.eigenmodes import natural_frequencies
+from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD
 from tests.shell_model.conftest import box_shell
 comm = MPI.COMM_WORLD
@@ -69,7 +69,7 @@ _FAILED = """
 import json
 from mpi4py import MPI
 from dynamics.failure import NumericsError
-from shell_model.agreement import together
+from shell_model.reduction.agreement import together
 comm = MPI.COMM_WORLD
 
 def work():

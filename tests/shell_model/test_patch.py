@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from dynamics.failure import NumericsError
-from shell_model.members import Member, PlainBox
-from shell_model.plates import OBLIQUE, STEEL, ConstantStrain, Patch, constant_strains
-from shell_model.static_shell import StaticShell, hold
+from shell_model.verification.plates import OBLIQUE, STEEL, ConstantStrain, Patch, constant_strains
+from shell_model.verification.prismatic import Member, PlainBox
+from shell_model.verification.static_shell import StaticShell, hold
 from tests.shell_model.conftest import BOX
 
 Array = npt.NDArray[np.float64]

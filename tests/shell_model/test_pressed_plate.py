@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from shell_model.plates import STEEL
-from shell_model.pressed_plate import Edges, PressedPlate, flange
+from shell_model.verification.plates import STEEL
+from shell_model.verification.pressed_plate import Edges, PressedPlate, flange
 
 
 @pytest.mark.parametrize(("edges", "factor"), [("simply supported", 0.0116), ("clamped", 0.0056)])

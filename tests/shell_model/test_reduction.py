@@ -10,14 +10,14 @@ import numpy.typing as npt
 import pytest
 
 from dynamics.failure import NumericsError
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.reduction import (
+from shell_model.reduction.segment import (
     KrylovOptions,
     ReducedSegment,
     ShiftedSolver,
     reduce_segment,
 )
 from shell_model.segment_shell import SegmentShell
+from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]

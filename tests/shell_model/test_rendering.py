@@ -17,19 +17,19 @@ from PIL import Image
 
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
-from shell_model import rendering
-from shell_model.deformation import MovingShell, round_scale
-from shell_model.overlap_pictures import draw_overlap
-from shell_model.picture_theme import LETTERS, Camera, Scene, Sheet
-from shell_model.pictures import BoomView, Instant
-from shell_model.rendering import (
+from shell_model.pictures import rendering
+from shell_model.pictures.boom import BoomView, Instant
+from shell_model.pictures.deformation import MovingShell, round_scale
+from shell_model.pictures.overlap import draw_overlap
+from shell_model.pictures.rendering import (
     RenderingUnavailable,
     render_snapshots,
     telling_instants,
     where_pressed,
 )
-from shell_model.still_pictures import draw_mesh, draw_sections
-from shell_model.stress_pictures import OVERLAP_PIXELS, StressScale, draw_stress
+from shell_model.pictures.still import draw_mesh, draw_sections
+from shell_model.pictures.stress import OVERLAP_PIXELS, StressScale, draw_stress
+from shell_model.pictures.theme import LETTERS, Camera, Scene, Sheet
 
 Array = npt.NDArray[np.float64]
 

@@ -10,12 +10,12 @@ import pytest
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
-from geometry.pads import Stretch
+from geometry.contact_places import Stretch
 from geometry.section import BoxSection
-from shell_model.corner_lines import CornerLines
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.outline import combine
+from shell_model.contact.corner_lines import CornerLines
+from shell_model.cross_section import combine
 from shell_model.segment_shell import SegmentShell
+from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
 

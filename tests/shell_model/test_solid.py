@@ -18,15 +18,15 @@ from scipy.optimize import brentq
 from geometry.boom import Collar, PointMass, Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
-from geometry.solid_mesh import SolidMesh, mesh_quarter
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.families import Folding
-from shell_model.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.outline import Outline
-from shell_model.products import quadratic_form, times
+from shell_model.cross_section import Outline
+from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.reduction.products import quadratic_form, times
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding
 from shell_model.segment_shell import assemble_segment
-from shell_model.shifted_solver import ShiftedSolver
-from shell_model.solid import SolidFamily, assemble_solid
+from shell_model.verification.eigenmodes import natural_frequencies
+from shell_model.verification.solid import SolidFamily, assemble_solid
+from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
 from tests.shell_model.booms import STEEL, box_segment
 
 Array = npt.NDArray[np.float64]

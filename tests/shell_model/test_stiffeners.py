@@ -22,11 +22,11 @@ from geometry.boom import Collar, Diaphragm, Load, Segment, Support
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.deformation import MovingShell
-from shell_model.eigenmodes import natural_frequencies
-from shell_model.products import times
+from shell_model.pictures.deformation import MovingShell
+from shell_model.reduction.products import times
+from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
-from shell_model.shifted_solver import ShiftedSolver
+from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance
 

@@ -17,9 +17,9 @@ from mpi4py import MPI
 from geometry.boom import Boom, Diaphragm, Support
 from geometry.mesh import WALLS, SegmentMesh, diaphragm_breaks, mesh_segment
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.recovery import gather_stress_modes
 from shell_model.segment_shell import SegmentShell, assemble_segment
-from shell_model.stress import Modes, ShellStress, Stress, wall_forces
+from shell_model.stress.recovery import gather_stress_modes
+from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX
 

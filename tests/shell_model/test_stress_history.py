@@ -8,8 +8,8 @@ import pytest
 
 from geometry.mesh import WALLS, mesh_segment
 from geometry.section import BoxSection
-from shell_model.stress import ShellStress
-from shell_model.stress_history import near_places, sum_up
+from shell_model.stress.history import near_places, sum_up
+from shell_model.stress.stresses import ShellStress
 
 pytestmark = pytest.mark.quick
 

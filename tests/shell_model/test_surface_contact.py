@@ -18,13 +18,13 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, PadSize
-from geometry.pads import ContactLine
+from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
-from shell_model.outline import COMPONENT
-from shell_model.reduction import KrylovOptions
+from shell_model.contact.surface import SurfaceOptions
+from shell_model.contact.wall_points import Wall, WallPoints
+from shell_model.cross_section import COMPONENT
+from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
-from shell_model.surface_contact import SurfaceOptions
-from shell_model.wall_points import Wall, WallPoints
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX
 

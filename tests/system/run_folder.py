@@ -16,7 +16,7 @@ import xarray as xr
 from PIL import Image
 
 from runs import cli
-from runs.schema import Case
+from runs.case.schema import Case
 
 ROOT = Path(__file__).parents[2]
 COARSE = str(ROOT / "runs" / "cases" / "coarse.toml")

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from runs import case as case_file
-from runs.figures import draw
-from runs.pipeline import run_case
-from runs.report import render
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.run import run_case
+from runs.report.document import render
+from runs.report.figures import draw
 
-CASES = Path(case_file.__file__).parent / "cases"
 NAMES = ["friction-walk", "paper", "paper-friction", "spatial", "three-segments"]
 
 

@@ -14,10 +14,10 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from runs.build import build_boom
-from runs.results import Results
-from shell_model.rendering import RenderingUnavailable, require_opengl
-from shell_model.stress import ShellStress, wall_forces
+from runs.case.build import build_boom
+from runs.pipeline.results import Results
+from shell_model.pictures.rendering import RenderingUnavailable, require_opengl
+from shell_model.stress.stresses import ShellStress, wall_forces
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -169,7 +169,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("runs.output.render_snapshots", refuse)
+    monkeypatch.setattr("runs.report.output.render_snapshots", refuse)
     again = tmp_path / "out"
     shutil.copytree(whole, again)
     assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
@@ -195,7 +195,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         Image.new("RGB", (8, 8)).save(path)
         return [path]
 
-    monkeypatch.setattr("runs.output.render_snapshots", draw)
+    monkeypatch.setattr("runs.report.output.render_snapshots", draw)
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import case as case_file
-from runs import output
-from runs.pipeline import run_case
-from runs.schema import EnsembleTable
+from runs.case import reading as case_file
+from runs.case.schema import EnsembleTable
+from runs.pipeline.run import run_case
+from runs.report import output
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE
 

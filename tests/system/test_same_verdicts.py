@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from runs import case as case_file
-from runs.pipeline import run_case
-from runs.results import Results
-from runs.schema import Case
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.schema import Case
+from runs.pipeline.results import Results
+from runs.pipeline.run import run_case
 
-PAPER = Path(case_file.__file__).parent / "cases" / "paper.toml"
+PAPER = CASES / "paper.toml"
 DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "reproduced"}
 
 

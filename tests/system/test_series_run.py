@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs.case import load
-from runs.results import Results
+from runs.case.reading import load
+from runs.pipeline.results import Results
 from tests.system.run_folder import (
     COARSE,
     SERIES,

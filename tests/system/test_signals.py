@@ -21,7 +21,7 @@ SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0
 # A second signal comes while the first one is being obeyed.
 AGAIN = """
 import signal, time
-from runs import interruption
+from runs.process import interruption
 
 def clean():
     signal.raise_signal(signal.SIGTERM)

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from runs.tables import TextTable
+from runs.report.tables import TextTable
 from tests.torture import flipped_bits, full_disk, kills, shared_cache
 
 CAMPAIGNS = full_disk, kills, flipped_bits, shared_cache

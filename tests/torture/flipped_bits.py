@@ -17,17 +17,18 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from mpi4py import MPI
 
-from runs import case as case_file
-from runs import sweep
-from runs.cache import Cache
-from runs.files import beside
-from runs.notices import NOTICES
-from runs.pipeline import run_case
-from runs.sweep_points import plan
+from runs import CASES
+from runs.case import reading as case_file
+from runs.folder.cache import Cache
+from runs.folder.files import beside
+from runs.pipeline.run import run_case
+from runs.process.notices import NOTICES
+from runs.sweep import run as sweep
+from runs.sweep.points import plan
 
 Row = tuple[str, int, int, str]
 
-_COARSE = str(Path(case_file.__file__).parent / "cases" / "coarse.toml")
+_COARSE = str(CASES / "coarse.toml")
 _SEED = 20
 
 

@@ -21,14 +21,12 @@ from unittest.mock import patch
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
-from runs import case as case_file
-from runs import cli
-from runs.cache import VARIABLE
-from shell_model.rendering import RenderingUnavailable
+from runs import CASES, cli
+from runs.folder.cache import VARIABLE
+from shell_model.pictures.rendering import RenderingUnavailable
 
 Row = tuple[str, int, int, str]
 
-_CASES = Path(case_file.__file__).parent / "cases"
 _CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
 _WRITES = set("wax+")
 
@@ -138,7 +136,7 @@ def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
 def _case(folder: Path, duration: float) -> str:
     """The coarse case for as long."""
     path = folder / f"{duration:g}.toml"
-    text = (_CASES / "coarse.toml").read_text(encoding="utf-8")
+    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
     path.write_text(text.replace("duration = 0.6", f"duration = {duration:g}"), encoding="utf-8")
     return str(path)
 
@@ -188,8 +186,8 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("runs.output.render_snapshots", refuse),
-                patch("runs.sweep.ProcessPoolExecutor", here),
+                patch("runs.report.output.render_snapshots", refuse),
+                patch("runs.sweep.run.ProcessPoolExecutor", here),
                 patch.object(Sheet, "savefig", dot),
             ):
                 cli.main(command)

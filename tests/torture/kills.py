@@ -19,12 +19,12 @@ from pathlib import Path
 
 import numpy as np
 
-from runs import case as case_file
+from runs import CASES
 
 Row = tuple[str, int, int, str]
 
 _ROOT = Path(__file__).parents[2]
-_COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+_COARSE = CASES / "coarse.toml"
 _SEED = 60
 # In the names of all that is not whole yet.
 _IN_THE_MAKING = "protractile-"

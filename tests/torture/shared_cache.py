@@ -9,12 +9,12 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from runs import case as case_file
+from runs import CASES
 
 Row = tuple[str, int, int, str]
 
 _ROOT = Path(__file__).parents[2]
-_COARSE = Path(case_file.__file__).parent / "cases" / "coarse.toml"
+_COARSE = CASES / "coarse.toml"
 _SHELL = "--models", "shell", "--mesh-size", "1"
 _COMMAND = "from runs import cli; cli.main()"
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from runs.schema import Case, Model
+from runs.case.schema import Case, Model
+from runs.studies.model_ladder import WALK
 from runs.studies.motions import friction_case
 from runs.studies.refinement import Refinement, refine, table
-from runs.studies.walk import WALK
 
 pytestmark = pytest.mark.quick
 

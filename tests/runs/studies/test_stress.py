@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.build import build_boom
+from runs.case.build import build_boom
 from runs.studies.motions import friction_case
 from runs.studies.stress import Sizes, contact_forces, study
 

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Steps of the splitting with friction and contact damping."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
+from dynamics.kernels.contact_kicks import contact_forces, damped_kick
+from dynamics.kernels.decay import Damping, damp, kept_after
+from dynamics.kernels.friction_step import (
+    add_pressed_bounds,
+    filter_rows,
+    find_turns,
+    look_ahead,
+    note_directions,
+    prescribed_bounds,
+    round_off,
+    rub,
+    settle,
+)
+from dynamics.kernels.integrator_state import (
+    CONTACT,
+    DAMPING,
+    FRICTION,
+    MIDDLE,
+    PLACE,
+    REST,
+    SLIDING,
+    Dry,
+    Excitations,
+    State,
+    System,
+    enter,
+    excite,
+    read,
+)
+from dynamics.kernels.modal_flow import drive, move, tabulate, travel
+
+Array = npt.NDArray[np.float64]
+
+# Rows that turn within this part of a step of one another turn together.
+_TOGETHER = 1.0e-9
+
+# A length of step in s (1,), and of this the flow over its half (9, num_modes), what modes keep
+# over a quarter (num_modes,) and dashpots over a half (num_dashpots,), the filtered friction rows
+# and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows), friction rows
+# (3, num_frictions), and the problem of bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+
+
+def space_for(system: GapSystem) -> Space:
+    """What the steps of a system need beside its state."""
+    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
+    d = len(system.dashpots)
+    shapes = ((1,), (9, n), (n,), (d,), (f, n), (f, f), (n,), (3, m), (3, f))
+    length, half, faded, dragged, filtered, matrix, ahead, middle, lines = map(np.zeros, shapes)
+    return length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem_for(f)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def lossy_steps(
+    state: State,
+    system: System,
+    damping: Damping,
+    dry: Dry,
+    excitations: Excitations,
+    space: Space,
+    step: float,
+    first: int,
+    last: int,
+    substeps: int,
+    always: bool,
+) -> int:
+    """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
+
+    A step is made in parts where histories have kinks. One in which a sliding row turns is made in
+    parts, too, the first of which ends where the first row turns; so the direction of friction
+    changes when it should and not at the next step.
+
+    Gives the number of the next step: ``last``, or an earlier one when nothing touches any more
+    unless ``always``.
+    """
+    # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
+    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
+    omega2, load, rows, terms, limits = system
+    rates, directions, dashpot_rates = damping
+    friction_rows, given, pressing, masses = dry
+    loads, _, spans, parts, _, pushes = excitations
+    start, centre, end = pushes
+    length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = space
+    push, y_ahead, force_ahead = middle
+    slid, turns = lines[:2], lines[2]
+    slips, noise = problem[FREE], problem[NOISE]
+    pressed = pressing.any()
+    excited = loads.shape[0] > 0
+    none = np.zeros(a.size)
+    k = first
+    for p in range(parts[first], parts[last]):
+        span = spans[p]
+        left = span
+        cuts = 0
+        while left > 0.0:
+            for i in range(whole.size):
+                kept[i] = whole[i]
+            time = left
+            cut = False
+            while True:
+                if time != length[0]:
+                    length[0] = time
+                    tabulate(half, omega2, load, none, 0.5 * time)
+                    kept_after(rates, 0.25 * time, faded)
+                    kept_after(dashpot_rates, 0.5 * time, dragged)
+                    filter_rows(friction_rows, half, time, filtered)
+                    for j in range(friction.size):
+                        ahead[:] = filtered[j]
+                        damp(ahead, faded, directions, dragged)
+                        read(filtered, ahead, matrix[j])
+                        matrix[j] *= 0.5 * time
+                if excited:
+                    excite(excitations, p, p + 1, 1.0 - left / span, 1.0 - (left - time) / span)
+                share = 0.5 * time / (substeps * step)
+
+                loss = damped_kick(v, rows, force, limits, 0.5 * time, False, push)
+                for j in range(y.size):
+                    mean[j] += share * push[j]
+                if excited:
+                    travel(a, v, half, 0.5 * time, omega2, load, False, start, centre, tally)
+                else:
+                    move(a, v, half)
+
+                tally[DAMPING] += damp(v, faded, directions, dragged)
+                ahead[:] = v
+                damp(ahead, faded, directions, dragged)
+                look_ahead(a, ahead, half, ahead)
+                if excited:
+                    drive(ahead, half, centre, end)
+                prescribed_bounds(given, time, grip)
+                if pressed:
+                    add_pressed_bounds(
+                        ahead, v, rows, terms, limits, push, pressing, given, time, y_ahead,
+                        force_ahead, grip,
+                    )  # fmt: skip
+                read(friction_rows, ahead, slips)
+                round_off(masses, ahead, noise)
+                for j in range(friction.size):
+                    slips[j] -= grip[PLACE, j]
+                tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
+                tally[DAMPING] += damp(v, faded, directions, dragged)
+
+                if excited:
+                    travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
+                else:
+                    move(a, v, half)
+                contact_forces(a, rows, terms, y, force)
+                loss += damped_kick(v, rows, force, limits, 0.5 * time, True, push)
+                tally[CONTACT] += loss
+                for j in range(y.size):
+                    mean[j] += share * push[j]
+                    if abs(push[j]) > abs(peak[j]):
+                        peak[j] = push[j]
+
+                read(friction_rows, v, slips)
+                round_off(masses, v, noise)
+                tally[FRICTION] += settle(v, friction_rows, masses, grip, problem)
+                for j in range(friction.size):
+                    friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
+                changed = note_directions(masses, grip, problem, slid)
+                enter(y, before, limits, time, tally)
+
+                if cut or not changed or cuts > 2 * friction.size:
+                    break
+                first_turn = find_turns(masses, grip, problem, slid, time, turns)
+                if not 0.0 < first_turn < left:
+                    break
+                for i in range(whole.size):
+                    whole[i] = kept[i]
+                time, cut = first_turn, True
+            if cut:
+                for j in range(friction.size):
+                    if turns[j] <= time * (1.0 + _TOGETHER):
+                        grip[SLIDING, j] = 0.0
+            left -= time
+            cuts += 1
+        if p + 1 == parts[k + 1]:
+            k += 1
+            if not (always or force.any()):
+                break
+    return k

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two models of one thing, compared at three levels; each level says what it can decide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.stats import ks_2samp
+
+from dynamics.predictability.horizon import SHARES, horizons_of
+from dynamics.predictability.low_pass import SlowPeaks
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Pointwise:
+    """Differences of the unchanged members before either model is unpredictable.
+
+    Args:
+        until: the earlier of both horizons at the first of ``SHARES`` in s.
+        largest, rms: parts of the larger range of both within that time.
+    """
+
+    decides: ClassVar[str] = (
+        "Tells how far the models are apart from one moment to the next up to the common horizon; "
+        "it cannot tell anything about later times."
+    )
+
+    until: float
+    largest: float
+    rms: float
+
+    @classmethod
+    def of(cls, one: Array, other: Array, time: Array, until: float) -> Pointwise:
+        """Compare two curves.
+
+        Args:
+            one, other: (num_times,) of one quantity.
+            time: (num_times,) in s.
+            until: in s.
+        """
+        before = time <= until
+        apart = np.abs(one - other)[before]
+        scale = max(np.ptp(one[before]), np.ptp(other[before]))
+        largest, rms = float(apart.max()), float(np.sqrt(np.mean(apart**2)))
+        return cls(until, largest / scale if scale else largest, rms / scale if scale else rms)
+
+
+@dataclass(frozen=True, slots=True)
+class PeakDifferences:
+    """Differences of the slow motions' peaks, the other's less the one's, in order.
+
+    A combined spread is the sum of both: beyond it no member of one model has the peak of a
+    member of the other.
+
+    Args:
+        times: (num_peaks,) in s.
+        time_spreads: (num_peaks,) combined, in s.
+        heights: (num_peaks,) in the signal's unit.
+        height_spreads: (num_peaks,) combined.
+    """
+
+    decides: ClassVar[str] = (
+        "Tells which of the common peaks of the slow motion differ by more than chaos alone would "
+        "explain; it cannot tell anything about the ripple, or about peaks that not all members "
+        "have."
+    )
+
+    times: Array
+    time_spreads: Array
+    heights: Array
+    height_spreads: Array
+
+    @classmethod
+    def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
+        """Compare the first peaks of both, as many as both have."""
+        common = min(one.times.size, other.times.size)
+        return cls(
+            times=other.times[:common] - one.times[:common],
+            time_spreads=one.time_spreads[:common] + other.time_spreads[:common],
+            heights=other.heights[:common] - one.heights[:common],
+            height_spreads=one.height_spreads[:common] + other.height_spreads[:common],
+        )
+
+    @property
+    def explained(self) -> npt.NDArray[np.bool_]:
+        """(num_peaks,) whether both time and height differ by no more than the spreads."""
+        return (np.abs(self.times) <= self.time_spreads) & (
+            np.abs(self.heights) <= self.height_spreads
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Distributions:
+    """What values the members take once both models are unpredictable, the one's and the other's.
+
+    Args:
+        since: the later of both horizons at the last of ``SHARES`` in s.
+        ranges, means, deviations: of both, in the signal's unit; NaN where there is no such time.
+        distance: Kolmogorov's and Smirnov's, the largest difference of the cumulated shares, 0
+            to 1. No significance follows: values of one member at close times are not
+            independent.
+    """
+
+    decides: ClassVar[str] = (
+        "Tells whether the models spend like shares of the time at like values after the horizons; "
+        "it cannot tell when they do, or in what order."
+    )
+
+    since: float
+    ranges: tuple[float, float]
+    means: tuple[float, float]
+    deviations: tuple[float, float]
+    distance: float
+
+    @classmethod
+    def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
+        """Compare all values of all members from a time on.
+
+        Args:
+            one, other: (num_members, num_times) of one quantity.
+            time: (num_times,) in s.
+            since: in s, NaN where a model stays predictable.
+        """
+        both = [members[:, time >= since].ravel() for members in (one, other)]
+        if both[0].size == 0:
+            none = (np.nan, np.nan)
+            return cls(since, none, none, none, np.nan)
+        return cls(
+            since,
+            (float(np.ptp(both[0])), float(np.ptp(both[1]))),
+            (float(both[0].mean()), float(both[1].mean())),
+            (float(both[0].std()), float(both[1].std())),
+            float(ks_2samp(*both, method="asymp").statistic),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two models at three levels."""
+
+    pointwise: Pointwise
+    peaks: PeakDifferences
+    distributions: Distributions
+
+
+def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "tip") -> Comparison:
+    """Compare the ensembles of two models.
+
+    Args:
+        one, other: of :func:`dynamics.predictability.ensemble.integrate_ensemble`, at the same
+            times.
+        cutoff: of the slow motion in Hz.
+        observer: which output is compared.
+
+    Raises:
+        ValueError: the times differ.
+    """
+    time = one["time"].values
+    if not np.array_equal(time, other["time"].values):
+        raise ValueError("the ensembles must have the same times")
+    members = one[observer].values, other[observer].values
+    horizons = np.array([horizons_of(ensemble, SHARES, observer) for ensemble in (one, other)])
+    until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
+    # NaN of either model passes on: it is predictable to the end.
+    since = float(horizons[:, -1].max())
+    return Comparison(
+        Pointwise.of(members[0][0], members[1][0], time, until),
+        PeakDifferences.of(*(SlowPeaks.of(m, time, cutoff) for m in members)),
+        Distributions.of(*members, time, since),
+    )

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How long a motion can be predicted, and what limits it.
+
+A small relative change ε of the data parts two runs in proportion to ε exp(λ t), so that they are
+a given distance apart at
+
+    T(ε) = T(1) − ln(ε)/λ
+
+and a thousand times better data buy only ln(1000)/λ more (Lorenz 1963, *Deterministic
+nonperiodic flow*). That holds while the distance is small: λ is read at a small part of the range,
+and larger parts may be reached at about the same time from whatever ε. A linear system has no such
+time: there the distance stays in proportion to ε.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from dynamics.gap_system import GapSystem
+from dynamics.integrators import Integrator, by_splitting
+from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
+
+Array = npt.NDArray[np.float64]
+
+# Parts of the range at which two curves can be told apart, and at which one is no longer the other.
+SHARES = (0.01, 0.20)
+# A part at which curves that started close still part in proportion to how close.
+EARLY = 1.0e-4
+
+
+def spread(members: Array) -> Array:
+    """(num_times,) half the distance between the largest and the smallest member.
+
+    That is the largest error of the best single prediction. A standard deviation would be
+    smaller the more members are still together, and would name a horizon after some have left.
+
+    Args:
+        members: (num_members, num_times) of one quantity.
+    """
+    return np.asarray(0.5 * np.ptp(members, axis=0))
+
+
+def horizon(members: Array, time: Array, share: float) -> float:
+    """When the spread first passes a share of the range of member 0, in s; NaN if never.
+
+    Args:
+        members: (num_members, num_times) of one quantity.
+        time: (num_times,) in s.
+        share: part of the range.
+    """
+    passed = np.flatnonzero(spread(members) > share * np.ptp(members[0]))
+    return float(time[passed[0]]) if passed.size else float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """The line T(ε) through measured horizons.
+
+    Args:
+        rate: λ in 1/s; NaN where fewer than two horizons are known, or smaller ε gave no later
+            ones beyond the scatter.
+        start: T(1) in s, NaN as above.
+        scatter: root mean square distance of the horizons from the line, in s.
+    """
+
+    rate: float
+    start: float
+    scatter: float
+
+    @classmethod
+    def fit(cls, relatives: Array, times: Array) -> Growth:
+        """Least squares of T over ln ε.
+
+        Args:
+            relatives: (num,) ε.
+            times: (num,) T in s, NaN where there is none.
+        """
+        known = np.isfinite(times)
+        if known.sum() < 2:
+            return cls(np.nan, np.nan, np.nan)
+        logs = np.log(relatives[known])
+        slope, start = np.polyfit(logs, times[known], 1)
+        scatter = float(np.sqrt(np.mean((times[known] - slope * logs - start) ** 2)))
+        # The slope's own error, twice: what a line through scattered times may have by chance.
+        if not slope < -2.0 * scatter / (np.sqrt(known.sum()) * np.std(logs)):
+            return cls(np.nan, np.nan, scatter)
+        return cls(float(-1.0 / slope), float(start), scatter)
+
+    def change(self, time: float) -> float:
+        """The ε of which ``time`` in s is the horizon."""
+        return float(np.exp(self.rate * (self.start - time)))
+
+
+@dataclass(frozen=True, slots=True)
+class Horizons:
+    """Horizons of one system under changes of several sizes.
+
+    Args:
+        relatives: (num_relatives,) ε, rising.
+        shares: (num_shares,) parts of the range, rising.
+        times: (num_relatives, num_shares) in s, NaN where the spread stays below.
+        of_step: (num_shares,) when a run with a finer step, or tolerance, is as far from the one
+            with the whole step, in s.
+        growth: (num_shares) the lines through ``times``.
+        step_change: the ε that parts two runs to the first share as the finer step does, by the
+            first line; 0 where that does not part them, NaN without a line.
+    """
+
+    relatives: Array
+    shares: Array
+    times: Array
+    of_step: Array
+    growth: Sequence[Growth]
+    step_change: float
+
+    @property
+    def limits(self) -> list[Literal["step", "physics", "nothing"]]:
+        """(num_shares) what ends the predictability of a run.
+
+        ``step`` where a finer step changes it more than the largest of the changes does: a finer
+        step would help. ``physics`` where it does not: data are not known as well as that.
+        ``nothing`` where neither parts two runs so far within the duration.
+
+        Where growth is known, its line decides for all shares: which of two runs passes a large
+        one first is chance.
+        """
+        largest = self.relatives[-1]
+        found: list[Literal["step", "physics", "nothing"]] = []
+        for of_step, of_data in zip(self.of_step, self.times[-1], strict=True):
+            sooner = of_step < np.nan_to_num(of_data, nan=np.inf)
+            known = np.isfinite(self.step_change)
+            if np.isnan(of_step) and np.isnan(of_data):
+                found.append("nothing")
+            elif self.step_change > largest if known else sooner:
+                found.append("step")
+            else:
+                found.append("physics")
+        return found
+
+
+def measure_horizons(
+    system: GapSystem,
+    relatives: Sequence[float],
+    vary: Vary,
+    duration: float,
+    output_step: float = 1.0e-3,
+    partners: int = 3,
+    position: Array | None = None,
+    velocity: Array | None = None,
+    integrator: Integrator | None = None,
+    executor: Executor | None = None,
+    shares: Sequence[float] = (EARLY, SHARES[0]),
+    observer: str = "tip",
+    progress: Callable[[float], None] | None = None,
+) -> Horizons:
+    """Run the system as it is, with a finer step, and changed by each size; all at once.
+
+    Few partners are enough for the growth at a small share; its scatter tells how well it is known.
+    Horizons at large shares are chance, and come sooner the more partners there are.
+
+    Args:
+        system: unchanged.
+        relatives: ε, each between 0 and 1.
+        vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        duration, output_step: in s.
+        partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
+        position, velocity: (num_modes,) initial a and ȧ, zero unless given.
+        integrator: how the runs move; by splitting at :func:`contact_step` unless given.
+        executor: see :func:`dynamics.predictability.ensemble.run_members`.
+        shares: parts of the observer's range, rising.
+        observer: which output is watched.
+        progress: called with the part done, 0 to 1.
+
+    Raises:
+        ValueError: what is to vary is zero.
+        NumericsError: a run cannot be computed.
+    """
+    check_varied(system, velocity, vary)
+    if integrator is None:
+        integrator = by_splitting(system, output_step, None, position, velocity)
+    sizes = np.sort(np.asarray(relatives, dtype=float))
+    one = Member(
+        system, vary, 0.0, integrator, duration, output_step, position, velocity, (observer,)
+    )
+    number = np.arange(partners)
+    parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
+    members = [
+        # The longest run first, so that none waits for it in the end.
+        replace(one, integrator=integrator.finer()),
+        one,
+        *(replace(one, change=float(change)) for change in np.outer(sizes, parts).flat),
+    ]
+    runs = run_members(members, executor, progress)
+    finer, whole, *others = (run[observer].values for run in runs)
+    changed = np.array(others).reshape(sizes.size, partners, -1)
+    time = runs[0]["time"].values
+    times = np.array(
+        [[horizon(np.vstack([whole, near]), time, share) for share in shares] for near in changed]
+    )
+    of_step = [horizon(np.array([whole, finer]), time, share) for share in shares]
+    growth = [Growth.fit(sizes, t) for t in times.T]
+    return Horizons(
+        relatives=sizes,
+        shares=np.asarray(shares, dtype=float),
+        times=times,
+        of_step=np.array(of_step),
+        growth=growth,
+        step_change=growth[0].change(float(np.nan_to_num(of_step[0], nan=np.inf))),
+    )
+
+
+def horizons_of(
+    ensemble: xr.Dataset, shares: Sequence[float] = SHARES, observer: str = "tip"
+) -> list[float]:
+    """(num_shares) horizons of one ensemble in s, NaN where its spread stays below."""
+    members, time = ensemble[observer].values, ensemble["time"].values
+    return [horizon(members, time, share) for share in shares]

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The slow motion under the ripple of impacts: its peaks, its period, and how sure they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import butter, find_peaks, sosfiltfilt
+
+Array = npt.NDArray[np.float64]
+
+# Part of the lowest elastic frequency of the closed system below which a motion is slow: with
+# play the boom swings more slowly than its own closed structure could, and the ripple is above.
+CUTOFF_SHARE = 0.8
+# Order of the filter, which is passed twice, forwards and backwards.
+ORDER = 4
+# A peak stands out by this part of the range, so that a shoulder is none.
+PROMINENCE = 0.2
+
+
+def slow(signal: Array, output_step: float, cutoff: float) -> Array:
+    """The part of a signal below a cut-off, without a shift in time.
+
+    The Butterworth filter is passed forwards and backwards; the gain at the cut-off is ½.
+    Within half a period of the cut-off of either end the result leans on the mirrored signal.
+
+    Args:
+        signal: (..., num_times).
+        output_step: in s.
+        cutoff: in Hz, below half the sampling rate.
+
+    Raises:
+        ValueError: the cut-off cannot be sampled, or the signal is shorter than its period.
+    """
+    times = signal.shape[-1]
+    if not 0.0 < cutoff < 0.5 / output_step:
+        raise ValueError(
+            f"cutoff must be between 0 and {0.5 / output_step:g} Hz, got {cutoff:g} Hz"
+        )
+    period = round(1.0 / (cutoff * output_step))
+    if times <= period:
+        raise ValueError(
+            f"the signal must be longer than the period of the cut-off, {1.0 / cutoff:g} s, got "
+            f"{(times - 1) * output_step:g} s"
+        )
+    sections = butter(ORDER, cutoff, fs=1.0 / output_step, output="sos")
+    return np.asarray(sosfiltfilt(sections, signal, axis=-1, padlen=period))
+
+
+def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
+    """Times in s and heights of the peaks of the slow motion, (num_peaks,) each.
+
+    Args:
+        signal: (num_times,).
+        time: (num_times,) in s, equal steps.
+        cutoff: in Hz.
+    """
+    filtered = slow(signal, float(time[1] - time[0]), cutoff)
+    at, _ = find_peaks(filtered, prominence=PROMINENCE * np.ptp(filtered))
+    return time[at], filtered[at]
+
+
+@dataclass(frozen=True, slots=True)
+class SlowPeaks:
+    """Peaks that all members of an ensemble have.
+
+    A spread is half the distance between the largest and the smallest member, as in
+    :func:`dynamics.predictability.horizon.spread`; values are the members' means.
+
+    Args:
+        times: (num_peaks,) in s.
+        time_spreads: (num_peaks,) in s.
+        heights: (num_peaks,) in the signal's unit.
+        height_spreads: (num_peaks,) in the signal's unit.
+        period: mean distance of successive peaks in s, NaN with fewer than two.
+        period_spread: in s, NaN as above.
+    """
+
+    times: Array
+    time_spreads: Array
+    heights: Array
+    height_spreads: Array
+    period: float
+    period_spread: float
+
+    @classmethod
+    def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
+        """Peaks of an ensemble, in order, up to the first that a member does not have.
+
+        A member has a peak of member 0 if one of its own is nearer than half a period of the
+        cut-off: two peaks of the slow motion are not that close to one another.
+
+        Args:
+            members: (num_members, num_times).
+            time: (num_times,) in s, equal steps.
+            cutoff: in Hz.
+        """
+        found = [slow_peaks(member, time, cutoff) for member in members]
+        times, heights = [], []
+        for at in found[0][0]:
+            nearest = [int(np.abs(t - at).argmin()) if t.size else -1 for t, _ in found]
+            if -1 in nearest:
+                break
+            matched = np.array([t[i] for (t, _), i in zip(found, nearest, strict=True)])
+            if np.abs(matched - at).max() >= 0.5 / cutoff:
+                break
+            times.append(matched)
+            heights.append([h[i] for (_, h), i in zip(found, nearest, strict=True)])
+        t = np.array(times).reshape(-1, len(members))
+        h = np.array(heights).reshape(-1, len(members))
+        periods = np.ptp(t, axis=0) / (len(t) - 1) if len(t) > 1 else np.full(1, np.nan)
+        return cls(
+            times=t.mean(axis=1),
+            time_spreads=0.5 * np.ptp(t, axis=1),
+            heights=h.mean(axis=1),
+            height_spreads=0.5 * np.ptp(h, axis=1),
+            period=float(periods.mean()),
+            period_spread=float(0.5 * np.ptp(periods)),
+        )

@@ -1,0 +1,368 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the integrators cost, and what a shell does: ``python -m runs.benchmarks.bench``.
+
+Everything is measured in one process; methods that are compared take turns, so that what else
+the machine does falls on all of them.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from dynamics.contact import PowerContact
+from dynamics.event_driven import TOLERANCE
+from dynamics.gap_system import GapSystem
+from dynamics.integrators import Events, Integrator, by_splitting
+from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.splitting import integrate
+from runs import CASES
+from runs.benchmarks import scaling
+from runs.benchmarks.generic_solvers import (
+    METHODS,
+    OUTPUT_STEP,
+    array_rates,
+    compiled_rates,
+    generic,
+    matched,
+)
+from runs.benchmarks.timing import NOISE, by_turns, shown
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import Case, KantorovichTable, ShellTable
+from runs.pipeline.models import beam_system, reduce_shell
+from runs.report.tables import TextTable, wide_console, write
+
+PAPER = CASES / "paper.toml"
+OUT = Path("runs/out/bench")
+
+# Goals: wall time of the best of solve_ivp over ours, and wall s of the ensemble of series.
+RATIO_GOAL = 250.0
+ENSEMBLE_GOAL = 10.0
+
+# Tolerances of event-driven motion, the last as it comes, and solvers that are to leave no more
+# energy. LSODA takes the least time of solve_ivp as long as it can; then DOP853 alone can.
+LEVELS = (
+    (1.0e-6, ("LSODA", "odeint")),
+    (1.0e-8, ("LSODA", "Radau", "odeint")),
+    (TOLERANCE, ("LSODA", "DOP853", "odeint")),
+)
+
+# What takes tens of seconds for a second of motion is measured over the first one alone.
+SLOW = ("Radau",)
+
+# The right-hand sides: as one writes it, and compiled with its data as constants.
+NUMPY = "NumPy"
+COMPILED = "compiled"
+
+# Relative change of the members' loads.
+CHANGE = 1.0e-9
+
+# The step of the splitting that is timed, in s: below a hundredth of the highest mode's period.
+STEP = 1.0e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """How much is measured.
+
+    Args:
+        duration: of the motions in s.
+        slow_duration: of those by ``SLOW`` solvers.
+        levels: tolerance of event-driven motion, and the solvers that it is compared with.
+        most: repetitions of what is quick.
+        budget: wall seconds of all repetitions of one run, beyond which there are no more.
+        modes, rows: the tables of steps and series.
+        updates: of one mode by one step, that are timed for an entry of the former.
+        members: of the ensemble of series.
+        shell_members: of the ensemble of shells, 0 for none.
+    """
+
+    duration: float = 10.0
+    slow_duration: float = 0.5
+    levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
+    most: int = 3
+    budget: float = 6.0
+    modes: Sequence[int] = (5, 20, 80, 200)
+    rows: Sequence[int] = (2, 4, 16)
+    updates: int = 5_000_000
+    members: int = 256
+    shell_members: int = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A way to move the series.
+
+    Args:
+        solver: what the table calls it.
+        rates: its right-hand side, where it needs one.
+        tolerance: relative tolerance, or step, as text.
+        duration: of the motion in s.
+        energy_residual: that it leaves.
+        run: moves it once.
+    """
+
+    solver: str
+    rates: str
+    tolerance: str
+    duration: float
+    energy_residual: float
+    run: Callable[[], object]
+
+
+def five_terms(case: Case) -> GapSystem:
+    """The paper's five-term series."""
+    model = next(m for m in case.models if m.name == "kantorovich-5")
+    assert isinstance(model, KantorovichTable)
+    return beam_system(case, build_boom(case), model)
+
+
+def compare(
+    case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes
+) -> tuple[TextTable, dict[str, Any]]:
+    """Event-driven motion at a tolerance against generic solvers that leave no more energy."""
+    system = five_terms(case)
+    rates = {NUMPY: array_rates(system), COMPILED: compiled_rates(system)}
+    stretch = {name: sizes.slow_duration if name in SLOW else sizes.duration for name in solvers}
+    methods = [
+        _own("event-driven", f"{tolerance:.1e}", Events(tolerance), system, duration)
+        for duration in sorted(set(stretch.values()), reverse=True)
+    ]
+    own = {method.duration: number for number, method in enumerate(methods)}
+    fixed = by_splitting(system, OUTPUT_STEP)
+    methods.append(_own("splitting", f"step {fixed.step:.1e} s", fixed, system, sizes.duration))
+    failed = []
+    for name, duration in stretch.items():
+        target = methods[own[duration]].energy_residual
+        loosest, residual = matched(name, system, rates[COMPILED], duration, target)
+        if loosest is None:
+            failed.append({"solver": name, "energy_residual": residual})
+            continue
+        for kind, side in rates.items():
+            run = partial(generic, name, side, 2 * system.num_modes, duration, loosest)
+            methods.append(Method(name, kind, f"{loosest:.1e}", duration, residual, run))
+    runs = [method.run for method in methods]
+    seconds = by_turns(runs, sizes.most, sizes.budget)
+    entries: list[dict[str, Any]] = [
+        {
+            "solver": method.solver,
+            "rates": method.rates,
+            "tolerance": method.tolerance,
+            "duration": method.duration,
+            "energy_residual": method.energy_residual,
+            "seconds": taken,
+            "ratios": [
+                theirs / ours
+                for theirs, ours in zip(taken, seconds[own[method.duration]], strict=False)
+            ],
+        }
+        for method, taken in zip(methods, seconds, strict=True)
+    ]
+    table = TextTable(
+        f"Five-term series, at the energy residual of event-driven motion at {tolerance:.0e}",
+        ("solver", "right-hand side", "motion s", "tolerance", "energy residual", "wall s",
+         "over event-driven"),
+        [
+            (
+                entry["solver"],
+                entry["rates"],
+                f"{entry['duration']:g}",
+                entry["tolerance"],
+                f"{entry['energy_residual']:.1e}",
+                shown(entry["seconds"]),
+                shown(entry["ratios"]),
+            )
+            for entry in entries
+        ],
+        [
+            *(_verdict(entries, kind) for kind in (NUMPY, COMPILED)),
+            *(
+                f"{entry['solver']} leaves more, {entry['energy_residual']:.1e} at the best of the "
+                "tolerances that were tried."
+                for entry in failed
+            ),
+            "Ours labels its outputs and their energies within that time; the others leave states. "
+            "Their tolerances are matched with the compiled right-hand side, and their absolute "
+            "ones are a thousandth.",
+        ],
+    )  # fmt: skip
+    return table, {"tolerance": tolerance, "methods": entries, "failed": failed, "goal": RATIO_GOAL}
+
+
+def _own(
+    solver: str, tolerance: str, integrator: Integrator, system: GapSystem, duration: float
+) -> Method:
+    run = partial(integrator, system, duration, OUTPUT_STEP)
+    return Method(solver, "", tolerance, duration, run().energy_residual, run)
+
+
+def _verdict(entries: Sequence[dict[str, Any]], kind: str) -> str:
+    """What the fastest solvers take with one kind of right-hand side."""
+    ratios = {entry["solver"]: entry["ratios"] for entry in entries if entry["rates"] == kind}
+    methods = sorted(ratios.keys() & METHODS, key=lambda name: median(ratios[name]))
+    how = "as one writes it in NumPy" if kind == NUMPY else "compiled by numba"
+    if not methods:
+        return f"With the same right-hand side {how}, no method of solve_ivp leaves so little."
+    best = ratios[methods[0]]
+    goal = "reached" if median(best) >= RATIO_GOAL else "not reached"
+    fortran = shown(ratios["odeint"]) if "odeint" in ratios else ""
+    return (
+        f"With the same right-hand side {how}, the best of solve_ivp is {methods[0]} with "
+        f"{shown(best)} times the wall time: the goal of {RATIO_GOAL:g} is {goal}."
+    ) + (f" odeint, whose loop is in Fortran: {fortran} times." if fortran else "")
+
+
+def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
+    """A made-up system all of whose rows press all the time, which makes the dearest steps.
+
+    Two rigid modes, the others 20 Hz apart up to a few kHz as those of a shell; 1000 kg, stops
+    of 1e7 N/m without clearance at places along a bar, 10 kN.
+    """
+    order = np.arange(num_modes)
+    place = (np.arange(num_rows) + 0.5) / num_rows
+    rows = np.cos(np.pi * np.outer(place, order)) * np.sqrt(2.0 / 1000.0)
+    return GapSystem(
+        omega2=(2.0 * np.pi * 20.0 * np.maximum(order - 1, 0)) ** 2,
+        load=1.0e4 * rows[0],
+        rows=rows,
+        laws=[PowerContact(1.0e7, 1.0, 0.0)] * num_rows,
+        station_of_row=np.arange(num_rows),
+        stations=place.tolist(),
+        observers={},
+    )
+
+
+def steps(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+    """What a step of the splitting costs, by modes and rows."""
+    kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
+    made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
+    runs = [
+        partial(integrate, pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0, STEP)
+        for n, m in kinds
+    ]
+    seconds = by_turns(runs, sizes.most, sizes.budget)
+    cost = {
+        (n, m): [1e9 * part / made[n] for part in taken]
+        for (n, m), taken in zip(kinds, seconds, strict=True)
+    }
+    table = TextTable(
+        "Splitting, ns per step while every row presses",
+        ("modes", *(f"{m} rows" for m in sizes.rows)),
+        [(str(n), *(shown(cost[n, m]) for m in sizes.rows)) for n in sizes.modes],
+        ("Steps in flight are cheaper, and many are made at once.",),
+    )
+    entries = [
+        {"modes": n, "rows": m, "steps": made[n], "nanoseconds": cost[n, m]} for n, m in kinds
+    ]
+    return table, {"step": STEP, "costs": entries}
+
+
+def ensembles(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+    """What ensembles cost, by threads."""
+    system = five_terms(case)
+    cores = len(os.sched_getaffinity(0))
+
+    def run(whole: GapSystem, count: int, integrator: Integrator | None, threads: int) -> None:
+        with ThreadPoolExecutor(threads) as pool:
+            integrate_ensemble(
+                whole, count, CHANGE, 0, "load", sizes.duration, OUTPUT_STEP,
+                integrator=integrator, executor=pool,
+            )  # fmt: skip
+
+    series = f"{sizes.members} five-term series"
+    what = [
+        (f"{series}, event-driven", n, partial(run, system, sizes.members, Events(), n))
+        for n in sorted({1, cores})
+    ]
+    what.append((f"{series}, splitting", cores, partial(run, system, sizes.members, None, cores)))
+    shell = _shell_system(case) if sizes.shell_members else None
+    if shell is not None:
+        name = f"{sizes.shell_members} shells of {shell.num_modes} modes, splitting"
+        what.append((name, cores, partial(run, shell, sizes.shell_members, None, cores)))
+    seconds = by_turns([run for _, _, run in what], sizes.most, sizes.budget)
+    fastest = min(median(taken) for taken in seconds[: len({1, cores})])
+    goal = "reached" if fastest <= ENSEMBLE_GOAL else "not reached"
+    notes = [f"The goal of {ENSEMBLE_GOAL:g} s for the series is {goal}."]
+    if sizes.shell_members and shell is None:
+        notes.append("No shells: FEniCSx cannot be imported.")
+    table = TextTable(
+        f"Ensembles, {sizes.duration:g} s, loads within {CHANGE:g}",
+        ("ensemble", "threads", "repetitions", "wall s"),
+        [
+            (name, str(threads), str(len(taken)), shown(taken))
+            for (name, threads, _), taken in zip(what, seconds, strict=True)
+        ],
+        notes,
+    )
+    entries = [
+        {"ensemble": name, "threads": threads, "seconds": taken}
+        for (name, threads, _), taken in zip(what, seconds, strict=True)
+    ]
+    return table, {"goal": ENSEMBLE_GOAL, "ensembles": entries}
+
+
+def _shell_system(case: Case) -> GapSystem | None:
+    """The case's shell, reduced; None without one, or without FEniCSx."""
+    models = [model for model in case.models if isinstance(model, ShellTable)]
+    try:
+        mpi = import_module("mpi4py.MPI")
+        import_module("shell_model.boom_shell")
+    except ImportError:
+        return None
+    if not models:
+        return None
+    with TemporaryDirectory() as folder:
+        meshes = Path(folder) / "meshes"
+        boom = build_boom(case)
+        reduced = reduce_shell(case, boom, models[0], mpi.COMM_SELF, meshes, lambda *_: None)
+    return reduced.system
+
+
+def bench(sizes: Sizes, folder: Path, console: Console) -> None:
+    """Measure, print, and write ``bench.json`` and ``bench.md``."""
+    case = case_file.load(str(PAPER))
+    data: dict[str, Any] = {
+        "sizes": asdict(sizes),
+        "machine": {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()},
+        "comparisons": [],
+    }
+    tables = []
+
+    def show(table: TextTable) -> None:
+        table.show(console)
+        tables.append(table)
+
+    for tolerance, solvers in sizes.levels:
+        table, found = compare(case, tolerance, solvers, sizes)
+        data["comparisons"].append(found)
+        show(table)
+    parts: dict[str, Callable[[], tuple[TextTable, dict[str, Any]]]] = {
+        "steps": partial(steps, sizes),
+        "ensembles": partial(ensembles, case, sizes),
+    }
+    for name, part in parts.items():
+        table, data[name] = part()
+        show(table)
+    console.print(NOISE)
+    closing = replace(tables[-1], notes=(*tables[-1].notes, NOISE))
+    write(folder, "bench", "What the integrators cost", data, [*tables[:-1], closing])
+
+
+if __name__ == "__main__":
+    shown_on = wide_console()
+    bench(Sizes(), OUT, shown_on)
+    scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)

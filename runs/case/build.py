@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The boom and the contact laws that a case declares."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from geometry.boom import (
+    Boom,
+    BoomError,
+    Collar,
+    Diaphragm,
+    Joint,
+    Lateral,
+    Material,
+    PadSize,
+    PointMass,
+    Segment,
+    Support,
+)
+from geometry.section import BoxSection, SectionError, infer_inner_section, infer_outer_section
+from runs.case import actions
+from runs.case.messages import choices
+from runs.case.schema import (
+    Case,
+    ContactTable,
+    FiniteElementTable,
+    JointTable,
+    Model,
+    SegmentTable,
+    ShellTable,
+)
+
+# A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
+SAME_SECTION = 0.01
+
+
+def build_boom(case: Case) -> Boom:
+    """The boom that a case declares, its sections inferred where they are not given.
+
+    Raises:
+        BoomError: no boom can be like that.
+    """
+    check_names("segment", [segment.name for segment in case.segments])
+    _check_flat(case)
+    joints = tuple(_joint(case, number) for number in range(len(case.joints)))
+    sections = _sections(case, joints)
+    segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
+    return Boom(segments, joints, actions.loads(case, segments), actions.stops(case, segments))
+
+
+def contact_laws(case: Case, model: Model) -> list[ContactLaw]:
+    """The contact law of each joint along z, as a model sees it."""
+    return [
+        _law(law, 0.5 * joint.play, law.stiffness, law.stiffness_below, law.exponent)
+        for joint, law in ((joint, model.contact or joint) for joint in case.joints)
+    ]
+
+
+def lateral_laws(case: Case, model: Model) -> list[ContactLaw]:
+    """The same along y; none for a flat boom."""
+    laws = []
+    for joint in case.joints:
+        if joint.lateral_play is not None:
+            law = model.contact or joint
+            stiffness = law.stiffness if model.contact else joint.lateral_stiffness or law.stiffness
+            exponent = law.exponent if model.contact else joint.lateral_exponent or law.exponent
+            laws.append(_law(law, 0.5 * joint.lateral_play, stiffness, None, exponent))
+    return laws
+
+
+def _law(
+    table: JointTable | ContactTable,
+    clearance: float,
+    stiffness: float,
+    below: float | None,
+    exponent: float,
+) -> ContactLaw:
+    blow = table.restitution
+    damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
+    return PowerContact(stiffness, exponent, clearance, below, damping)
+
+
+def needs_plates(model: Model) -> bool:
+    """Whether a model cannot do without the box sections."""
+    return isinstance(model, ShellTable) or (
+        isinstance(model, FiniteElementTable) and model.theory == "timoshenko"
+    )
+
+
+def check_names(where: str, names: Sequence[str]) -> None:
+    """No name twice.
+
+    Raises:
+        BoomError: at the second one.
+    """
+    for number, name in enumerate(names, start=1):
+        if name in names[: number - 1]:
+            first = names.index(name) + 1
+            raise BoomError(
+                f"{where}[{number}].name",
+                f"{name!r} is the name of {where}[{first}] already; give each its own",
+            )
+
+
+def _joint(case: Case, index: int) -> Joint:
+    table = case.joints[index]
+    names = [segment.name for segment in case.segments]
+    for end in ("outer", "inner"):
+        name = getattr(table, end)
+        if name not in names:
+            raise BoomError(
+                f"joint[{index + 1}].{end}", f"{name!r} is no segment; give {choices(names)}"
+            )
+    if table.outer == table.inner:
+        raise BoomError(f"joint[{index + 1}].inner", "must be another segment than the outer one")
+    for number, other in enumerate(case.joints[:index], start=1):
+        if {other.outer, other.inner} == {table.outer, table.inner}:
+            raise BoomError(
+                f"joint[{index + 1}]",
+                f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; give "
+                "all their stations there",
+            )
+    if table.tied and table.friction > 0.0:
+        raise BoomError(
+            f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
+        )
+    return Joint(
+        outer=names.index(table.outer),
+        inner=names.index(table.inner),
+        stations=table.stations,
+        clearance=0.5 * table.play,
+        stiffness=table.stiffness,
+        stiffness_below=(
+            table.stiffness if table.stiffness_below is None else table.stiffness_below
+        ),
+        exponent=table.exponent,
+        lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
+        friction=table.friction,
+        normal_forces=table.normal_forces,
+        tied=table.tied,
+        pad=None if table.pad is None else PadSize(table.pad.length, table.pad.width),
+        contact_length=table.contact_length,
+    )
+
+
+def _segment(case: Case, index: int, section: BoxSection | None) -> Segment:
+    table = case.segments[index]
+    material = Material(**case.material.model_dump())
+    mass, second_moment = _beam_numbers(case, index)
+    rotary = table.rotary_inertia
+    return Segment(
+        name=table.name,
+        start=table.span[0],
+        end=table.span[1],
+        material=material,
+        mass_per_length=mass,
+        second_moment_of_area=second_moment,
+        rotary_inertia=material.density * second_moment if rotary is None else rotary,
+        section=section,
+        load=table.load,
+        supports=tuple(Support(**support.model_dump()) for support in table.supports),
+        viscous_damping=table.viscous_damping,
+        masses=_masses(case, index),
+        lateral=_lateral(table, material, section) if _in_space(case) else None,
+        collars=tuple(Collar(*collar.span, collar.thickness) for collar in table.collars),
+        diaphragms=tuple(Diaphragm(**plate.model_dump()) for plate in table.diaphragms),
+    )
+
+
+def _masses(case: Case, index: int) -> tuple[PointMass, ...]:
+    table = case.segments[index]
+    masses = [PointMass(mass.x, mass.mass) for mass in table.masses]
+    if case.payload is not None and index == len(case.segments) - 1:
+        masses.append(PointMass(table.span[1], case.payload.mass))
+    return tuple(masses)
+
+
+def _check_flat(case: Case) -> None:
+    """Nothing acts to the sides of a boom that does not move there."""
+    if _in_space(case):
+        return
+    remedy = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
+    for number, segment in enumerate(case.segments, start=1):
+        if segment.lateral_load != 0.0:
+            raise BoomError(f"segment[{number}].lateral_load", remedy)
+    for number, base in enumerate(case.base, start=1):
+        if base.direction == "y":
+            raise BoomError(f"base[{number}].direction", remedy)
+
+
+def _in_space(case: Case) -> bool:
+    return any(joint.lateral_play is not None for joint in case.joints)
+
+
+def _lateral(table: SegmentTable, material: Material, section: BoxSection | None) -> Lateral | None:
+    """What bends sideways and twists, given or of the section; None where something is unknown."""
+    second_moment, torsion = table.lateral_second_moment_of_area, table.torsion_constant
+    polar = table.polar_inertia
+    if section is not None:
+        second_moment = second_moment or section.lateral_second_moment_of_area
+        torsion = torsion or section.torsion_constant
+        polar = polar or material.density * section.polar_second_moment_of_area
+    if second_moment is None or torsion is None or polar is None:
+        return None
+    rotary = table.lateral_rotary_inertia
+    return Lateral(
+        second_moment_of_area=second_moment,
+        rotary_inertia=material.density * second_moment if rotary is None else rotary,
+        torsion_constant=torsion,
+        polar_inertia=polar,
+        load=table.lateral_load,
+    )
+
+
+def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
+    """Mass per length in kg/m and second moment in m⁴, given or of the given section."""
+    table = case.segments[index]
+    section = _given_section(table, index)
+    mass, second_moment = table.mass_per_length, table.second_moment_of_area
+    if section is not None:
+        _check_plates(case, index, section)
+        mass = mass or section.mass_per_length(case.material.density)
+        second_moment = second_moment or section.second_moment_of_area
+    if mass is None:
+        raise _missing(index, "mass_per_length")
+    if second_moment is None:
+        raise _missing(index, "second_moment_of_area")
+    return mass, second_moment
+
+
+def _check_plates(case: Case, index: int, section: BoxSection) -> None:
+    """A given section stands alone, and the beam's numbers are its own where a shell is to run."""
+    table = case.segments[index]
+    where = f"segment[{index + 1}]"
+    if table.height_to_width is not None:
+        raise BoomError(f"{where}.height_to_width", "the section is given; leave one of them out")
+    if not any(isinstance(model, ShellTable) for model in case.models):
+        return
+    for key, given, own in (
+        ("mass_per_length", table.mass_per_length, section.mass_per_length(case.material.density)),
+        ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
+    ):
+        if given is not None and abs(given / own - 1.0) > SAME_SECTION:
+            raise BoomError(
+                f"{where}.{key}",
+                f"{given:g} is not the section's own {own:.6g}, and beams and shell would be "
+                "different booms; leave it out, or change the section",
+            )
+
+
+def _missing(index: int, key: str) -> BoomError:
+    description = SegmentTable.model_fields[key].description
+    return BoomError(f"segment[{index + 1}].{key}", f"missing; it is {description}")
+
+
+def _given_section(table: SegmentTable, index: int) -> BoxSection | None:
+    if table.section is None:
+        return None
+    try:
+        return BoxSection(**table.section.model_dump())
+    except SectionError as error:
+        raise BoomError(f"segment[{index + 1}].section", str(error)) from None
+
+
+def _sections(case: Case, joints: Sequence[Joint]) -> list[BoxSection | None]:
+    """Given sections, then those of a given ratio, then those that fill the one around them."""
+    sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
+    for i, table in enumerate(case.segments):
+        if sections[i] is None and table.height_to_width is not None:
+            sections[i] = _infer(case, i, table.height_to_width)
+    # One pass a joint carries a section inwards through all of them, in whatever order.
+    for _ in joints:
+        for joint in joints:
+            outer = sections[joint.outer]
+            if sections[joint.inner] is None and outer is not None:
+                sections[joint.inner] = _infer(case, joint.inner, (outer, joint.clearance))
+    return sections
+
+
+def _infer(case: Case, index: int, hint: float | tuple[BoxSection, float]) -> BoxSection | None:
+    """A section from its height-to-width ratio, or from the one around it and the clearance.
+
+    None where there is none and no model needs it.
+    """
+    mass, second_moment = _beam_numbers(case, index)
+    area = mass / case.material.density
+    try:
+        if isinstance(hint, tuple):
+            return infer_inner_section(area, second_moment, *hint)
+        return infer_outer_section(area, second_moment, hint)
+    except SectionError as error:
+        if any(needs_plates(model) for model in case.models):
+            raise BoomError(f"segment[{index + 1}].section", str(error)) from None
+        return None

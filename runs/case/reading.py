@@ -1,0 +1,328 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A case file, read and checked."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from pydantic import ValidationError
+
+from beam_model.kantorovich import bending_basis
+from geometry.boom import Boom, BoomError
+from runs.case.build import build_boom, check_names, needs_plates
+from runs.case.limits import MOST_MEMBERS, MOST_TIMES
+from runs.case.messages import BadInput, choices
+from runs.case.schema import (
+    Case,
+    EnsembleTable,
+    FiniteElementTable,
+    HistoryTable,
+    KantorovichTable,
+    Model,
+    ShellTable,
+    TimeTable,
+)
+from runs.case.shell_contact import check_contact
+from runs.case.user_files import read_text
+from runs.process.shown import shown
+
+# More reported times than this would not fit in a netCDF file, or in anybody's patience.
+MOST_OUTPUTS = 10_000_000
+
+History = TypeVar("History", bound=HistoryTable)
+
+# A dense eigenproblem of more elements, or a factorisation of more triangles, is a slip of the pen.
+MOST_ELEMENTS = 5_000
+# Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
+MOST_TERMS = 60
+MOST_TRIANGLES = 20_000_000
+
+# What an option takes as a whole number: nobody means one of more digits.
+_WHOLE = re.compile(r"[0-9]{1,9}")
+
+_TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
+
+
+def load(path: str) -> Case:
+    """Read and check a case file.
+
+    Raises:
+        BadInput: the file cannot be read, or what it says cannot be.
+    """
+    try:
+        case = _read_tables(Case.model_validate(_read(path)), path)
+    except ValidationError as error:
+        raise BadInput.from_validation(path, error) from None
+    check(case, path)
+    return case
+
+
+def check(case: Case, path: str) -> None:
+    """Whether a case can be, beyond what its tables say each for itself.
+
+    Raises:
+        BadInput: it cannot.
+    """
+    try:
+        _check_time(case.time)
+        boom = build_boom(case)
+        _check_models(case, boom)
+    except BoomError as error:
+        raise BadInput(path, error.where, error.what) from None
+    except ArithmeticError as error:
+        raise BadInput(
+            path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
+        ) from None
+
+
+def select(
+    case: Case,
+    path: str,
+    models: Sequence[str] | None = None,
+    mesh_size: float | None = None,
+    members: int | None = None,
+    modes: str | None = None,
+) -> Case:
+    """The case with the named models alone, other shells, other ensembles.
+
+    Args:
+        case: a checked one.
+        path: of its file, for messages.
+        models: names; all unless given.
+        mesh_size: in m, of uniform meshes.
+        members: of each ensemble; 0 for none.
+        modes: of the shells: a number, or ``auto``.
+
+    Raises:
+        BadInput: a name that the case does not know, a mesh size or modes that cannot be or that
+            nothing would use, a single member.
+    """
+    chosen = case.models
+    if models is not None:
+        known = [model.name for model in case.models]
+        for name in models:
+            if name not in known:
+                raise BadInput(
+                    path, "--models", f"{name!r} is not a model of the case; give {choices(known)}"
+                )
+        chosen = tuple(model for model in case.models if model.name in models)
+    if mesh_size is not None:
+        if not (np.isfinite(mesh_size) and mesh_size > 0.0):
+            raise BadInput(
+                path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
+            )
+        try:
+            _check_mesh_size("--mesh-size", mesh_size, build_boom(case))
+        except BoomError as error:
+            raise BadInput(path, error.where, error.what) from None
+        chosen = _with_shells(
+            chosen, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
+        )
+    if modes is not None:
+        if modes != "auto" and not (_WHOLE.fullmatch(modes) and int(modes) > 0):
+            what = f"must be a whole number above 0, or auto, got {modes!r}"
+            raise BadInput(path, "--modes", what)
+        number = "auto" if modes == "auto" else int(modes)
+        chosen = _with_shells(chosen, path, "--modes", {"modes": number})
+    ensemble = case.ensemble
+    if members is not None:
+        if members == 1 or not 0 <= members <= MOST_MEMBERS:
+            raise BadInput(
+                path,
+                "--members",
+                f"must be from 2 to {MOST_MEMBERS}, or 0 for no ensembles, got {members}",
+            )
+        given = {} if ensemble is None else ensemble.model_dump()
+        ensemble = EnsembleTable.model_validate({**given, "members": members}) if members else None
+    return case.model_copy(update={"models": chosen, "ensemble": ensemble})
+
+
+def _with_shells(
+    models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
+) -> tuple[Model, ...]:
+    """The models with the shells changed as an option says."""
+    if not any(isinstance(model, ShellTable) for model in models):
+        raise BadInput(path, option, "no shell is to be run; leave it out")
+    return tuple(
+        model.model_copy(update=update) if isinstance(model, ShellTable) else model
+        for model in models
+    )
+
+
+def _read(path: str) -> dict[str, object]:
+    try:
+        tables = tomllib.loads(read_text(Path(path)))
+        _check_whole_numbers(tables, path)
+        return tables
+    except FileNotFoundError:
+        raise BadInput(path, "file", "does not exist; give the path of a case file") from None
+    except IsADirectoryError:
+        raise BadInput(path, "file", "is a directory; give the path of a case file") from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise BadInput(path, *_unreadable(error)) from None
+
+
+def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
+    """TOML promises 64 bits; Python reads any number of digits, and then cannot show them."""
+    if isinstance(thing, dict):
+        for name, value in thing.items():
+            _check_whole_numbers(value, path, f"{key}.{name}" if key else name)
+    elif isinstance(thing, list):
+        for number, value in enumerate(thing, start=1):
+            _check_whole_numbers(value, path, f"{key}[{number}]")
+    elif isinstance(thing, int) and not -(2**63) <= thing < 2**63:
+        raise BadInput(path, key, _TOO_MANY_DIGITS)
+
+
+def _read_tables(case: Case, path: str) -> Case:
+    """The case with the CSV files of its histories in place, so that it stands alone."""
+
+    def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
+        return tuple(
+            history
+            if history.file is None
+            else history.model_copy(
+                update={"file": None, "table": _pairs(path, f"{key}[{i}].file", history.file)}
+            )
+            for i, history in enumerate(histories, start=1)
+        )
+
+    return case.model_copy(
+        update={"loads": standing("load", case.loads), "base": standing("base", case.base)}
+    )
+
+
+def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
+    remedy = "give a CSV file of two columns without a heading, time in s and factor"
+    place = Path(path).parent / file
+    name = f"'{shown(file)}'"
+    try:
+        lines = [line for line in read_text(place).splitlines() if line.partition("#")[0].strip()]
+        if len(lines) > MOST_TIMES:
+            what = f"{name} has {len(lines)} lines; give {MOST_TIMES} at most"
+            raise BadInput(path, key, what)
+        pairs = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, 2))
+    except OSError as error:
+        what = f"'{shown(str(place))}' cannot be read ({error.strerror}); {remedy}"
+        raise BadInput(path, key, what) from None
+    except ValueError:
+        raise BadInput(path, key, f"{name} holds other than numbers; {remedy}") from None
+    if len(pairs) < 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise BadInput(path, key, f"{name} has other columns, or one line alone; {remedy}")
+    if (np.diff(pairs[:, 0]) <= 0.0).any():
+        raise BadInput(path, key, f"the times in {name} must rise")
+    return tuple((float(t), float(factor)) for t, factor in pairs)
+
+
+def _unreadable(error: Exception) -> tuple[str, str]:
+    """Key and text for a file that is there and cannot be understood."""
+    if isinstance(error, OSError):
+        return "file", f"cannot be read ({error.strerror}); give a case file that can"
+    if isinstance(error, UnicodeDecodeError):
+        line = error.object[: error.start].count(b"\n") + 1
+        return f"line {line}", "not UTF-8; save the file in this encoding"
+    if isinstance(error, RecursionError):
+        return "file", "not TOML: nested too deeply; a case has three levels at most"
+    if not isinstance(error, tomllib.TOMLDecodeError):
+        return "file", f"a whole number {_TOO_MANY_DIGITS}"
+    what, _, place = str(error).rstrip(")").rpartition(" (at ")
+    at_line, _, at_column = place.partition(", ")
+    if not what or not at_line.startswith("line "):
+        return "file", f"not TOML: {error}; see https://toml.io"
+    return at_line, f"not TOML: {what} ({at_column}); see https://toml.io"
+
+
+def _check_time(time: TimeTable) -> None:
+    outputs = time.duration / time.output_step
+    if outputs > MOST_OUTPUTS:
+        raise BoomError(
+            "time.output_step",
+            f"{time.output_step:g} s makes {outputs:.3g} outputs of {time.duration:g} s; it must "
+            f"be at least {time.duration / MOST_OUTPUTS:.3g} s",
+        )
+    if abs(outputs - round(outputs)) > 1e-6 * outputs or round(outputs) < 1:
+        whole = max(1, round(outputs))
+        raise BoomError(
+            "time.duration",
+            f"must be a whole number of output steps of {time.output_step:g} s, such as "
+            f"{whole * time.output_step:g} s, got {time.duration:g} s",
+        )
+
+
+def _check_models(case: Case, boom: Boom) -> None:
+    check_names("model", [model.name for model in case.models])
+    for number, model in enumerate(case.models, start=1):
+        where = f"model[{number}]"
+        _check_step(f"{where}.step", model.step, case.time)
+        if isinstance(model, KantorovichTable) and max(model.terms) > MOST_TERMS:
+            raise BoomError(
+                f"{where}.terms",
+                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
+                f"{list(model.terms)}; use finite elements",
+            )
+        if isinstance(model, KantorovichTable) and len(model.terms) != len(boom.segments):
+            raise BoomError(
+                f"{where}.terms",
+                f"must have one number for each of the {len(boom.segments)} segments, got "
+                f"{list(model.terms)}",
+            )
+        if isinstance(model, KantorovichTable):
+            for segment, terms in zip(boom.segments, model.terms, strict=True):
+                try:
+                    bending_basis(segment, terms, model.base)
+                except BoomError as error:
+                    raise BoomError(f"{where}.base", error.what) from None
+        if isinstance(model, FiniteElementTable) and model.tied and model.contact:
+            raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
+        if isinstance(model, FiniteElementTable):
+            length = max(segment.length for segment in boom.segments)
+            if length / model.element_length > MOST_ELEMENTS:
+                raise BoomError(
+                    f"{where}.element_length",
+                    f"{model.element_length:g} m makes more than {MOST_ELEMENTS} elements of a "
+                    f"segment; it must be at least {length / MOST_ELEMENTS:.3g} m",
+                )
+        if needs_plates(model):
+            for i, segment in enumerate(boom.segments, start=1):
+                if segment.section is None:
+                    raise BoomError(
+                        f"segment[{i}].section",
+                        f"missing, and {model.name!r} needs it; give section or height_to_width",
+                    )
+        if isinstance(model, ShellTable):
+            _check_mesh_size(f"{where}.mesh_size", model.mesh_size, boom)
+            check_contact(where, case, boom, model)
+            for i, segment in enumerate(boom.segments, start=1):
+                if segment.viscous_damping > 0.0:
+                    raise BoomError(
+                        f"segment[{i}].viscous_damping",
+                        f"the shell {model.name!r} has none; leave it out, or run beams alone",
+                    )
+    _check_step("time.step", case.time.step, case.time)
+
+
+def _check_mesh_size(where: str, size: float, boom: Boom) -> None:
+    surface = sum(
+        2.0 * (segment.section.height + segment.section.width) * segment.length
+        for segment in boom.segments
+        if segment.section is not None
+    )
+    smallest = float(np.sqrt(2.0 * surface / MOST_TRIANGLES))
+    if size < smallest:
+        raise BoomError(
+            where,
+            f"{size:g} m makes more than {MOST_TRIANGLES:.0e} triangles; it must be at least "
+            f"{smallest:.3g} m",
+        )
+
+
+def _check_step(where: str, step: float | None, time: TimeTable) -> None:
+    if step is not None and step > time.output_step:
+        raise BoomError(
+            where, f"must not be above the output step of {time.output_step:g} s, got {step:g} s"
+        )

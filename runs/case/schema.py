@@ -1,0 +1,492 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a case file may say. SI units throughout; an unknown key is an error.
+
+The descriptions are what the JSON Schema shows, and what the message for a missing key quotes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic.json_schema import GenerateJsonSchema
+
+from runs.case.limits import (
+    MOST_MEMBERS,
+    MOST_MODELS,
+    MOST_SEGMENTS,
+    MOST_STATIONS,
+    MOST_TIMES,
+    ContactTolerance,
+    Count,
+    Exponent,
+    Few,
+    Flag,
+    Modes,
+    Name,
+    NotNegative,
+    Number,
+    Part,
+    Positive,
+    StatementId,
+    Text,
+)
+
+
+class Table(BaseModel):
+    """A table of the case file: nothing but its own keys, and not changed once read."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class TimeTable(Table):
+    """How long, and how finely reported."""
+
+    duration: Positive = Field(description="the simulated time in s, from t = 0")
+    output_step: Positive = Field(1.0e-3, description="the interval of the reported times in s")
+    step: Positive | None = Field(
+        None,
+        description="the step of the integrator in s; each model's own, small enough for its "
+        "contacts, unless given",
+    )
+
+
+class EnsembleTable(Table):
+    """Every model with play once more, many times, with data changed a little."""
+
+    members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)] = Field(
+        description="the number of runs of each model, the unchanged one among them"
+    )
+    relative: Part = Field(1.0e-9, description="the largest relative change")
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
+        1, description="the seed of the changes: the same one gives the same members"
+    )
+    vary: Literal["load", "clearance"] = Field(
+        "load", description="what is changed, all of it by one factor"
+    )
+
+
+class MaterialTable(Table):
+    """Isotropic linear elasticity, the same for all segments."""
+
+    youngs_modulus: Positive = Field(description="Young's modulus E in Pa")
+    poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5)] = Field(
+        description="Poisson's ratio"
+    )
+    density: Positive = Field(description="the density in kg/m^3")
+
+
+class SectionTable(Table):
+    """A box by its wall mid-lines and thicknesses."""
+
+    height: Positive = Field(description="the distance of the flange mid-lines in m")
+    width: Positive = Field(description="the distance of the web mid-lines in m")
+    flange: Positive = Field(description="the thickness of the two flanges in m")
+    web: Positive = Field(description="the thickness of the two webs in m")
+
+
+class SupportTable(Table):
+    """A place where the ground holds a segment; in space it holds sideways and in twist too."""
+
+    x: Number = Field(description="the x in m")
+    kind: Literal["pinned", "clamped"] = Field(
+        "pinned", description="whether the slope is free or held"
+    )
+    stiffness: Positive | None = Field(
+        None, description="the stiffness of an elastic support in N/m; rigid unless given"
+    )
+
+
+class MassTable(Table):
+    """A mass on a segment."""
+
+    x: Number = Field(description="the x in m")
+    mass: Positive = Field(description="the mass in kg")
+
+
+class CollarTable(Table):
+    """A doubler around a segment; the walls' mid-surfaces stay where they are."""
+
+    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    thickness: Positive = Field(description="the thickness in m that it adds to all four walls")
+
+
+class DiaphragmTable(Table):
+    """A plate that closes a segment's box, welded to its four walls."""
+
+    x: Number = Field(description="the x in m")
+    thickness: Positive = Field(description="the thickness in m")
+
+
+def _support(given: Any) -> Any:
+    """A place alone is a pinned support."""
+    number = isinstance(given, int | float) and not isinstance(given, bool)
+    return {"x": float(given)} if number else given
+
+
+Support = Annotated[
+    SupportTable, BeforeValidator(_support, json_schema_input_type=Number | SupportTable)
+]
+
+
+class SegmentTable(Table):
+    """One box of the boom."""
+
+    name: Name = Field(description="what the joints and the results call the segment")
+    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    supports: Annotated[tuple[Support, ...], Few] = Field(
+        (), description="the places that the ground holds: an x in m each, or a table"
+    )
+    masses: Annotated[tuple[MassTable, ...], Few] = Field(
+        (), description="the masses on the segment"
+    )
+    mass_per_length: Positive | None = Field(
+        None, description="the mass per length in kg/m; follows from the section unless given"
+    )
+    second_moment_of_area: Positive | None = Field(
+        None, description="the second moment of area in m^4; follows from the section unless given"
+    )
+    rotary_inertia: NotNegative | None = Field(
+        None, description="the rotary inertia in kg m; density times second moment unless given"
+    )
+    height_to_width: Positive | None = Field(
+        None, description="the ratio of the mid-lines of a uniform-wall box, to infer its section"
+    )
+    section: SectionTable | None = Field(
+        None,
+        description="the box; unless given it is inferred from mass and second moment, with "
+        "height_to_width, or with the room in the segment around it",
+    )
+    load: Number = Field(
+        0.0, description="the uniform load in N/m, positive upwards, applied at t = 0 and kept"
+    )
+    viscous_damping: NotNegative = Field(
+        0.0, description="the viscous damping per length in N s/m^2"
+    )
+    lateral_load: Number = Field(
+        0.0, description="the uniform load along y in N/m, applied at t = 0 and kept"
+    )
+    lateral_second_moment_of_area: Positive | None = Field(
+        None,
+        description="the second moment of area for bending along y in m^4; follows from the "
+        "section unless given",
+    )
+    lateral_rotary_inertia: NotNegative | None = Field(
+        None, description="the same in kg m; density times second moment unless given"
+    )
+    torsion_constant: Positive | None = Field(
+        None, description="the torsion constant in m^4; follows from the section unless given"
+    )
+    polar_inertia: Positive | None = Field(
+        None,
+        description="the mass moment of inertia about the axis per length in kg m; follows from "
+        "the section unless given",
+    )
+    collars: Annotated[tuple[CollarTable, ...], Few] = Field(
+        (), description="the doublers around the box, which only shells have, mass and all"
+    )
+    diaphragms: Annotated[tuple[DiaphragmTable, ...], Few] = Field(
+        (), description="the plates that close the box, which only shells have, mass and all"
+    )
+
+
+class RestitutionTable(Table):
+    """How much of its speed a blow gives back."""
+
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = Field(
+        description="the coefficient of restitution"
+    )
+    speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
+
+
+class PadTable(Table):
+    """A slide pad in a corner: a patch of the inner segment's wall."""
+
+    length: Positive = Field(description="the length along x in m")
+    width: Positive = Field(description="the width from the corner inwards in m")
+
+
+class JointTable(Table):
+    """Where an inner segment slides in an outer one, with play."""
+
+    outer: str = Field(description="the name of the outer segment")
+    inner: str = Field(description="the name of the inner segment")
+    stations: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
+        description="the x in m at which the two may touch, rising"
+    )
+    play: NotNegative = Field(description="the play in m, the clearance above and below together")
+    stiffness: Positive = Field(
+        description="the contact stiffness in N/m^n where the inner segment presses up"
+    )
+    stiffness_below: NotNegative | None = Field(
+        None,
+        description="the contact stiffness in N/m^n where the inner segment presses down; the "
+        "same as above unless given",
+    )
+    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+    friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
+    normal_forces: Annotated[tuple[NotNegative, ...], Few] = Field(
+        (),
+        description="the forces in N that press the segments at each station for the friction; in "
+        "space the contact forces of the other plane do unless given",
+    )
+    lateral_play: NotNegative | None = Field(
+        None,
+        description="the play to the sides in m, left and right together; with it the boom moves "
+        "in space",
+    )
+    lateral_stiffness: Positive | None = Field(
+        None, description="the contact stiffness to the sides in N/m^n; the same unless given"
+    )
+    lateral_exponent: Exponent | None = Field(
+        None, description="the exponent n to the sides; the same unless given"
+    )
+    tied: Flag = Field(
+        False, description="whether the two deflect alike at the stations, without play"
+    )
+    pad: PadTable | None = Field(
+        None,
+        description="the table of the slide pads' size, which shells alone heed; the corners of "
+        "the boxes along contact_length unless given",
+    )
+    contact_length: Positive | None = Field(
+        None,
+        description="the length along x in m on which stations press the corners, as long as a "
+        "slide pad, which shells alone heed; a tenth of the overlap unless given",
+    )
+
+
+class ContactTable(Table):
+    """The contact law that one model uses in all joints, instead of the joints' own."""
+
+    stiffness: Positive = Field(description="the contact stiffness in N/m^n")
+    stiffness_below: NotNegative | None = Field(
+        None, description="the contact stiffness in N/m^n below; the same as above unless given"
+    )
+    exponent: Exponent = Field(description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+
+
+class StopTable(Table):
+    """A rest on the ground that a segment may touch across a play."""
+
+    segment: str = Field(description="the name of the segment")
+    x: Number = Field(description="the x in m")
+    play: NotNegative = Field(description="the play in m, above and below together")
+    stiffness: NotNegative = Field(
+        description="the contact stiffness in N/m^n where the segment presses up; 0 for none"
+    )
+    stiffness_below: NotNegative | None = Field(
+        None, description="the same where it presses down; the same unless given"
+    )
+    exponent: Exponent = Field(1.0, description="the exponent n of the contact law")
+    contact_length: Positive | None = Field(
+        None,
+        description="the length along x in m on which it presses the corners, which shells alone "
+        "heed; a fifth of the box's height unless given",
+    )
+
+
+Times = tuple[tuple[Number, Number], ...]
+
+
+class HistoryTable(Table):
+    """How something goes with time: at once and kept, unless one of these is given."""
+
+    ramp: Positive | None = Field(None, description="the time in s in which it rises to its value")
+    frequency: Positive | None = Field(None, description="the frequency of a sine in Hz")
+    table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = Field(
+        None,
+        description="pairs of a time in s and a factor, linear between them and constant beyond",
+    )
+    file: Text | None = Field(
+        None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+
+
+class LoadTable(HistoryTable):
+    """A load on one segment."""
+
+    segment: str = Field(description="the name of the segment")
+    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
+    x: Number | None = Field(
+        None, description="the x in m of a point load; along the whole segment unless given"
+    )
+    magnitude: Number = Field(description="the load in N at x, or in N/m along the segment")
+    released: Flag = Field(
+        False, description="whether it has acted for ever, and is let go at t = 0"
+    )
+
+
+class PayloadTable(Table):
+    """A mass at the tip."""
+
+    mass: Positive = Field(description="the mass in kg")
+    gravity: NotNegative = Field(
+        9.80665,
+        description="the acceleration in m/s^2 by which it weighs down from t = 0; 0 for none",
+    )
+
+
+class BaseTable(HistoryTable):
+    """An acceleration of the ground, which is felt as a load on all masses."""
+
+    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
+    acceleration: Number = Field(description="the acceleration in m/s^2")
+
+
+class StartTable(Table):
+    """The state at t = 0."""
+
+    state: Literal["rest", "equilibrium"] = Field(
+        "rest", description="straight and unloaded, or at rest under the loads of t = 0"
+    )
+    velocity: dict[str, Number] = Field(
+        default_factory=dict, description="segment = velocity along z in m/s"
+    )
+
+
+class DampingTable(Table):
+    """Damping of the boom."""
+
+    modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0)] = Field(
+        0.0, description="the damping ratio of the boom's modes with pressed joints, 0.02 for 2 %"
+    )
+    mass: NotNegative = Field(0.0, description="Rayleigh's factor of the mass in 1/s")
+    stiffness: NotNegative = Field(0.0, description="Rayleigh's factor of the stiffness in s")
+
+
+class ModelTable(Table):
+    """What every kind of model has."""
+
+    name: Name = Field(description="what the results call the model")
+    contact: ContactTable | None = Field(
+        None, description="the model's own contact law; the joints' unless given"
+    )
+    step: Positive | None = Field(
+        None, description="the model's own step of the integrator in s; the case's unless given"
+    )
+
+
+class KantorovichTable(ModelTable):
+    """The semi-discrete Ritz series of the paper."""
+
+    kind: Literal["kantorovich"] = Field(description="the kind of model")
+    terms: Annotated[tuple[Count, ...], Few] = Field(
+        description="the number of functions of each segment, from the base to the tip"
+    )
+    base: Literal["as printed", "pinned", "complete"] = Field(
+        "as printed",
+        description="the reading of the functions: as printed, with zero slope at the base; "
+        "pinned, with a free one; complete, where the inner segment bends freely too",
+    )
+    rotary_inertia: Flag = Field(False, description="whether the rotary inertia is kept")
+
+
+class FiniteElementTable(ModelTable):
+    """Beam finite elements."""
+
+    kind: Literal["finite-element"] = Field(description="the kind of model")
+    element_length: Positive = Field(0.5, description="the length of an element in m, at most")
+    theory: Literal["euler-bernoulli", "timoshenko"] = Field(
+        "euler-bernoulli", description="the beam theory"
+    )
+    rotary_inertia: Flag = Field(True, description="whether the rotary inertia is kept")
+    tied: Flag = Field(
+        False, description="whether the segments deflect alike at the stations, without play"
+    )
+
+
+class ShellTable(ModelTable):
+    """Flat facet shells on the folded box, reduced to the contact's inputs."""
+
+    kind: Literal["shell"] = Field(description="the kind of model")
+    mesh_size: Positive = Field(
+        0.1, description="the edge length of the triangles in m, far from all that presses"
+    )
+    contact_tolerance: ContactTolerance = Field(
+        0.01,
+        description="the relative error of how much pressed walls give way, which makes the mesh "
+        "finer there, or 'any' for a uniform mesh",
+    )
+    modes: Modes | None = Field(
+        None,
+        description="the number of coordinates of each segment, at most, or 'auto' for as many as "
+        "the tolerance asks; unless given, those of three moments at four frequencies, which "
+        "answer the contacts within about 1e-8",
+    )
+    tolerance: Part = Field(
+        1.0e-6,
+        description="with modes = 'auto', the largest relative error with which the reduced shell "
+        "answers the forces of contacts and loads",
+    )
+    contact_line: Literal["near webs", "across", "surface"] = Field(
+        "near webs",
+        description="where the walls of the segments touch: at the stations near the webs or "
+        "across the flanges, or over the surface of the whole overlap",
+    )
+    surface_stiffness: Positive | None = Field(
+        None,
+        description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
+        "side; that of all the joint's stations over the area unless given",
+    )
+    surface_points: tuple[Count, Count] | None = Field(
+        None,
+        description="the number of contact points along the overlap, and across each half of a "
+        "wall; 8 and 4 unless given",
+    )
+
+
+Model = Annotated[KantorovichTable | FiniteElementTable | ShellTable, Field(discriminator="kind")]
+
+
+class Case(Table):
+    """A boom, and the models to run on it."""
+
+    title: Text = Field(description="the heading of the report")
+    demand: Annotated[tuple[StatementId, ...], Few] = Field(
+        (), description="the statements of the paper that the run must reproduce"
+    )
+    time: TimeTable = Field(description="the table of the duration and the output step")
+    ensemble: EnsembleTable | None = Field(
+        None, description="the table of the ensembles; none are run unless given"
+    )
+    material: MaterialTable = Field(description="the table of the elastic constants and density")
+    segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
+        Field(
+            alias="segment",
+            description="the segments, one [[segment]] each, from the base to the tip",
+        )
+    )
+    joints: Annotated[tuple[JointTable, ...], Field(max_length=MOST_SEGMENTS)] = Field(
+        (), alias="joint", description="the joints, one [[joint]] each, from the base to the tip"
+    )
+    stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
+        (), alias="stop", description="the rests that segments may touch, one [[stop]] each"
+    )
+    loads: Annotated[tuple[LoadTable, ...], Few] = Field(
+        (), alias="load", description="the loads that are not uniform or not constant"
+    )
+    payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
+    base: Annotated[tuple[BaseTable, ...], Few] = Field(
+        (), description="the accelerations of the ground"
+    )
+    start: StartTable = Field(
+        StartTable.model_validate({}), description="the table of the state at t = 0"
+    )
+    damping: DampingTable = Field(
+        DampingTable.model_validate({}), description="the table of the boom's damping"
+    )
+    models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
+        alias="model", description="the models to run, one [[model]] each"
+    )
+
+
+def case_schema() -> dict[str, Any]:
+    """The JSON Schema of a case file."""
+    return {"$schema": GenerateJsonSchema.schema_dialect, **Case.model_json_schema()}

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Writes a case as TOML that reads back as the same case."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from runs.case.schema import Case
+
+
+def dumps(case: Case) -> str:
+    """The whole case, defaults included; what is not given stays out."""
+    data = case.model_dump(by_alias=True, exclude_none=True)
+    return "\n".join(_table(data, "")) + "\n"
+
+
+def digest(case: Case) -> str:
+    """SHA-256 of the whole case as written."""
+    return hashlib.sha256(dumps(case).encode()).hexdigest()
+
+
+def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
+    """Lines of a table: its plain values first, as TOML wants it, then the tables in it."""
+    nested = {key: value for key, value in table.items() if _is_nested(value)}
+    for key, value in table.items():
+        if key not in nested:
+            yield f"{key} = {_value(value)}"
+    for key, value in nested.items():
+        inner = f"{path}{key}"
+        heading = f"[{inner}]" if isinstance(value, Mapping) else f"[[{inner}]]"
+        for entry in [value] if isinstance(value, Mapping) else value:
+            yield f"\n{heading}"
+            yield from _table(entry, f"{inner}.")
+
+
+def _is_nested(value: Any) -> bool:
+    return isinstance(value, Mapping) or (
+        isinstance(value, tuple) and bool(value) and isinstance(value[0], Mapping)
+    )
+
+
+def _value(value: bool | int | float | str | tuple[Any, ...]) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        # JSON's escapes are TOML's, which also wants DEL escaped.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, tuple):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    short = f"{value:g}"
+    return short if "e" in short and float(short) == value else repr(value)

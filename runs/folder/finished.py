@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the motion of a model leaves, kept as soon as it ends: the next run goes on from there.
+
+It is kept in the user's cache, not beside the run's folder: it serves whatever folder the next run
+writes to, has checksums, and goes when nobody has asked for it for long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from dynamics.trajectory import Trajectory
+from runs.folder import records
+from runs.folder.cache import Cache, Files, key
+from runs.folder.versions import program
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """A motion that has ended; ``ensemble`` where the case asks for one."""
+
+    trajectory: Trajectory
+    summary: dict[str, Any]
+    ensemble: xr.Dataset | None
+
+
+def finished(
+    cache: Cache | None, content: Sequence[Any], compute: Callable[[], Finished]
+) -> Finished:
+    """A motion as ``compute`` gives it, from the cache if it has ended before.
+
+    Args:
+        cache: of the user, which need not be writable; always computed unless given.
+        content: all that it depends on.
+        compute: the motion.
+
+    Raises:
+        NumericsError: it cannot be computed.
+    """
+    if cache is None:
+        return compute()
+    name = key(list(content), program())
+    found = cache.load(name, _read)
+    if found is not None:
+        return found
+    result = compute()
+    cache.remember(name, records.pack(result))
+    return result
+
+
+def _read(files: Files) -> Finished:
+    return records.unpack(files, Finished)

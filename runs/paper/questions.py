@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the rules on the paper's statements may ask of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+
+Array = npt.NDArray[np.float64]
+
+
+class Lacking(Exception):
+    """What a rule needs and the run does not have, as a sentence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What the rules ask of a run; each question raises :class:`Lacking` without an answer.
+
+    Args:
+        trajectories: dims ``model``, ``time``, ``station``.
+        summary: per model.
+        case: which model is which.
+        ensembles: dims ``model``, ``member``, ``time``; None where there are none.
+    """
+
+    trajectories: xr.Dataset
+    summary: Mapping[str, Any]
+    case: Case
+    ensembles: xr.Dataset | None
+
+    @property
+    def time(self) -> Array:
+        """(num_times,) in s."""
+        return np.asarray(self.trajectories["time"].values, dtype=float)
+
+    def check_ran(self, model: Model) -> None:
+        """Refuse a model that failed, or was left out."""
+        why = self.summary.get("failures", {}).get(model.name)
+        if why is not None:
+            raise Lacking(f"{model.name!r} failed: {why}.")
+        if model.name not in self.trajectories["model"].values:
+            raise Lacking(f"{model.name!r} did not run.")
+
+    def curve(self, model: Model, place: str = "tip") -> Array:
+        """(num_times,) deflection in m."""
+        self.check_ran(model)
+        if place not in self.trajectories:
+            raise Lacking(f"No {place} in this run.")
+        deflection = np.asarray(self.trajectories[place].sel(model=model.name).values, dtype=float)
+        if not np.isfinite(deflection).all():
+            raise Lacking(f"The {place} of {model.name!r} is not finite.")
+        return deflection
+
+    def members(self, *models: Model) -> Array:
+        """(num_models, num_members, num_times) tip in m."""
+        for model in models:
+            self.curve(model)
+        if self.ensembles is None:
+            raise Lacking("One run is a sample of a chaotic motion; it takes [ensemble].")
+        tips = self.ensembles["tip"].sel(model=[model.name for model in models])
+        return np.asarray(tips.transpose("model", "member", "time").values, dtype=float)
+
+    def number(self, model: Model, *keys: str | int) -> float:
+        """A number of the model's summary."""
+        self.check_ran(model)
+        value: Any = self.summary["models"].get(model.name)
+        for key in keys:
+            value = value.get(key) if isinstance(value, Mapping) else value and value[key]
+        if value is None or not np.isfinite(value):
+            raise Lacking(f"{model.name!r} has no {str(keys[0]).replace('_', ' ')}.")
+        return float(value)
+
+    def first_peak(self, model: Model) -> float:
+        """Height of the first peak of the tip in m."""
+        return self.number(model, "first_peak", "tip", 1)
+
+    def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
+        """The model that fits; of several the one that is called ``what``, else the first."""
+        found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
+        if not found:
+            raise Lacking(f"The case has no model like {what!r}.")
+        return found[0]
+
+    def four_terms(self) -> Model:
+        """The series with a rigid inner segment."""
+        return self.one("kantorovich-4", lambda model: terms(model) == (2, 2))
+
+    def five_terms(self) -> Model:
+        """The series with one bending function more in the inner segment, else as with four."""
+        four = self.four_terms()
+        return self.one(
+            "kantorovich-5",
+            lambda model: (
+                terms(model) == (2, 3)
+                and options(model, "terms", "step") == options(four, "terms", "step")
+            ),
+        )
+
+    def beam_elements(self) -> Model:
+        """The paper's beam model with play."""
+        return self.one(
+            "beam-fe",
+            lambda model: (
+                isinstance(model, FiniteElementTable)
+                and not model.tied
+                and model.theory == "euler-bernoulli"
+            ),
+        )
+
+    def shell(self) -> Model:
+        """The shell."""
+        return self.one("shell", lambda model: isinstance(model, ShellTable))
+
+    def play_free(self) -> Model:
+        """The beam model without play."""
+        return self.one("beam-fe-tied", tied)
+
+    def with_play(self) -> list[Model]:
+        """All models whose segments can touch, two at least."""
+        models = [model for model in self.case.models if not tied(model)]
+        if len(models) < 2:
+            raise Lacking("It takes two models with play to compare.")
+        return models
+
+    def with_friction(self) -> None:
+        """Refuse a case without friction."""
+        if not any(joint.friction > 0.0 for joint in self.case.joints):
+            raise Lacking("This case has no friction; it takes the case with friction.")
+
+    def without_friction(self) -> None:
+        """Refuse a case with friction."""
+        if any(joint.friction > 0.0 for joint in self.case.joints):
+            raise Lacking("This case has friction; it takes the case without.")
+
+    def last_until(self, end: float) -> None:
+        """Refuse a run that ends before ``end`` in s."""
+        if self.time[-1] < end * (1.0 - 1e-9):
+            raise Lacking(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
+
+
+def tied(model: Model) -> bool:
+    """Whether a model's segments are joined without play."""
+    return isinstance(model, FiniteElementTable) and model.tied
+
+
+def terms(model: Model) -> tuple[int, ...]:
+    """The numbers of a series' functions; none for other models."""
+    return model.terms if isinstance(model, KantorovichTable) else ()
+
+
+def options(model: Model, *ignored: str) -> dict[str, Any]:
+    """What a model is, but for its name and the ignored keys."""
+    return model.model_dump(exclude={"name", *ignored})

@@ -1,0 +1,466 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The statements of the paper, each judged by a rule on trajectories.
+
+The frictionless system is chaotic: a relative change of the load of 1e-9 grows to about 1 % of
+the tip's range within a second. So one trajectory decides what happens up to the first peak;
+beyond it a difference is a sample, and a rule asks how many members of an ensemble show it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from itertools import combinations, pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.stats import t as student
+
+from runs.case.schema import Case, KantorovichTable, Model
+from runs.paper.parting import apart_at_the_end, peaks_apart
+from runs.paper.questions import Lacking, Run, options, tied
+from runs.paper.statements import STATEMENTS, Finding, Judgement, Verdict
+
+Array = npt.NDArray[np.float64]
+# S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
+COINCIDENCE = 1.0e-6
+# S2. In the statement.
+DIVERGENCE = 0.20
+# S3. In the statement, in s.
+CONFORMITY = 6.0
+# S3. The paper shows one run: what it shows is typical if most members show it.
+MOST = 0.5
+# S2. Of the mean of an ensemble, whose members are samples of one chaotic motion.
+CONFIDENCE = 0.95
+# S2, S7, S8. The paper's shortest interval in s: its friction example ended there for want of
+# stability, and its frictionless curves part visibly after six seconds.
+INTERVAL = 7.0
+# S4. A relative load change of 1e-4, or another step, moves a first tip peak by up to 0.5 %.
+PEAK_SCATTER = 0.005
+# S5. From here on play adds more than the whole deflection that there is without it.
+FUNDAMENTAL = 2.0
+# S6. Equal relative differences would make the absolute ones differ like the ranges, whose ratio
+# is about 10 for this boom; up to half of that they are taken as of one level. Chaos moves the
+# largest differences up to the first peak by about a tenth.
+SAME_LEVEL = 5.0
+LEVEL_SCATTER = 0.1
+# S9. Less than what the models of S4 are apart, which the paper calls minor.
+CLEAR_INFLUENCE = 0.05
+# S10. In the statement.
+SERIES_STEPS = 2000
+ELEMENT_STEPS = 4000
+# S11. More than two.
+SEGMENTS = 3
+
+
+def judge(
+    trajectories: xr.Dataset,
+    summary: Mapping[str, Any],
+    case: Case,
+    ensembles: xr.Dataset | None = None,
+) -> list[Verdict]:
+    """Judge S1 … S11 on one run.
+
+    Args:
+        trajectories: dims ``model``, ``time``, ``station``; ``tip`` and ``head`` in m.
+        summary: per model ``first_peak``, ``first_contact``, ``steps``, ``contact_changes``.
+        case: which model is which.
+        ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
+    """
+    run = Run(trajectories, summary, case, ensembles)
+    return [
+        Verdict(id=key, statement=statement, **asdict(_find(RULES[key], run)))
+        for key, statement in STATEMENTS.items()
+    ]
+
+
+def _s1(run: Run) -> Finding:
+    """Measure: largest difference of both tips before the earlier first contact, as a part of
+    the five-term tip's range. Threshold: 1e-6. Both have the same outer functions and a rigid
+    inner motion until then, so only round-off may part them; nothing has grown chaotic yet.
+    """
+    run.without_friction()
+    four, five = run.four_terms(), run.five_terms()
+    first = min(run.number(model, "first_contact") for model in (four, five))
+    before = run.time <= first
+    curve = run.curve(five)
+    measured = float(np.abs(run.curve(four) - curve)[before].max() / _range(curve))
+    return Finding(
+        "reproduced" if measured <= COINCIDENCE else "contradicted",
+        f"Largest difference of the tips before the first contact at {first:.4f} s.",
+        measured,
+        COINCIDENCE,
+        "of the range",
+    )
+
+
+def _s2(run: Run) -> Finding:
+    """Measure: largest difference of the tips in the last second, as a part of the larger range,
+    in the mean of the members. Threshold: 0.20, the statement's number. The mean is known to
+    within its 95 % confidence interval over the members: of their chaotic motions the run that
+    the paper shows is one. The run must be as long as the paper's interval.
+    """
+    run.without_friction()
+    run.last_until(INTERVAL)
+    four, five = run.members(run.four_terms(), run.five_terms())
+    apart = apart_at_the_end(four, five, run.time >= run.time[-1] - 1.0)
+    mean, doubt = _mean(apart)
+    return Finding(
+        _above(mean, DIVERGENCE, doubt),
+        f"Largest difference of the tips in the last second, in the mean of {apart.size} members, "
+        f"which is known to within {doubt:.2f}; from {apart.min():.2f} to {apart.max():.2f} in "
+        f"single ones, above {DIVERGENCE:g} in {100.0 * (apart > DIVERGENCE).mean():.0f} %.",
+        mean,
+        DIVERGENCE,
+        "of the range",
+    )
+
+
+def _s3(run: Run) -> Finding:
+    """Measure: share of the members that conform for six seconds, and of those that stratify
+    after them. Threshold: half of them each, so that what the paper shows is typical. Conformity
+    is of the slow motion: every peak of all models with play within 0.20 of one another, the part
+    that the paper itself calls a divergence (S2), in time as a part of the period and in height;
+    a peak that only some models have is infinitely far. One peak further apart after six seconds
+    is a stratification. A member without any peak before or after says nothing of that time and
+    is not counted there. Pointwise nothing could be asked: the run that the paper shows is beyond
+    its horizon long before.
+    """
+    run.without_friction()
+    run.last_until(CONFORMITY)
+    models = run.with_play()
+    curves = run.members(*models).swapaxes(0, 1)
+    cutoff = run.summary["ensemble"]["slow_below"]
+    if cutoff is None:
+        raise Lacking("The run is too coarsely reported for a slow motion.")
+    found = [peaks_apart(member, run.time, cutoff) for member in curves]
+    early = [
+        apart[time <= CONFORMITY].max()
+        for time, apart in found
+        if time.min(initial=np.inf) <= CONFORMITY
+    ]
+    late = [
+        apart[time > CONFORMITY].max()
+        for time, apart in found
+        if time.max(initial=0.0) > CONFORMITY
+    ]
+    if not early:
+        raise Lacking(f"No member has a peak within {CONFORMITY:g} s.")
+    if not late:
+        raise Lacking(f"No member has a peak after {CONFORMITY:g} s.")
+    conform, conform_doubt = _share(np.array(early) <= DIVERGENCE)
+    stratify, stratify_doubt = _share(np.array(late) > DIVERGENCE)
+    parting = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in found]
+    middle = sorted(parting)[len(parting) // 2]
+    return Finding(
+        _all_of(_above(conform, MOST, conform_doubt), _above(stratify, MOST, stratify_doubt)),
+        f"Members of {len(early)} whose slow peaks conform for {CONFORMITY:g} s, within "
+        f"{100.0 * DIVERGENCE:g} % in all models; {100.0 * stratify:.0f} % of {len(late)} have "
+        f"peaks further apart later. {_half_part(middle)} {_horizons(run, models)}",
+        conform,
+        MOST,
+        "of the members",
+    )
+
+
+def _s4(run: Run) -> Finding:
+    """Measure: smallest rise of the first tip peak from one model to the next, in percent.
+    Threshold: 0.5 %, by which a small change of load or step moves one such peak. A larger
+    rise each time reproduces, a fall of more than that contradicts, anything between is chance.
+    """
+    run.without_friction()
+    models = [run.four_terms(), run.five_terms(), run.beam_elements(), run.shell()]
+    peaks = [run.first_peak(model) for model in models]
+    rises = [after / before - 1.0 for before, after in pairwise(peaks)]
+    smallest = min(rises)
+    least = int(np.argmin(rises))
+    listed = ", ".join(f"{1e3 * peak:.1f}" for peak in peaks)
+    return Finding(
+        _above(smallest, 0.0, PEAK_SCATTER),
+        f"First tip peaks {listed} mm. The smallest rise is from {models[least].name!r} to "
+        f"{models[least + 1].name!r}; a small change of load or step moves a first peak by up to "
+        f"{100.0 * PEAK_SCATTER:g} %.",
+        100.0 * smallest,
+        100.0 * PEAK_SCATTER,
+        "%",
+    )
+
+
+def _s5(run: Run) -> Finding:
+    """Measure: smallest ratio of a first tip peak with play to the one without. Threshold: 2,
+    where play adds as much again as the whole play-free deflection; the models with play are
+    within a tenth of one another. First peaks scatter by 0.5 % only.
+    """
+    run.without_friction()
+    without = run.first_peak(run.play_free())
+    models = [model for model in run.case.models if not tied(model)]
+    if not models:
+        raise Lacking("The case has no model with play.")
+    ratio, name = min((run.first_peak(model) / without, model.name) for model in models)
+    return Finding(
+        _above(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_SCATTER),
+        f"First tip peak with play over the {1e3 * without:.1f} mm without; the smallest is that "
+        f"of {name!r}.",
+        ratio,
+        FUNDAMENTAL,
+        "times",
+    )
+
+
+def _s6(run: Run) -> Finding:
+    """Measure: largest pointwise difference of any two models at the tip over that at the head,
+    up to the first tip peak. Beyond it chaos and the phase of the slow motion, not the models,
+    set the differences. Threshold: 5, half of the ratio of the ranges, at which relative
+    differences would be equal. Reproduced if the ratio is within it either way and the
+    difference relative to the place's own range is greater at the head.
+    """
+    run.without_friction()
+    models = run.with_play()
+    end = min(run.number(model, "first_peak", "tip", 0) for model in models)
+    until = run.time <= end
+    apart, relative = {}, {}
+    for place in ("tip", "head"):
+        curves = np.array([run.curve(model, place)[until] for model in models])
+        apart[place] = float(np.ptp(curves, axis=0).max())
+        relative[place] = apart[place] / max(map(_range, curves))
+    if min(apart.values()) == 0.0:
+        raise Lacking("The models do not differ up to the first peak.")
+    ratio = apart["tip"] / apart["head"]
+    level = _above(SAME_LEVEL, max(ratio, 1.0 / ratio), LEVEL_SCATTER * SAME_LEVEL)
+    greater = _above(relative["head"], relative["tip"], LEVEL_SCATTER * relative["tip"])
+    shares = {place: f"{100.0 * part:.0f} %" for place, part in relative.items()}
+    return Finding(
+        _all_of(level, greater),
+        f"Largest difference up to the first peak at {end:.2f} s: {1e3 * apart['tip']:.1f} mm at "
+        f"the tip, {1e3 * apart['head']:.1f} mm at the head, which is {shares['tip']} and "
+        f"{shares['head']} of the ranges there.",
+        ratio,
+        SAME_LEVEL,
+        "times",
+    )
+
+
+def _s7(run: Run) -> Finding:
+    """Measure: largest pointwise difference of any two models with play at the tip within six
+    seconds, as a part of the largest range. Threshold: 0.20, the part that the paper itself calls
+    a divergence (S2). Reproduced if they conform so far, differ more after it, if the play-free
+    model is further from each of them than that, and if the difference relative to the place's
+    range is greater at the head. With friction the motion is regular, so that one trajectory of
+    each model decides, over its whole length.
+    """
+    run.with_friction()
+    run.last_until(INTERVAL)
+    models = run.with_play()
+    early = run.time <= CONFORMITY
+    apart = {place: _apart(run, models, place) for place in ("tip", "head")}
+    conform = float(apart["tip"][early].max())
+    later = float(apart["tip"][~early].max())
+    without = run.play_free()
+    play_free = min(float(_apart(run, [model, without], "tip").max()) for model in models)
+    head = float(apart["head"].max())
+    return Finding(
+        _all_of(
+            _above(DIVERGENCE, conform, 0.0),
+            _above(later, conform, 0.0),
+            _above(play_free, DIVERGENCE, 0.0),
+            _above(head, max(conform, later), 0.0),
+        ),
+        f"Largest difference of the tips of {len(models)} models with play up to {CONFORMITY:g} s; "
+        f"{later:.2f} later, {play_free:.2f} at least between one of them and the play-free one, "
+        f"and {head:.2f} of the range at the head.",
+        conform,
+        DIVERGENCE,
+        "of the range",
+    )
+
+
+def _s8(run: Run) -> Finding:
+    """Measure: how long the beam elements with friction move with their energy in bound, in s.
+    Threshold: 7 s, beyond which the paper's solution was not stable. A run that goes on for
+    longer contradicts that the system is to blame; one that ends before decides nothing, since a
+    run whose energy is out of bound is no result here.
+    """
+    run.with_friction()
+    model = run.beam_elements()
+    run.curve(model)
+    run.last_until(INTERVAL)
+    steps = run.number(model, "steps")
+    lasted = float(run.time[-1])
+    return Finding(
+        _above(INTERVAL, lasted, 1.0e-9 * INTERVAL),
+        f"{model.name!r} moves for {lasted:g} s in {steps:.0f} steps with an energy residual of "
+        f"{run.number(model, 'energy_residual'):.1e}: what ended the paper's run after 4375 steps "
+        "was its integration.",
+        lasted,
+        INTERVAL,
+        "s",
+    )
+
+
+def _s9(run: Run) -> Finding:
+    """Measure: largest relative difference of first tip peaks between models that differ in
+    their contact law alone, with another exponent n. Threshold: 5 %, less than what the models
+    of S4 are apart. The stiffness may differ too, since its unit depends on n.
+    """
+    untied = [model for model in run.case.models if not tied(model)]
+    differences = [
+        (abs(run.first_peak(a) / run.first_peak(b) - 1.0), a.name, b.name)
+        for a, b in combinations(untied, 2)
+        if options(a, "contact", "step") == options(b, "contact", "step")
+        and _exponents(run.case, a) != _exponents(run.case, b)
+    ]
+    if not differences:
+        raise Lacking("No two models of the case differ in the contact law alone.")
+    measured, a, b = max(differences)
+    return Finding(
+        _above(CLEAR_INFLUENCE, measured, PEAK_SCATTER),
+        f"Difference of the first tip peaks of {a!r} and {b!r}, whose exponents differ.",
+        100.0 * measured,
+        100.0 * CLEAR_INFLUENCE,
+        "%",
+    )
+
+
+def _s10(run: Run) -> Finding:
+    """Measure: steps that the series needs, the larger of both, for its first three slow peaks:
+    the fewest of all step sizes and integrators tried that keep them within 1 % beyond the
+    ensemble's spread, with the energy in bound. A jump from contact to contact counts as one.
+    Threshold: 2000; beam elements must take more than 4000. The paper's 2000 are for its whole
+    interval, so that fewer for a part of it leave the statement possible, no more.
+    """
+    run.without_friction()
+    series = [run.four_terms(), run.five_terms()]
+    needed = {
+        model.name: run.number(model, "steps_for_peaks", "fewest")
+        for model in (*series, run.beam_elements())
+    }
+    *of_series, of_elements = needed.values()
+    steps = max(of_series)
+    listed = ", ".join(f"{name!r} {number:.0f}" for name, number in needed.items())
+    return Finding(
+        _all_of(
+            "reproduced" if steps <= SERIES_STEPS else "contradicted",
+            "reproduced" if of_elements > ELEMENT_STEPS else "contradicted",
+        ),
+        f"Fewest steps that keep the first three peaks of the slow motion: {listed}. Each press of "
+        "the play takes some of any solver.",
+        steps,
+        SERIES_STEPS,
+        "steps",
+    )
+
+
+def _s11(run: Run) -> Finding:
+    """Measure: distance of the first tip peak of the longest series from that of beam elements, on
+    a boom of three segments or more. Threshold: 20 %, the part that the paper itself calls a
+    divergence (S2): a description that extends comes as near to the elements as with two.
+    """
+    count = len(run.case.segments)
+    if count < SEGMENTS:
+        raise Lacking(f"This case has {count} segments; it takes the case of three segments.")
+    series = max(
+        (model for model in run.case.models if isinstance(model, KantorovichTable)),
+        key=lambda model: sum(model.terms),
+        default=None,
+    )
+    if series is None:
+        raise Lacking("The case has no series.")
+    elements = run.beam_elements()
+    apart = abs(run.first_peak(series) / run.first_peak(elements) - 1.0)
+    return Finding(
+        _above(DIVERGENCE, apart, PEAK_SCATTER),
+        f"First tip peaks of {series.name!r} and {elements.name!r} on {count} segments, which take "
+        f"{run.number(series, 'modes'):.0f} and {run.number(elements, 'modes'):.0f} equations.",
+        100.0 * apart,
+        100.0 * DIVERGENCE,
+        "%",
+    )
+
+
+RULES: Mapping[str, Callable[[Run], Finding]] = {
+    "S1": _s1,
+    "S2": _s2,
+    "S3": _s3,
+    "S4": _s4,
+    "S5": _s5,
+    "S6": _s6,
+    "S7": _s7,
+    "S8": _s8,
+    "S9": _s9,
+    "S10": _s10,
+    "S11": _s11,
+}
+
+
+def _find(rule: Callable[[Run], Finding], run: Run) -> Finding:
+    try:
+        return rule(run)
+    except Lacking as lacking:
+        return Finding("undecided", str(lacking))
+
+
+def _above(value: float, threshold: float, doubt: float) -> Judgement:
+    """Whether a value is above a threshold, where both are known to within ``doubt``."""
+    if abs(value - threshold) <= doubt:
+        return "undecided"
+    return "reproduced" if value > threshold else "contradicted"
+
+
+def _mean(values: Array) -> tuple[float, float]:
+    """Mean of the members, and half its confidence interval by Student's distribution."""
+    quantile = student.ppf(0.5 + 0.5 * CONFIDENCE, values.size - 1)
+    return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
+
+
+def _share(shows: npt.NDArray[np.bool_]) -> tuple[float, float]:
+    """Share of members that show something, and twice its standard error at one half."""
+    return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
+
+
+def _apart(run: Run, models: Sequence[Model], place: str) -> Array:
+    """(num_times,) largest difference of any two models, as a part of the largest range."""
+    curves = np.array([run.curve(model, place) for model in models])
+    return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
+
+
+def _half_part(middle: float) -> str:
+    """When the models of the middle member part, infinite if they do not."""
+    if not np.isfinite(middle):
+        return "In most members no peaks are further apart."
+    return f"In half of them the first such peak is at {middle:.1f} s or before."
+
+
+def _horizons(run: Run, models: list[Model]) -> str:
+    """From when on a single run of each model is a sample."""
+    known = [
+        run.summary["models"][model.name]["ensemble"]["horizons"][f"{DIVERGENCE:g}"]
+        for model in models
+    ]
+    times = [time for time in known if time is not None]
+    if not times:
+        return "The members of each model stay together."
+    return (
+        f"Members of one model part by {100.0 * DIVERGENCE:g} % of the range from "
+        f"{min(times):.1f} s on."
+    )
+
+
+def _all_of(*parts: Judgement) -> Judgement:
+    """One part contradicted contradicts the whole; it takes all to reproduce."""
+    if "contradicted" in parts:
+        return "contradicted"
+    return "undecided" if "undecided" in parts else "reproduced"
+
+
+def _range(curve: Array) -> float:
+    span = float(np.ptp(curve))
+    if span == 0.0:
+        raise Lacking("Nothing moves.")
+    return span
+
+
+def _exponents(case: Case, model: Model) -> tuple[float, ...]:
+    """n of each joint, as the model sees it."""
+    return tuple((model.contact or joint).exponent for joint in case.joints)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Every model of a run held against one of them, as numbers for the summary.
+
+Where ensembles are known, at three levels, each with what it can decide. Where segments rub, from
+the beginning to the end: friction takes what impacts would otherwise let grow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import xarray as xr
+
+from dynamics.predictability.comparison import (
+    Comparison,
+    Distributions,
+    PeakDifferences,
+    Pointwise,
+    compare,
+)
+from runs.case.schema import Case, Model, ShellTable
+from runs.paper.questions import tied
+from runs.pipeline.known import known
+
+# Differences over a whole run are told until here, too, in s.
+HALFWAY = 5.0
+# What each level can and cannot decide, in the words of those who measure.
+DECIDES: Mapping[str, str] = {
+    "pointwise": Pointwise.decides,
+    "peaks": PeakDifferences.decides,
+    "distributions": Distributions.decides,
+}
+
+
+def rubs(case: Case) -> bool:
+    """Whether the segments rub on one another."""
+    return any(joint.friction > 0.0 for joint in case.joints)
+
+
+def reference_of(models: Iterable[Model]) -> str | None:
+    """The model that the others are held against: the last shell, else the last with play."""
+    with_play = [model for model in models if not tied(model)]
+    shells = [model for model in with_play if isinstance(model, ShellTable)]
+    candidates = shells or with_play
+    return candidates[-1].name if candidates else None
+
+
+def compare_models(
+    case: Case,
+    trajectories: xr.Dataset,
+    ensembles: xr.Dataset | None,
+    summary: Mapping[str, Any],
+) -> dict[str, Any] | None:
+    """What the summary says of the models' differences; None where there is nothing to compare.
+
+    Args:
+        case: which model is which.
+        trajectories: dims ``model``, ``time``; ``tip`` in m.
+        ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
+        summary: ``ensemble`` with the cut-off ``slow_below`` in Hz.
+
+    Returns:
+        ``reference``; ``ensembles``, for each other model with play the three levels; ``whole``,
+        with friction, for each other model the pointwise differences until some times.
+    """
+    ran = trajectories["model"].values
+    reference = reference_of(model for model in case.models if model.name in ran)
+    if reference is None:
+        return None
+    found: dict[str, Any] = {"reference": reference}
+    cutoff = summary.get("ensemble", {}).get("slow_below")
+    if ensembles is not None and cutoff is not None:
+        one = ensembles.sel(model=reference).astype(float)
+        found["ensembles"] = {
+            name: _levels(compare(one, ensembles.sel(model=name).astype(float), cutoff))
+            for name in _others(ensembles, reference)
+        }
+    if rubs(case):
+        found["whole"] = {
+            name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
+        }
+    return found if any(found.get(part) for part in ("ensembles", "whole")) else None
+
+
+def _others(data: xr.Dataset, reference: str) -> list[str]:
+    return [str(name) for name in data["model"].values if name != reference]
+
+
+def _levels(comparison: Comparison) -> dict[str, Any]:
+    """The three levels as JSON has them; None for what there is not."""
+    pointwise, peaks, spread = comparison.pointwise, comparison.peaks, comparison.distributions
+    return {
+        "pointwise": {
+            "until": pointwise.until,
+            "largest": pointwise.largest,
+            "rms": pointwise.rms,
+        },
+        "peaks": {
+            "time": peaks.times.tolist(),
+            "time_spread": peaks.time_spreads.tolist(),
+            "height": peaks.heights.tolist(),
+            "height_spread": peaks.height_spreads.tolist(),
+            "explained": peaks.explained.tolist(),
+        },
+        "distributions": {
+            "since": known(spread.since),
+            "range": [known(value) for value in spread.ranges],
+            "mean": [known(value) for value in spread.means],
+            "deviation": [known(value) for value in spread.deviations],
+            "distance": known(spread.distance),
+        },
+    }
+
+
+def _whole(trajectories: xr.Dataset, reference: str, name: str) -> dict[str, Any]:
+    """Pointwise differences of two tips until the middle and until the end."""
+    time = trajectories["time"].values
+    one, other = (trajectories["tip"].sel(model=model).values for model in (reference, name))
+    ends = [end for end in (HALFWAY, float(time[-1])) if end <= time[-1]]
+    found = [Pointwise.of(one, other, time, end) for end in dict.fromkeys(ends)]
+    return {
+        "until": [part.until for part in found],
+        "largest": [known(part.largest) for part in found],
+        "rms": [known(part.rms) for part in found],
+    }

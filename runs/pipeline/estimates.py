@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a run will take, told before it starts: memory and time from the numbers of its case.
+
+Estimates are to be high by a factor of up to about four rather than low. Steps of beams are those
+that they will make; a shell has not been meshed yet, and its steps follow from a beam's. The
+constants were measured on one core of an AMD EPYC (``python -m runs.benchmarks.bench``, and
+tests/runs/test_estimates.py for the memory).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.step import contact_step, initial_speeds
+from geometry.boom import Boom
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.pipeline.models import beam_system
+from runs.pipeline.motion import Motion
+
+# What runs without being asked twice, in bytes and in s.
+ROOM, PATIENCE = 4.0e9, 3600.0
+
+# Libraries of a beam's run and of a shell's in bytes, what is compiled at a first run among them.
+_LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
+
+# Numbers of 8 bytes for each output and model: columns, for each coordinate, for each station.
+_NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
+# s for each output and model: files and figures.
+_WRITING = 3.0e-5
+# Numbers for each output and member of an ensemble.
+_OF_MEMBER = 22.0
+
+# s for a step and for a coordinate in it: where segments rub, or loads change; where they do not.
+_ROUGH_STEP, _SMOOTH_STEP = (0.7e-6, 1.7e-8), (0.1e-6, 1.5e-9)
+# Motions of a measurement of horizons.
+_HORIZONS = 24
+
+# Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n².
+_EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
+# A beam of more coordinates is estimated by a coarser one.
+_BUILT = 400
+
+# Coordinates of a shell for each of its segments unless given, in the plane and in space.
+_FLAT, _SPATIAL = 60, 210
+# Dofs of a shell for each square of the mesh size; bytes for a dof, for a coordinate of it; s.
+_DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
+# How many times as many dofs a graded mesh has, at corners and at pads.
+_GRADED, _PADDED = 2.0, 4.0
+# Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
+_ELEMENTS, _SHORTER = 20, 10.0
+
+# Points of a sweep that are estimated; the others are taken to be like them.
+_SAMPLE = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """Memory in bytes and time in s on one core, about."""
+
+    memory: float
+    seconds: float
+
+    def __str__(self) -> str:
+        minutes = self.seconds / 60.0
+        time = f"{max(minutes, 1.0):.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.3g} h"
+        return f"{self.memory / 1e9:.2g} GB and {time}"
+
+    def __add__(self, other: Cost) -> Cost:
+        return Cost(self.memory + other.memory, self.seconds + other.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class _StandIn:
+    """The beam whose steps tell those of a model.
+
+    Args:
+        beam: quickly built.
+        coordinates: of the model itself.
+        shorter: than the beam's its steps are, as a factor.
+        before: what it takes before it moves.
+    """
+
+    beam: KantorovichTable | FiniteElementTable
+    coordinates: int
+    shorter: float = 1.0
+    before: Cost = Cost(0.0, 0.0)
+
+
+def of_run(case: Case) -> Cost:
+    """What a run of a checked case takes."""
+    boom = build_boom(case)
+    shell = any(isinstance(model, ShellTable) for model in case.models)
+    total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
+    # What overflows is found when it is run.
+    with np.errstate(all="ignore"):
+        for model in case.models:
+            total += _of_model(case, boom, model)
+    return total
+
+
+def of_sweep(cases: Sequence[Case]) -> Cost:
+    """What a sweep of checked cases takes on all cores."""
+    at_a_time = min(len(cases), os.cpu_count() or 1)
+    sample = [of_run(case) for case in cases[:: -(-len(cases) // _SAMPLE)]]
+    seconds = sum(cost.seconds for cost in sample) / len(sample) * len(cases)
+    return Cost(at_a_time * max(cost.memory for cost in sample), seconds / at_a_time)
+
+
+def refuse_large(cost: Cost, file: str) -> None:
+    """Ask before much is taken.
+
+    Raises:
+        BadInput: more than :data:`ROOM` or :data:`PATIENCE`.
+    """
+    if not (cost.memory <= ROOM and cost.seconds <= PATIENCE):
+        raise BadInput(
+            file,
+            "--large",
+            f"missing, and it may take {cost}; give it to start all the same, or ask for fewer "
+            "outputs, members, points or steps, or for coarser meshes",
+        )
+
+
+def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
+    stand_in = _stand_in(model, boom)
+    try:
+        motion = Motion.of(beam_system(case, boom, stand_in.beam), case, stand_in.beam)
+    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+        # The run ends with it, and says so.
+        return stand_in.before
+    system, time = motion.system, case.time
+    step = model.step or time.step
+    if step is None:
+        speeds = initial_speeds(system, motion.position, motion.velocity)
+        step = contact_step(system, time.output_step, speeds) / stand_in.shorter
+    members = case.ensemble.members if case.ensemble is not None and system.laws else 0
+    prescribed = any(not friction.pressed_by for friction in system.frictions)
+    motions = 1 + 2 * prescribed + members + (_HORIZONS if members else 0)
+    outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
+    numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
+    each, of_coordinate = _ROUGH_STEP if _is_rough(system) else _SMOOTH_STEP
+    return stand_in.before + Cost(
+        8.0 * outputs * (numbers + _OF_MEMBER * members),
+        outputs * _WRITING + motions * time.duration / step * (each + of_coordinate * coordinates),
+    )
+
+
+def _is_rough(system: GapSystem) -> bool:
+    """Whether every step is made by itself, however far the segments are apart."""
+    lossy = any(law.damping > 0.0 for law in system.laws)
+    return lossy or bool(system.frictions) or bool(system.excitations)
+
+
+def _stand_in(model: Model, boom: Boom) -> _StandIn:
+    if isinstance(model, KantorovichTable):
+        return _StandIn(model, sum(model.terms) * (3 if boom.spatial else 1))
+    if isinstance(model, ShellTable):
+        return _of_shell(model, boom)
+    of_node = 5 if boom.spatial else 2
+    nodes = sum(
+        np.ceil(segment.length / model.element_length) + 1 + len(boom.stations_of(number))
+        for number, segment in enumerate(boom.segments)
+    )
+    coordinates = int(of_node * nodes)
+    before = Cost(8.0 * _EIGEN_ROOM * coordinates**2, _EIGEN_TIME * coordinates**3)
+    coarser = max(1.0, coordinates / _BUILT)
+    # The highest frequency of bending goes with the inverse square of the length.
+    beam = model.model_copy(update={"element_length": coarser * model.element_length})
+    return _StandIn(beam, coordinates, coarser**2, before)
+
+
+def _of_shell(model: ShellTable, boom: Boom) -> _StandIn:
+    area = sum(
+        2.0 * (segment.section.height + segment.section.width) * segment.length
+        for segment in boom.segments
+        if segment.section is not None
+    )
+    padded = any(joint.pad is not None for joint in boom.joints)
+    graded = 1.0 if model.contact_tolerance == "any" else _PADDED if padded else _GRADED
+    dofs = graded * _DOFS * area / model.mesh_size**2
+    usual = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
+    coordinates = usual
+    if isinstance(model.modes, int):
+        coordinates = min(usual, model.modes * len(boom.segments))
+    longest = max(segment.length for segment in boom.segments)
+    beam = FiniteElementTable(
+        name=model.name,
+        kind="finite-element",
+        contact=model.contact,
+        step=model.step,
+        element_length=longest / _ELEMENTS,
+        theory="timoshenko",
+        rotary_inertia=True,
+        tied=False,
+    )
+    memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
+    return _StandIn(beam, coordinates, _SHORTER, Cost(memory, _REDUCTION * dofs))

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What follows from a case before anything moves: sections, lengths, contact laws, models."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from dynamics.damping import pressed_ratios
+from dynamics.failure import NumericsError
+from geometry.boom import Boom, Joint
+from geometry.section import BoxSection
+from runs.case import actions
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.pipeline.estimates import of_run
+from runs.pipeline.models import beam_system, damped, joint_stations
+
+# Modes whose damping is shown.
+SHOWN_MODES = 3
+
+
+def print_inferred(case: Case, console: Console) -> None:
+    """Print a checked case's segments, joints and models."""
+    boom = build_boom(case)
+    console.print(case.title, markup=False)
+    console.print(_segments(case, boom))
+    stiffeners = _stiffeners(boom)
+    if stiffeners.rows:
+        console.print(stiffeners)
+    if boom.joints:
+        console.print(_joints(boom))
+    console.print(_models(case))
+    ratios = _damping_ratios(case, boom)
+    if ratios.rows:
+        console.print(ratios)
+    console.print(f"A run may take {of_run(case)}.", highlight=False)
+
+
+def _segments(case: Case, boom: Boom) -> Table:
+    table = Table("segment", "span (m)", "m (kg/m)", "J (m⁴)", "I_p (kg m)", "box (mm)")
+    for given, segment in zip(case.segments, boom.segments, strict=True):
+        box = _plates(segment.section)
+        table.add_row(
+            segment.name,
+            f"{segment.start:g}–{segment.end:g}",
+            f"{segment.mass_per_length:.4g}",
+            f"{segment.second_moment_of_area:.4g}",
+            f"{segment.rotary_inertia:.3g}",
+            box if given.section is not None or segment.section is None else f"{box}, inferred",
+        )
+    return table
+
+
+def _stiffeners(boom: Boom) -> Table:
+    """Those of segments with known plates; without, there is no shell either."""
+    table = Table("on shells alone", "of", "x (m)", "t (mm)", "mass (kg)")
+    for segment in boom.segments:
+        box, density = segment.section, segment.material.density
+        if box is None:
+            continue
+        for one in segment.collars:
+            area = 2.0 * (box.height + box.width) * (one.end - one.start)
+            place = f"{one.start:g}–{one.end:g}"
+            table.add_row("collar", segment.name, place, *_plate(one.thickness, density * area))
+        for plate in segment.diaphragms:
+            per_thickness = density * box.height * box.width
+            row = _plate(plate.thickness, per_thickness)
+            table.add_row("diaphragm", segment.name, f"{plate.x:g}", *row)
+    return table
+
+
+def _plate(thickness: float, mass_per_thickness: float) -> tuple[str, str]:
+    return f"{1e3 * thickness:g}", f"{mass_per_thickness * thickness:.3g}"
+
+
+def _plates(section: BoxSection | None) -> str:
+    if section is None:
+        return "unknown"
+    height, width, flange, web = (
+        f"{1e3 * length:.4g}"
+        for length in (section.height, section.width, section.flange, section.web)
+    )
+    wall = flange if flange == web else f"{flange} / {web}"
+    return f"{height} x {width} x {wall}"
+
+
+def _joints(boom: Boom) -> Table:
+    table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)", "friction")
+    for joint in boom.joints:
+        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+        room = "unknown"
+        if outer.section is not None and inner.section is not None:
+            height = 1e3 * outer.section.clear_height_around(inner.section)
+            width = 1e3 * outer.section.clear_width_around(inner.section)
+            room = f"{height:.1f} high, {width:.1f} wide"
+        table.add_row(
+            f"{inner.name} in {outer.name}",
+            f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",
+            ", ".join(f"{x:g}" for x in joint.stations),
+            "tied" if joint.tied else _clearance(joint),
+            room,
+            _friction(joint),
+        )
+    return table
+
+
+def _clearance(joint: Joint) -> str:
+    vertical = f"± {1e3 * joint.clearance:g}"
+    if joint.lateral_clearance is None:
+        return vertical
+    return f"{vertical}, ± {1e3 * joint.lateral_clearance:g} to the sides"
+
+
+def _friction(joint: Joint) -> str:
+    if joint.friction == 0.0:
+        return "none"
+    forces = ", ".join(f"{force:g}" for force in joint.normal_forces)
+    return f"{joint.friction:g}, pressed by {f'{forces} N' if forces else 'the contacts'}"
+
+
+def _models(case: Case) -> Table:
+    table = Table("model", "kind", "", "contact (k in N/mⁿ)")
+    for model in case.models:
+        tied = isinstance(model, FiniteElementTable) and model.tied
+        laws = {str(law) for law in contact_laws(case, model)}
+        contact = "tied" if tied else "; ".join(sorted(laws))
+        table.add_row(model.name, model.kind, _resolution(model), contact)
+    return table
+
+
+def _damping_ratios(case: Case, boom: Boom) -> Table:
+    """What the first modes of the boom get in each model, its joints pressed, from all damping."""
+    shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
+    table = Table("damping, joints pressed", *shapes)
+    given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
+    for model in case.models if any(given) else ():
+        # A shell would have to be computed first.
+        beam = _beam_like(model) if isinstance(model, ShellTable) else model
+        name = model.name if beam is model else f"{model.name}, as beam elements"
+        table.add_row(name, *islice(_ratios(case, boom, beam), SHOWN_MODES))
+    return table
+
+
+def _ratios(case: Case, boom: Boom, model: KantorovichTable | FiniteElementTable) -> list[str]:
+    try:
+        with np.errstate(all="ignore"):
+            system = damped(actions.start(beam_system(case, boom, model), case)[0], case)
+            found = pressed_ratios(system, joint_stations(system, case))
+    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+        return ["cannot be computed"]
+    both = zip(*found, strict=True)
+    return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
+
+
+def _beam_like(shell: ShellTable) -> FiniteElementTable:
+    """Beam elements in the place of a shell."""
+    given = {"kind": "finite-element", "theory": "timoshenko", "name": shell.name}
+    return FiniteElementTable.model_validate(given | {"contact": shell.contact})
+
+
+def _resolution(model: Model) -> str:
+    if isinstance(model, KantorovichTable):
+        return f"terms {' + '.join(map(str, model.terms))}, base {model.base}"
+    if isinstance(model, FiniteElementTable):
+        return f"{model.theory}, elements of {model.element_length:g} m"
+    assert isinstance(model, ShellTable)
+    return f"mesh {model.mesh_size:g} m, contact {model.contact_line}"

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a run leaves: labelled trajectories of all models, a summary, and verdicts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.messages import BadInput
+from runs.case.schema import Case, KantorovichTable, Model
+from runs.paper.statements import Verdict
+
+TRAJECTORIES = "trajectories.nc"
+SUMMARY = "summary.json"
+VERDICTS = "verdicts.json"
+CASE = "case.toml"
+FIELDS = "fields.nc"
+ENSEMBLES = "ensembles.nc"
+
+# Relative error of a reduction, or of a mesh, beyond which a run says so.
+POOR = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """One run.
+
+    Args:
+        case: the effective one, with every default filled in.
+        trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
+            m, with the ``direction`` in which it touches; deflections ``tip``, ``head``, ``tail``
+            in m (from the second joint on ``head-2`` and so forth), ``contact_force``,
+            ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m, energies in J; NaN
+            where a model has none.
+        summary: what ``summary.json`` holds.
+        verdicts: on the statements of the paper.
+        ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
+            ``time``; ``tip``, ``head`` in m; None where the case asks for none.
+    """
+
+    case: Case
+    trajectories: xr.Dataset
+    summary: dict[str, Any]
+    verdicts: list[Verdict]
+    ensembles: xr.Dataset | None = None
+
+    @classmethod
+    def load(cls, folder: Path) -> Results:
+        """Read a run's folder.
+
+        Raises:
+            BadInput: it is not a run's folder, or not a whole one.
+        """
+        if not folder.is_dir():
+            what = "is a file" if folder.exists() else "does not exist"
+            raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
+
+        def read(name: str, how: Callable[[Path], Any]) -> Any:
+            try:
+                return how(folder / name)
+            except FileNotFoundError:
+                what = "missing; give the folder of a run that has finished"
+            except (OSError, ValueError, TypeError, KeyError) as error:
+                what = f"cannot be understood ({error}); run the case again"
+            raise BadInput(str(folder), name, what)
+
+        trajectories = read(TRAJECTORIES, read_netcdf)
+        if "station" not in trajectories.dims:
+            trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
+        summary = read(SUMMARY, _read_json)
+        verdicts = read(VERDICTS, lambda path: [Verdict(**entry) for entry in _read_json(path)])
+        ensembles = read(ENSEMBLES, read_netcdf) if summary.get("ensemble") else None
+        if not (folder / CASE).is_file():
+            raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
+        case = case_file.load(str(folder / CASE))
+        expected = toml.digest(case)
+        marks = {TRAJECTORIES: trajectories.attrs, SUMMARY: summary}
+        if ensembles is not None:
+            marks[ENSEMBLES] = ensembles.attrs
+        for name, mark in marks.items():
+            if mark.get("case_hash") != expected:
+                raise BadInput(
+                    str(folder), name, f"is not of the case in {CASE}; run the case again"
+                )
+        return cls(case, trajectories, summary, verdicts, ensembles)
+
+    @property
+    def judges_the_paper(self) -> bool:
+        """Whether the statements of the paper, which are about its series, are worth a table."""
+        return any(isinstance(model, KantorovichTable) for model in self.case.models)
+
+    @property
+    def ran(self) -> list[Model]:
+        """The models that have not failed."""
+        return [model for model in self.case.models if model.name in self.summary["models"]]
+
+    def cautions(self) -> list[str]:
+        """What the results are not worth, a line each."""
+        spans = [x for segment in self.case.segments for x in segment.span]
+        length = max(spans) - min(spans)
+        largest = np.abs(self.trajectories["tip"].values).max(axis=1)
+        models = self.summary["models"].items()
+        far = [
+            f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
+            "boom's length: small displacements do not hold; check units and loads"
+            for name, move in zip(self.trajectories["model"].values, largest, strict=True)
+            if move > 0.1 * length
+        ]
+        poor = [
+            f"caution: the {model['modes']} coordinates of {name} err by {100.0 * error:.2g} % "
+            "where the segments touch; allow more modes, or --modes auto"
+            for name, model in models
+            if (error := model.get("reduction_errors", {}).get("contact_compliance") or 0.0) > POOR
+        ]
+        coarse = [
+            f"caution: the mesh of {name} errs by {100.0 * error:.2g} % of what the walls give way "
+            "where the segments touch; give a smaller mesh_size"
+            for name, model in models
+            if (error := model.get("mesh_error") or 0.0) > POOR
+        ]
+        failed = [
+            f"failed: {name}: {why}" for name, why in self.summary.get("failures", {}).items()
+        ]
+        halved = [
+            f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
+            for name, model in models
+            if (refused := model.get("refused_steps"))
+        ]
+        return failed + far + poor + coarse + halved
+
+    def broken_demands(self) -> list[Verdict]:
+        """The verdicts that the case demands and that are not ``reproduced``."""
+        return [
+            verdict
+            for verdict in self.verdicts
+            if verdict.id in self.case.demand and verdict.verdict != "reproduced"
+        ]
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A netCDF file, all of it in memory."""
+    return xr.load_dataset(path, engine="scipy")
+
+
+def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
+    """Gather the trajectories of all models, which share their times, in one dataset.
+
+    Args:
+        boom: its stations are the dimension ``station``.
+        trajectories: by the model's name.
+    """
+    stations = [x for x, _ in boom.stations]
+    everything = [trajectory.data for trajectory in trajectories.values()]
+    time = everything[0]["time"]
+    units = {
+        str(name): (variable.dims, variable.attrs)
+        for data in everything
+        for name, variable in data.data_vars.items()
+    }
+    lengths = {"time": time.size, "station": len(stations)}
+    variables = {}
+    for name, (dims, attributes) in units.items():
+        values = np.full((len(everything), *(lengths[str(dim)] for dim in dims)), np.nan)
+        for i, data in enumerate(everything):
+            # A tied model has no stations.
+            if name in data and data[name].shape == values.shape[1:]:
+                values[i] = data[name].values
+        variables[name] = (("model", *dims), values, attributes)
+    return xr.Dataset(
+        variables,
+        coords={
+            "model": list(trajectories),
+            "time": time,
+            "station": ("station", np.array(stations, dtype=float), {"units": "m"}),
+            "direction": ("station", np.array([along for _, along in boom.stations], dtype="U1")),
+        },
+    )
+
+
+def _read_json(path: Path) -> Any:
+    return json.loads(path.read_text(encoding="utf-8"))

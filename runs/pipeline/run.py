@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""From a case to results: every model becomes a gap system, moves, and is summed up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.failure import NumericsError, StepTooLong
+from dynamics.gap_system import GapSystem
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom
+from runs.case import toml
+from runs.case.build import build_boom
+from runs.case.schema import Case, Model, ShellTable
+from runs.folder.cache import Cache
+from runs.folder.finished import Finished, finished
+from runs.folder.versions import versions
+from runs.paper.rules import judge
+from runs.pipeline import members
+from runs.pipeline.comparisons import compare_models
+from runs.pipeline.fewest_steps import steps_for_peaks
+from runs.pipeline.known import known
+from runs.pipeline.models import beam_system, reduce_shell
+from runs.pipeline.motion import Motion
+from runs.pipeline.results import Results, label
+from runs.pipeline.shell_output import ShellOutput
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+# Called with the model's name, the stage, and the part of it that is done.
+Progress = Callable[[str, str, float], None]
+
+
+# How often a step that leaves energy unaccounted for is halved.
+HALVINGS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one model leaves; ``ensemble`` and ``shell`` where it has one."""
+
+    trajectory: Trajectory
+    summary: dict[str, Any]
+    ensemble: xr.Dataset | None
+    shell: ShellOutput | None
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Results, and by the model's name what each shell leaves."""
+
+    results: Results
+    shells: dict[str, ShellOutput]
+
+
+class Stages:
+    """The stages of one model, how far each is, and the wall time of those that are done in s."""
+
+    def __init__(self, model: str, progress: Progress) -> None:
+        self.tell = partial(progress, model)
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[Callable[[float], None]]:
+        """Tells the part of a stage that is done."""
+        begin = perf_counter()
+        yield partial(self.tell, name)
+        self.seconds[name] = perf_counter() - begin
+
+
+def run_case(
+    case: Case,
+    file: str,
+    comm: MPI.Intracomm | None,
+    mesh_folder: Path,
+    progress: Progress,
+    cache: Cache | None = None,
+    kept: Cache | None = None,
+) -> Run | None:
+    """Run all models of a case. Collective; None but on rank 0.
+
+    A model that cannot be computed is in the summary's ``failures``, by its name, with the reason.
+
+    Args:
+        case: a checked one.
+        file: how messages call it.
+        comm: the ranks that share the shells and the ensembles; a case without shells can do
+            without.
+        mesh_folder: where gmsh's files go, ``MODEL/SEGMENT.msh``.
+        progress: told about every stage.
+        cache: of reduced shells.
+        kept: where motions are that have ended before, and those that end now are kept.
+
+    Raises:
+        NumericsError: no model can be computed, or a shell that several ranks share.
+    """
+    boom = build_boom(case)
+    first_rank = comm is None or comm.rank == 0
+    cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
+    outcomes: dict[str, Outcome] = {}
+    failures: dict[str, str] = {}
+    first_failure = None
+    for number, model in enumerate(case.models, start=1):
+        try:
+            # What overflows is found where it matters, and said there.
+            with np.errstate(all="ignore"):
+                outcome = _run_model(
+                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
+                )
+        except _NUMERICS as error:
+            failures[model.name] = why = _reason(error)
+            first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")
+            continue
+        except _SharedFailure as error:
+            raise NumericsError(f"{file}: model[{number}]: {error}") from error
+        if outcome is not None:
+            outcomes[model.name] = outcome
+    if not first_rank:
+        return None
+    if first_failure is not None and not outcomes:
+        raise first_failure
+    summary: dict[str, Any] = {
+        "title": case.title,
+        "case_hash": toml.digest(case),
+        "versions": versions(),
+        "models": {name: outcome.summary for name, outcome in outcomes.items()},
+        "failures": failures,
+    }
+    ensembles = members.gather(
+        {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
+    )
+    if ensembles is not None and case.ensemble is not None:
+        summary["ensemble"] = {**case.ensemble.model_dump(), "slow_below": cutoff}
+        ensembles = ensembles.assign_attrs(case_hash=summary["case_hash"])
+    # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
+    trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
+    data = label(boom, trajectories).assign_attrs(case_hash=summary["case_hash"])
+    summary["comparisons"] = compare_models(case, data, ensembles, summary)
+    verdicts = judge(data, summary, case, ensembles)
+    shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
+    return Run(Results(case, data, summary, verdicts, ensembles), shells)
+
+
+# What a model's numbers may lead to.
+_NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
+
+
+class _SharedFailure(Exception):
+    """Of one of several ranks, for which the others may wait in the middle of their own work."""
+
+
+def _reason(error: Exception) -> str:
+    """Why a model has failed."""
+    if isinstance(error, NumericsError):
+        return str(error)
+    return (
+        f"cannot be computed ({error}); look for a number of the case that is out of proportion, "
+        "in another unit say"
+    )
+
+
+def _run_model(
+    boom: Boom,
+    model: Model,
+    case: Case,
+    cutoff: float | None,
+    comm: MPI.Intracomm | None,
+    mesh_folder: Path,
+    progress: Progress,
+    cache: Cache | None,
+    kept: Cache | None,
+) -> Outcome | None:
+    """What a model leaves, on rank 0; None elsewhere."""
+    first_rank = comm is None or comm.rank == 0
+    stages = Stages(model.name, progress)
+    reduced = None
+    if isinstance(model, ShellTable):
+        assert comm is not None
+        try:
+            reduced = reduce_shell(case, boom, model, comm, mesh_folder, stages.tell, cache)
+        except _NUMERICS as error:
+            if comm.size == 1:
+                raise
+            raise _SharedFailure(_reason(error)) from error
+        system, num_dofs = reduced.system, reduced.num_dofs
+        stages.seconds |= reduced.seconds
+    elif first_rank:
+        with stages.stage("build"):
+            system = beam_system(case, boom, model)
+        num_dofs = system.num_modes
+    with members.workers(comm if case.ensemble else None) as executor:
+        if not first_rank:
+            return None
+        alone = case.model_copy(update={"models": (model,), "title": "", "demand": ()})
+        content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
+        moved = finished(
+            kept, content, lambda: _move(system, num_dofs, model, case, cutoff, executor, stages)
+        )
+    summary = moved.summary
+    if reduced is None:
+        return Outcome(moved.trajectory, summary, moved.ensemble, None)
+    summary["reduction_errors"] = {name: known(error) for name, error in reduced.errors.items()}
+    summary["local_compliance"] = [known(value) for value in reduced.local_compliance]
+    summary["mesh_error"] = known(reduced.mesh_error)
+    with stages.stage("stress"):
+        shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
+    summary["seconds"] |= stages.seconds
+    summary["stress"] = shell.summary
+    return Outcome(moved.trajectory, summary, moved.ensemble, shell)
+
+
+def _move(
+    system: GapSystem,
+    num_dofs: int,
+    model: Model,
+    case: Case,
+    cutoff: float | None,
+    executor: Executor | None,
+    stages: Stages,
+) -> Finished:
+    """The motion of a model; where its energy leaves its bound, in half the step, and a quarter."""
+    motion = Motion.of(system, case, model)
+    refused: list[str] = []
+    while True:
+        try:
+            moved = _move_at(motion, num_dofs, model, case, cutoff, executor, stages)
+        except StepTooLong as error:
+            if len(refused) == HALVINGS:
+                raise
+            refused.append(str(error))
+            motion = motion.finer()
+        else:
+            moved.summary["refused_steps"] = refused
+            return moved
+
+
+def _move_at(
+    motion: Motion,
+    num_dofs: int,
+    model: Model,
+    case: Case,
+    cutoff: float | None,
+    executor: Executor | None,
+    stages: Stages,
+) -> Finished:
+    """The motion as it is, and what is to be known of it."""
+    system = motion.system
+    motion.warm()
+    with stages.stage("motion") as told:
+        trajectory = motion.trajectory(told)
+    summary = _summary(model, system, trajectory, num_dofs, stages.seconds)
+    # Under prescribed forces friction makes the motion regular; what contacts press does not.
+    if system.frictions and not any(friction.pressed_by for friction in system.frictions):
+        with stages.stage("half the step") as told:
+            summary["step_halving"] = motion.change_by_finer_steps(trajectory, told)
+    if case.ensemble is None or not system.laws:
+        return Finished(trajectory, summary, None)
+    with stages.stage("ensemble") as told:
+        ensemble = motion.ensemble(case.ensemble, executor, told)
+    summary["ensemble"] = members.sum_up(ensemble, cutoff)
+    with stages.stage("horizons") as told:
+        summary["horizons"] = motion.horizons(case.ensemble, executor, told)
+    if cutoff is not None and motion.from_rest:
+        peaks = summary["ensemble"]["slow_peaks"]
+        with stages.stage("step counts"):
+            summary["steps_for_peaks"] = steps_for_peaks(
+                system, peaks, cutoff, case.time.output_step
+            )
+    return Finished(trajectory, summary, ensemble)
+
+
+def _summary(
+    model: Model,
+    system: GapSystem,
+    trajectory: Trajectory,
+    num_dofs: int,
+    seconds: dict[str, float],
+) -> dict[str, Any]:
+    attributes = trajectory.data.attrs
+    peaks = np.abs(trajectory.data["contact_force_peak"].values)
+    return {
+        "kind": model.kind,
+        "degrees_of_freedom": num_dofs,
+        "modes": system.num_modes,
+        "frequencies": system.frequencies[:6].tolist(),
+        "seconds": seconds,
+        "step": attributes["step"],
+        "steps": attributes["steps"],
+        "first_contact": known(trajectory.first_contact),
+        "contact_changes": attributes["contact_changes"],
+        "energy_residual": attributes["energy_residual"],
+        "first_peak": {
+            name: [known(number) for number in trajectory.first_peak(name)]
+            for name in ("tip", "head", "tip_lateral")
+            if name in trajectory.data
+        },
+        "peak_contact_force": float(peaks.max()) if peaks.size else None,
+    }

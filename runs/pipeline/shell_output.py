@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a shell leaves besides its trajectory: its fields, its stresses, its meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom
+from shell_model.stress.history import near_places, sum_up
+from shell_model.stress.stresses import ShellStress
+
+if TYPE_CHECKING:
+    from geometry.mesh import SegmentMesh
+    from shell_model.boom_shell import ReducedShell
+
+
+@dataclass(frozen=True, slots=True)
+class ShellOutput:
+    """Everything of one shell that goes to files of its own.
+
+    Args:
+        fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
+            mode), and the joints.
+        stresses: von Mises stresses near stations and supports over time.
+        summary: the largest of them, and what the walls carry then, as JSON.
+        meshes: name of the segment → its mesh.
+    """
+
+    fields: xr.Dataset
+    stresses: xr.Dataset
+    summary: dict[str, Any]
+    meshes: dict[str, SegmentMesh]
+
+    @classmethod
+    def of(
+        cls, boom: Boom, name: str, reduced: ReducedShell, trajectory: Trajectory
+    ) -> ShellOutput:
+        """From a shell that has moved; on rank 0.
+
+        Args:
+            boom: what it is a shell of.
+            name: of the model.
+            reduced: the shell.
+            trajectory: its motion.
+        """
+        assert reduced.fields is not None
+        fields = reduced.fields.assign(
+            state=(("time", "mode"), trajectory.states.astype(np.float32)),
+            time=("time", trajectory.time, {"units": "s"}),
+            **_joints(boom),
+            **_stops(boom),
+        ).assign_attrs(model=name)
+        names = [segment.name for segment in boom.segments]
+        shell = ShellStress.of(fields)
+        stresses = near_places(shell, _places(boom), names).assign_attrs(model=name)
+        meshes = dict(zip(names, reduced.meshes, strict=True))
+        return cls(fields, stresses, sum_up(shell, stresses), meshes)
+
+
+def _places(boom: Boom) -> list[float]:
+    """x of everything that carries a force into a segment at one place, rising."""
+    places = {x for number in range(len(boom.segments)) for x in boom.stations_of(number)}
+    places |= {support.x for segment in boom.segments for support in segment.supports}
+    return sorted(places)
+
+
+def _stops(boom: Boom) -> dict[str, Any]:
+    """Where the ground stops which segment, on which side (1 above, -1 below), and how far off."""
+    sides = [
+        (stop, side)
+        for stop in boom.stops
+        for side, stiffness in ((1.0, stop.stiffness), (-1.0, stop.stiffness_below))
+        if stiffness > 0.0
+    ]
+    if not sides:
+        return {}
+    places = np.array([stop.x for stop, _ in sides])
+    clearances = np.array([stop.clearance for stop, _ in sides])
+    return {
+        "stop_segment": ("stop", np.array([stop.segment for stop, _ in sides], dtype=np.int32)),
+        "stop_x": ("stop", places, {"units": "m"}),
+        "stop_side": ("stop", np.array([side for _, side in sides])),
+        "stop_clearance": ("stop", clearances, {"units": "m"}),
+    }
+
+
+def _joints(boom: Boom) -> dict[str, Any]:
+    """Which segments have play in one another, how much, and at which stations they touch.
+
+    ``station_joint`` (station) is -1 at stops. Empty dimensions, which netCDF 3 does not have, are
+    left out.
+    """
+    joints = [joint for joint in boom.joints if not joint.tied]
+    if not joints:
+        return {}
+    lateral = [np.nan if j.lateral_clearance is None else j.lateral_clearance for j in joints]
+    per_direction = [number for number, joint in enumerate(joints) for _ in joint.stations]
+    of_stations = per_direction * (2 if boom.spatial else 1) + [-1] * len(boom.stops)
+    return {
+        "joint_outer": ("joint", np.array([j.outer for j in joints], dtype=np.int32)),
+        "joint_inner": ("joint", np.array([j.inner for j in joints], dtype=np.int32)),
+        "clearance": ("joint", np.array([j.clearance for j in joints]), {"units": "m"}),
+        "lateral_clearance": ("joint", np.array(lateral), {"units": "m"}),
+        "station_joint": ("station", np.array(of_stations, dtype=np.int32)),
+    }

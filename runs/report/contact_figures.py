@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What presses and rubs at the stations, over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from runs.report.figure_context import KILO, MILLI, Array, Figure, Pen, highest, new_sheet
+
+# The stretch in which single contacts can be told apart, in s.
+FIRST_CONTACTS = 1.0
+# Over a whole run only the largest force of each of so many intervals can be seen.
+FORCE_BINS = 100
+# Below this a contact force is as good as none in a picture, in N.
+LEAST_FORCE = 1000.0
+# Impacts follow one another within milliseconds; their mean over so many s holds the boom.
+FORCE_WINDOW = 0.010
+# Labels on a logarithmic axis that do not crowd a panel of two inches.
+MOST_LABELS = 7
+# Room on it above the largest and below the smallest mark, as a factor.
+LOG_MARGIN = 1.2
+
+
+def first_contacts(pen: Pen) -> list[Figure]:
+    """Mean contact force at each station while single presses can be told apart."""
+    if not _touches(pen):
+        return []
+    end = min(FIRST_CONTACTS, pen.time[-1])
+    shown = pen.time <= end
+    stations = pen.stations()
+    sheet, panels = new_sheet(len(stations), 1.3 + 2.0 * len(stations))
+    for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
+        for name in pen.with_play:
+            mean = _mean(pen, pen.of(name, "contact_force")[:, i] / KILO)
+            pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
+        axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
+    panels[-1].set_xlabel("time (s)")
+    title = f"Mean contact forces, first {end:g} s"
+    caption = (
+        f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms: what the many "
+        "short impacts of a press amount to. Positive where the inner segment presses up."
+    )
+    return [pen.finish(sheet, panels[0], "contact-first", title, caption)]
+
+
+def contact_peaks(pen: Pen) -> list[Figure]:
+    """Largest contact force at each station in each part of the run."""
+    if not _touches(pen):
+        return []
+    bins = np.array_split(np.arange(pen.time.size), min(FORCE_BINS, pen.time.size))
+    middle = np.array([pen.time[part].mean() for part in bins])
+    stations = pen.stations()
+    sheet, panels = new_sheet(len(stations), 1.3 + 2.0 * len(stations), share_y=True)
+    drawn = []
+    for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
+        for name in pen.with_play:
+            force = np.abs(pen.of(name, "contact_force_peak")[:, i])
+            largest = np.array([highest(force[part]) for part in bins])
+            largest[~(largest > LEAST_FORCE)] = np.nan
+            drawn.append(largest / KILO)
+            pen.line(axes, name, middle, largest / KILO, linewidth=1.1, marker="o")
+        axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
+    _log_scale(panels, np.concatenate(drawn))
+    panels[-1].set_xlabel("time (s)")
+    peaks = [pen.summary[name]["peak_contact_force"] for name in pen.with_play]
+    known = [peak for peak in peaks if peak is not None]
+    title = "Peak contact forces" + (f": up to {max(known) / KILO:.0f} kN" if known else "")
+    caption = (
+        f"Largest contact force at each station in every {pen.time[-1] / len(bins):.2g} s, up or "
+        f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE / KILO:g} kN."
+    )
+    return [pen.finish(sheet, panels[0], "contact-peaks", title, caption)]
+
+
+def friction(pen: Pen) -> list[Figure]:
+    """Force of dry friction at each station where one model, the most complicated, rubs."""
+    if "friction_force" not in pen.data or not pen.with_play:
+        return []
+    name = pen.with_play[-1]
+    force = np.nan_to_num(pen.of(name, "friction_force")) / KILO
+    places = [(i, label) for i, label in enumerate(pen.stations()) if force[:, i].any()]
+    if not places:
+        return []
+    sheet, panels = new_sheet(len(places), 1.1 + 1.8 * len(places))
+    for axes, (i, station) in zip(panels, places, strict=True):
+        pen.line(axes, name, pen.time, _mean(pen, force[:, i]), linewidth=1.1, alone=True)
+        axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
+    panels[-1].set_xlabel("time (s)")
+    caption = (
+        f"Force of dry friction on {name} at each station, mean over {MILLI * FORCE_WINDOW:g} ms. "
+        "Positive where it pushes the inner segment up. Where the segments stick, it is what holds "
+        "them, and less than the coefficient times the normal force."
+    )
+    title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
+    return [pen.finish(sheet, None, "friction", title, caption, ("S7", "S8"))]
+
+
+def _mean(pen: Pen, force: Array) -> Array:
+    """(num_times,) running mean over the window that impacts take, or what of it the run has."""
+    width = min(max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0]))), force.size)
+    window = np.ones(width)
+    held = np.convolve(np.ones(force.size), window, mode="same")
+    return np.convolve(force, window, mode="same") / held
+
+
+def _touches(pen: Pen) -> bool:
+    return bool(pen.with_play) and bool(pen.data.sizes["station"])
+
+
+def _log_scale(panels: Sequence[Axes], values: Array) -> None:
+    """One logarithmic scale for all panels, with some labels however few decades it spans."""
+    known = values[np.isfinite(values)]
+    if known.size == 0:
+        return
+    low, high = known.min() / LOG_MARGIN, known.max() * LOG_MARGIN
+    decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)
+    for steps in ((1.0, 2.0, 5.0), (1.0, 3.0), (1.0,)):
+        labels = np.outer(decades, steps).ravel()
+        labels = labels[(labels >= low) & (labels <= high)]
+        if labels.size <= MOST_LABELS:
+            break
+    if labels.size < 2:
+        labels = np.unique([known.min(), known.max()])
+    for axes in panels:
+        axes.set_yscale("log")
+        axes.set_ylim(low, high)
+        axes.yaxis.set_major_locator(FixedLocator(labels.tolist()))
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+        axes.yaxis.set_minor_locator(NullLocator())

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where the boom is: tip and heads over time, with the bands and horizons of the ensembles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from dynamics.predictability.horizon import SHARES
+from runs.report import theme
+from runs.report.figure_context import MILLI, Array, Figure, Pen, farthest, highest, new_sheet
+
+# The stretch that shows the first press of the play and the first peak, in s.
+CLOSE_UP = 1.2
+# Of an ensemble this part of the members lies in its band, in percent.
+BAND = (5.0, 95.0)
+# How dark the bands of all models are where they lie on one another.
+SHADE = 0.8
+
+
+def tip(pen: Pen) -> list[Figure]:
+    """The tip in all models, over one another."""
+    sheet, (axes,) = new_sheet(1, 3.9)
+    for name in pen.models:
+        pen.line(axes, name, pen.time, MILLI * pen.of(name, "tip"))
+        _members(pen, axes, name, "tip")
+    axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, pen.time[-1]))
+    statements = (*(("S7",) if pen.rubs else ("S2", "S3")), *_many_segments(pen))
+    caption = f"Deflection of the tip, all models{_counterpart(pen, 'tip')}."
+    title = f"Tip: {_reach(pen, 'tip')}"
+    return [pen.finish(sheet, axes, "tip", title, caption + _sampled(pen, "tip"), statements)]
+
+
+def close_up(pen: Pen) -> list[Figure]:
+    """The tip up to shortly after its first peak."""
+    end = min(CLOSE_UP, pen.time[-1])
+    shown = pen.time <= end
+    sheet, (axes,) = new_sheet(1, 3.9)
+    contacts, peakless = [], []
+    circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
+    for name in pen.models:
+        deflection = MILLI * pen.of(name, "tip")
+        pen.line(axes, name, pen.time[shown], deflection[shown])
+        color = pen.strokes[name].color
+        contact = pen.summary[name]["first_contact"]
+        if contact is not None and contact <= end:
+            contacts.append(contact)
+            height = float(np.interp(contact, pen.time, deflection))
+            axes.plot(contact, height, "o", color=color, zorder=4, **circle)
+        peak, height = pen.summary[name]["first_peak"]["tip"]
+        if peak is None:
+            peakless.append(name)
+        elif peak <= end:
+            axes.plot(peak, MILLI * height, "v", color=color, ms=8, zorder=4)
+    axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
+    axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
+    axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, end))
+    axes.margins(y=0.08)
+    title = f"Tip, first {end:g} s" + (
+        f": the segments first touch at {min(contacts):.2f} s" if contacts else ""
+    )
+    caption = (
+        "Close-up of the tip. Circles mark where a model's segments first touch, triangles its "
+        "first peak, on which several verdicts rest."
+    )
+    if peakless:
+        caption += f" No peak within {pen.case.time.duration:g} s: {', '.join(peakless)}."
+    statements = ("S1", "S4", "S5", "S6", *_many_segments(pen))
+    return [pen.finish(sheet, axes, "tip-close-up", title, caption, statements)]
+
+
+def heads(pen: Pen) -> list[Figure]:
+    """The head of each outer segment; it rattles, so each model has its own panel."""
+    joints = range(1, len(pen.case.joints) + 1)
+    places = ["head", *(f"head-{number}" for number in joints if number > 1)]
+    return [_head(pen, place) for place in places if place in pen.data]
+
+
+def _head(pen: Pen, place: str) -> Figure:
+    models = pen.with_play or pen.models
+    sheet, panels = new_sheet(len(models), 1.1 + 1.25 * len(models))
+    curves = {name: MILLI * pen.of(name, place) for name in pen.models}
+    for axes, name in zip(panels, models, strict=True):
+        for other in pen.play_free:
+            if other != name:
+                pen.line(axes, other, pen.time, curves[other], linewidth=0.9)
+        pen.line(axes, name, pen.time, curves[name], linewidth=1.1, alone=True)
+        _members(pen, axes, name, place)
+        axes.set_title(name, color=pen.strokes[name].color)
+        axes.set(xlim=(0.0, pen.time[-1]), ylim=_limits(list(curves.values())))
+    panels[-1].set_xlabel("time (s)")
+    sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
+    number = int(place.partition("-")[2] or 1)
+    which = pen.case.joints[number - 1].outer if pen.case.joints else pen.case.segments[0].name
+    caption = (
+        f"Deflection of the head of the segment {which!r}, model by model"
+        + (_counterpart(pen, "head") if number == 1 else "")
+        + "."
+        + (" Dashed: without play." if pen.play_free else "")
+    )
+    statements = ("S6", "S7") if pen.rubs else ("S6",)
+    title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
+    return pen.finish(sheet, None, place, title, caption + _sampled(pen, place), statements)
+
+
+def lateral_tip(pen: Pen) -> list[Figure]:
+    """The tip to the sides, where the boom is spatial."""
+    if "tip_lateral" not in pen.data:
+        return []
+    sheet, (axes,) = new_sheet(1, 3.9)
+    for name in pen.models:
+        pen.line(axes, name, pen.time, MILLI * pen.of(name, "tip_lateral"))
+    axes.set(xlabel="time (s)", ylabel="displacement (mm)", xlim=(0.0, pen.time[-1]))
+    caption = "Displacement of the tip along y, to the sides, all models."
+    title = f"Tip, to the sides: {_reach(pen, 'tip_lateral')}"
+    return [pen.finish(sheet, axes, "tip-lateral", title, caption)]
+
+
+def _many_segments(pen: Pen) -> tuple[str, ...]:
+    """S11 is about booms of more than two segments."""
+    return ("S11",) if len(pen.case.segments) > 2 else ()
+
+
+def _counterpart(pen: Pen, place: str) -> str:
+    """Which figure of the paper shows the same."""
+    if not pen.of_the_paper:
+        return ""
+    number = {"tip": 6, "head": 7}[place] + (2 if pen.rubs else 0)
+    return f": the counterpart of Fig. {number} of the paper"
+
+
+def _reach(pen: Pen, place: str) -> str:
+    """How far the models deflect at one place, upwards or downwards."""
+    parts = [
+        f"{MILLI * farthest([farthest(pen.of(name, place)) for name in names]):.0f} mm{how}"
+        for names, how in ((pen.with_play, " with play"), (pen.play_free, " without"))
+        if names
+    ]
+    return "up to " + ", ".join(parts)
+
+
+def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
+    """The band of a model's ensemble behind its curve, and its horizons."""
+    if pen.ensembles is None or name not in pen.ensembles["model"]:
+        return
+    if place not in pen.ensembles:
+        return
+    color = pen.strokes[name].color
+    members = MILLI * pen.ensembles[place].sel(model=name).values
+    low, high = np.percentile(members, BAND, axis=0)
+    shade = min(0.25, SHADE / len(pen.with_play))
+    axes.fill_between(pen.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
+    for share, dashes in zip(SHARES, (":", "--"), strict=True):
+        known = pen.summary[name]["ensemble"]["horizons"][f"{share:g}"]
+        if known is not None:
+            axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
+
+
+def _sampled(pen: Pen, place: str) -> str:
+    """What a curve is worth, and what the marks of its ensemble are."""
+    if not pen.with_play:
+        return ""
+    if pen.ensembles is None or place not in pen.ensembles:
+        if pen.rubs or pen.ensembles is not None:
+            return ""
+        return " After the first presses a curve with play is one sample of a chaotic motion."
+    low, high = BAND
+    band = (
+        f" Shaded: {low:g} to {high:g} % of the {pen.ensembles.sizes['member']} members of each "
+        "model's ensemble."
+    )
+    horizons = [pen.summary[name]["ensemble"]["horizons"] for name in pen.with_play]
+    if not any(time is not None for known in horizons for time in known.values()):
+        return f"{band} They stay together to the end."
+    first, last = (f"{100.0 * share:g} %" for share in SHARES)
+    beyond = "" if pen.rubs else ", beyond which a curve is one sample of a chaotic motion"
+    return (
+        f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
+        f"the tip's range around one another{beyond}."
+    )
+
+
+def _limits(curves: Sequence[Array]) -> tuple[float, float]:
+    """Limits of an axis on which all curves fit."""
+    high = highest([highest(curve) for curve in curves])
+    low = -highest([highest(-curve) for curve in curves])
+    margin = 0.05 * (high - low) or 1.0
+    return low - margin, high + margin

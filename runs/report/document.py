@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A run for reading: one HTML file that needs nothing else, and the tables of the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
+
+from runs.case import toml
+from runs.paper.questions import tied
+from runs.paper.statements import Verdict
+from runs.pipeline.results import Results
+from runs.report import theme
+from runs.report.figure_context import Figure
+from runs.report.knowledge import compared_tables, known_tables
+from runs.report.model_tables import law_table, model_table, space_table, step_table
+from runs.report.pages import MARKS, page
+from runs.report.stress_tables import wall_table
+from runs.report.tables import TextTable
+from runs.report.theme import NONE, number
+
+_STYLES = {"reproduced": "green", "contradicted": "bold red", "undecided": "yellow"}
+
+
+def render(
+    results: Results,
+    figures: Sequence[Figure],
+    snapshots: Sequence[Figure],
+    readings: Sequence[TextTable] = (),
+) -> str:
+    """The report as HTML: every picture inside, no script, no resource from elsewhere.
+
+    Args:
+        results: one run.
+        figures: on disk.
+        snapshots: on disk.
+        readings: tables of a survey of the case's readings.
+    """
+    models = [model_table(results), step_table(results)]
+    more = (law_table(results), space_table(results), wall_table(results))
+    models += [table for table in more if table is not None]
+    motion, knowledge = (
+        [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")
+    )
+    known, compared = known_tables(results), compared_tables(results)
+    shown = [
+        *_numbered("Table", chain(models, known, compared, readings)),
+        *_numbered("Figure", chain(motion, knowledge, snapshots)),
+    ]
+    judged: list[str] = [verdict.verdict for verdict in results.verdicts]
+    names = list(results.summary["models"])
+    strokes = theme.strokes(names, [m.name for m in results.case.models if tied(m)])
+    return page(
+        "report.html",
+        title=results.case.title,
+        duration=f"{results.case.time.duration:g}",
+        cautions=results.cautions(),
+        judges=results.judges_the_paper,
+        counts={kind: judged.count(kind) for kind in MARKS},
+        verdicts=[
+            (v, _measured(v.measured, v), _measured(v.threshold, v), _evidence(v, shown))
+            for v in results.verdicts
+        ],
+        demanded=results.case.demand,
+        labels={thing.anchor: label for thing, label in shown},
+        colors={name: strokes[name].color for name in names},
+        models=models,
+        motion=motion,
+        known=known,
+        knowledge=knowledge,
+        compared=compared,
+        snapshots=snapshots,
+        skipped=results.summary.get("snapshots", {}).get("skipped"),
+        readings=readings,
+        versions={k: v for k, v in results.summary["versions"].items() if v is not None},
+        case_hash=results.summary["case_hash"],
+        costs=_costs(results),
+        case_text=toml.dumps(results.case),
+    )
+
+
+def _numbered(
+    kind: str, things: Iterable[TextTable | Figure]
+) -> list[tuple[TextTable | Figure, str]]:
+    """Each with what the text calls it, *Table 1* and so forth; the blank does not break."""
+    return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
+
+
+def _evidence(
+    verdict: Verdict, shown: Sequence[tuple[TextTable | Figure, str]]
+) -> Mapping[str, str]:
+    """Anchor → label of what the report shows on a statement, pictures first."""
+    bears = [(thing, label) for thing, label in shown if verdict.id in thing.statements]
+    bears.sort(key=lambda entry: isinstance(entry[0], TextTable))
+    return {thing.anchor: label for thing, label in bears}
+
+
+def _measured(value: float | None, verdict: Verdict) -> str:
+    """A verdict's number with its unit."""
+    text = number(value)
+    return f"{text} {verdict.unit}" if verdict.unit and text != NONE else text
+
+
+def _costs(results: Results) -> Mapping[str, str]:
+    """What each model's stages took, and how near a reduction is."""
+    costs = {}
+    for name, model in results.summary["models"].items():
+        parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model["seconds"].items()]
+        parts += [
+            f"{what.replace('_', ' ')} of the reduction {number(error, 2)}"
+            for what, error in model.get("reduction_errors", {}).items()
+        ]
+        if error := model.get("mesh_error"):
+            parts.append(f"local compliance of the mesh {number(error, 2)}")
+        costs[name] = ", ".join(parts)
+    return costs

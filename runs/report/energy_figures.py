@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where the energy of a run is, and how much of it is unaccounted for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.energy import ENERGIES, energy_residual
+from runs.report import theme
+from runs.report.figure_context import Array, Figure, Pen, highest, new_sheet
+
+# Of the numbers that an energy is the sum of.
+ROUND_OFF = 1.0e-16
+# Shades of what is held, of the model's colour, and of what is lost.
+HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
+LOST = (0.75, 0.45, 0.2)
+
+
+def energies(pen: Pen) -> list[Figure]:
+    """Where the energy of one model is: the last with play, the most complicated."""
+    name = (pen.with_play or pen.models)[-1]
+    columns = dict(zip(ENERGIES, _energies(pen, name).T, strict=True))
+    work = columns.pop("work")
+    held = {energy: columns.pop(energy) for energy in HELD}
+    lost = {energy: values for energy, values in columns.items() if values.any()}
+    parts = held | lost
+    color = pen.strokes[name].color
+    tints = [theme.tint(color, strength) for strength in HELD.values()]
+    tints += [theme.tint(theme.LOSS, strength) for strength in LOST[: len(lost)]]
+    sheet, (axes,) = new_sheet(1, 3.9)
+    axes.stackplot(
+        pen.time,
+        *parts.values(),
+        labels=[_named(energy) for energy in parts],
+        colors=tints,
+        linewidth=0,
+    )
+    axes.plot(pen.time, work, color=theme.INK, linewidth=1.3, label="work of the load")
+    axes.set(xlabel="time (s)", ylabel="energy (J)", xlim=(0.0, pen.time[-1]))
+    losses = "".join(f", {_named(energy)}" for energy in lost)
+    caption = (
+        f"Strain, kinetic and contact energy{losses} of {name} on top of one another. Their sum is "
+        "the work of the load, up to the residual of the next figure."
+    )
+    title = f"{name}: the load's work, and where it is"
+    return [pen.finish(sheet, axes, "energies", title, caption)]
+
+
+def residuals(pen: Pen) -> list[Figure]:
+    """Unaccounted energy of every model, the largest so far."""
+    sheet, (axes,) = new_sheet(1, 3.9)
+    worst = []
+    for name in pen.models:
+        so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(pen, name))))
+        worst.append(float(so_far[-1]))
+        pen.line(axes, name, pen.time, np.maximum(so_far, ROUND_OFF))
+    axes.set_yscale("log")
+    axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, pen.time[-1]))
+    caption = (
+        "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
+        "the largest work: the largest so far. Without contact the motion is exact to round-off."
+    )
+    title = f"Unaccounted energy: at most {theme.scientific(highest(worst))} of the work"
+    statements = ("S8",) if pen.rubs else ()
+    return [pen.finish(sheet, axes, "energy-residual", title, caption, statements)]
+
+
+def _energies(pen: Pen, name: str) -> Array:
+    """(num_times, num_energies) in J, the columns of ``ENERGIES``."""
+    return np.array([pen.of(name, energy) for energy in ENERGIES]).T
+
+
+def _named(energy: str) -> str:
+    """``strain_energy`` as *strain*, ``friction_loss`` as *friction loss*."""
+    return energy.removesuffix("_energy").replace("_", " ")

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What all figures of a run share: its numbers, one stroke per model, a sheet, and the disk."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+
+from runs.paper.questions import tied
+from runs.pipeline.comparisons import rubs
+from runs.pipeline.results import Results
+from runs.report import theme
+
+Array = npt.NDArray[np.float64]
+
+MILLI = 1.0e3
+KILO = 1.0e3
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A picture on disk, and what it shows.
+
+    Args:
+        path: PNG or GIF.
+        title: a line.
+        caption: sentences.
+        statements: of the paper, S1 … S11, that it bears on.
+        part: of the report where it belongs.
+    """
+
+    path: Path
+    title: str
+    caption: str
+    statements: Sequence[str] = ()
+    part: Literal["motion", "knowledge"] = "motion"
+
+    @property
+    def anchor(self) -> str:
+        """What a link in the report points to."""
+        return f"figure-{self.path.stem}"
+
+
+class Pen:
+    """Draws one run's figures with one stroke per model."""
+
+    def __init__(self, results: Results, folder: Path) -> None:
+        self.case = results.case
+        self.data = results.trajectories
+        self.ensembles = results.ensembles
+        self.summary = results.summary["models"]
+        self.of_the_paper = results.judges_the_paper
+        self.rubs = rubs(results.case)
+        self.folder = folder
+        self.time = np.asarray(self.data["time"].values, dtype=float)
+        self.models = [str(name) for name in self.data["model"].values]
+        self.play_free = [model.name for model in results.case.models if tied(model)]
+        self.with_play = [name for name in self.models if name not in self.play_free]
+        self.strokes = theme.strokes(self.models, self.play_free)
+
+    def of(self, name: str, variable: str) -> Array:
+        """(num_times,) of one model; (num_times, num_stations) of what stations have."""
+        values = self.data[variable].sel(model=name)
+        dims = [dim for dim in ("time", "station") if dim in values.dims]
+        return np.asarray(values.transpose(*dims).values, dtype=float)
+
+    def stations(self) -> list[str]:
+        """What the panels of the stations are called."""
+        places = self.data["station"]
+        if "direction" not in places.coords:
+            return [f"x = {x:g} m" for x in places.values]
+        how = {"z": "", "y": ", to the sides"}
+        return [
+            f"x = {x:g} m{how[str(direction)]}"
+            for x, direction in zip(places.values, places["direction"].values, strict=True)
+        ]
+
+    def line(
+        self,
+        axes: Axes,
+        name: str,
+        x: Array,
+        y: Array,
+        linewidth: float = 1.5,
+        marker: str = "",
+        alone: bool = False,
+    ) -> None:
+        """A curve of one model; one that is alone in its panel needs no dashes to be known."""
+        stroke = self.strokes[name]
+        axes.plot(
+            x,
+            y,
+            color=stroke.color,
+            linestyle="-" if alone else stroke.linestyle,
+            linewidth=linewidth,
+            marker=marker,
+            markersize=2.5,
+            label=name,
+        )
+
+    def finish(
+        self,
+        sheet: Sheet,
+        legend_of: Axes | None,
+        stem: str,
+        title: str,
+        caption: str,
+        statements: Sequence[str] = (),
+        part: Literal["motion", "knowledge"] = "motion",
+    ) -> Figure:
+        """Title above, legend below, and onto the disk; the last ones are :class:`Figure`'s."""
+        if legend_of is not None:
+            handles, labels = legend_of.get_legend_handles_labels()
+            sheet.legend(handles, labels, loc="outside lower left", ncols=2)
+        sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
+        path = self.folder / f"{stem}.png"
+        sheet.savefig(path)
+        return Figure(path, title, caption, statements, part)
+
+
+def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
+    """A sheet with panels above one another that share their time.
+
+    Args:
+        panels: how many.
+        height: of the sheet in inches.
+        share_y: whether they have one scale.
+    """
+    sheet = Sheet(figsize=(theme.WIDTH, height))
+    FigureCanvasAgg(sheet)
+    column = sheet.subplots(panels, 1, sharex=True, sharey=share_y, squeeze=False)
+    return sheet, list(column[:, 0])
+
+
+def farthest(values: Sequence[float] | Array) -> float:
+    """The finite one that is farthest from zero, with its sign, NaN if there are none."""
+    finite = np.asarray(values)[np.isfinite(values)]
+    return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
+
+
+def highest(values: Sequence[float] | Array) -> float:
+    """The largest of the finite ones, NaN if there are none."""
+    finite = np.asarray(values)[np.isfinite(values)]
+    return float(finite.max()) if finite.size else float("nan")

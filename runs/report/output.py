@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A run's folder, which takes the place of an earlier one when all its files are there."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from runs.case import toml
+from runs.case.messages import BadInput
+from runs.case.schema import ShellTable
+from runs.case.user_files import check_left
+from runs.folder.files import beside, whole
+from runs.pipeline.results import (
+    CASE,
+    ENSEMBLES,
+    FIELDS,
+    SUMMARY,
+    TRAJECTORIES,
+    VERDICTS,
+    Results,
+    read_netcdf,
+)
+from runs.pipeline.run import Run
+from runs.report import snapshots
+from runs.report.document import render
+from runs.report.figures import draw
+from runs.report.tables import TextTable
+from shell_model.pictures.field_series import write_field_series
+from shell_model.pictures.rendering import RenderingUnavailable, render_snapshots
+
+REPORT = "report.html"
+SNAPSHOTS = "snapshots"
+STRESSES = "stress.nc"
+SERIES = "fields"
+FIGURES = "figures"
+
+# The time series of fields has so many frames at most, and fewer of a fine mesh: all triangles of
+# all frames, of about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
+FRAMES, TRIANGLES = 51, 1_000_000
+
+
+def prepare(out: str, file: str) -> Path:
+    """The folder of a run, which may be an earlier run's.
+
+    Args:
+        out: the folder as the user gave it.
+        file: the case file, for messages.
+
+    Raises:
+        BadInput: it cannot be made or replaced, holds something else, or its user is in it.
+    """
+    folder = Path(out)
+    key = f"--out {out}"
+    if folder.exists() and not folder.is_dir():
+        raise BadInput(file, key, "is a file; give a folder")
+    if folder.resolve().is_mount():
+        raise BadInput(
+            file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
+        )
+    try:
+        with beside(folder):
+            names = [path.name for path in folder.glob("*") if not path.name.startswith(".")]
+    except OSError as error:
+        raise BadInput(
+            file, key, f"cannot be written ({error.strerror}); give a folder that can"
+        ) from None
+    if names and TRAJECTORIES not in names:
+        raise BadInput(
+            file, key, "holds files that are not a run's; give a new folder or an earlier run's"
+        )
+    check_left(folder, file, key)
+    return folder
+
+
+def write(run: Run, folder: Path, mesh_folder: Path) -> None:
+    """Write everything that a run leaves.
+
+    Args:
+        run: a finished one.
+        folder: an empty one.
+        mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
+    """
+    results = run.results
+    # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
+    empty = [name for name, size in results.trajectories.sizes.items() if size == 0]
+    results.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
+    if results.ensembles is not None:
+        results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
+    _write_csv(results.trajectories, folder / "trajectories.csv")
+    _write_text(folder / CASE, toml.dumps(results.case))
+    shells = [model for model in results.case.models if isinstance(model, ShellTable)]
+    for name, shell in run.shells.items():
+        prefix = f"{name}-" if len(shells) > 1 else ""
+        shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
+        shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
+        # Of names joined by a hyphen two may be the same.
+        meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
+        for place in (meshes, series):
+            place.mkdir(parents=True, exist_ok=True)
+        write_field_series(shell.fields, series, _series_times(shell.fields))
+        for segment, mesh in shell.meshes.items():
+            mesh.write(meshes / f"{segment}.vtu")
+            gmsh_file = mesh_folder / name / f"{segment}.msh"
+            shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
+    try:
+        write_snapshots(results, folder)
+    except RenderingUnavailable as reason:
+        results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
+    write_report(results, folder)
+
+
+def _series_times(fields: xr.Dataset) -> list[float]:
+    """Evenly spread over the run, its ends included, in s."""
+    times = fields["time"].values
+    frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
+    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
+
+
+def write_snapshots(
+    results: Results, folder: Path, times: Sequence[float] | None = None
+) -> list[str]:
+    """Render the deformed shells of a run's folder, and note it in the summary.
+
+    Args:
+        results: of the folder.
+        folder: with the shells' fields; pictures of other instants stay in it.
+        times: in s; the telling ones unless given.
+
+    Returns:
+        The names of the pictures.
+
+    Raises:
+        RenderingUnavailable: no picture can be made here.
+    """
+    written = []
+    pictures = folder / SNAPSHOTS
+    with beside(pictures) as easel:
+        for path in sorted(folder.glob(f"*{FIELDS}")):
+            fields = read_netcdf(path)
+            model = fields.attrs["model"]
+            prefix = path.name.removesuffix(FIELDS)
+            for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
+                pictures.mkdir(exist_ok=True)
+                written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
+    earlier = results.summary.get("snapshots", {}).get("written", [])
+    results.summary["snapshots"] = {
+        "written": list(dict.fromkeys([*earlier, *written])),
+        "skipped": None,
+    }
+    return written
+
+
+def write_report(results: Results, folder: Path, surveyed: Sequence[TextTable] = ()) -> None:
+    """Write what is derived from the trajectories: summary, verdicts, figures, report.
+
+    Args:
+        results: of the folder.
+        folder: gets them.
+        surveyed: what a survey of the case's readings has found.
+    """
+    _write_text(folder / SUMMARY, _json(results.summary))
+    _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in results.verdicts]))
+    shutil.rmtree(folder / FIGURES, ignore_errors=True)
+    (folder / FIGURES).mkdir()
+    figures = draw(results, folder / FIGURES)
+    pictures = [
+        snapshots.describe(results, folder / SNAPSHOTS / name)
+        for name in results.summary["snapshots"]["written"]
+    ]
+    _write_text(folder / REPORT, render(results, figures, pictures, surveyed))
+
+
+def _write_text(path: Path, text: str) -> None:
+    with whole(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
+    """One line for each model and time; a station's columns are headed ``NAME@X``.
+
+    Behind the X stands ``y`` where the station works to the sides, and ``#2`` and so forth where
+    others are at the same place.
+    """
+    columns: dict[str, xr.DataArray] = {}
+    places = _places(trajectories)
+    for name, variable in trajectories.data_vars.items():
+        if "station" in variable.dims:
+            for place, values in zip(places, variable.transpose("station", ...), strict=True):
+                columns[f"{name}@{place}"] = values
+        else:
+            columns[str(name)] = variable
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["model", "time", *columns])
+        times = trajectories["time"].values
+        for i, model in enumerate(trajectories["model"].values):
+            table = np.column_stack([times, *(c.isel(model=i).values for c in columns.values())])
+            for row in table.tolist():
+                writer.writerow([model, *("" if np.isnan(v) else f"{v:.9g}" for v in row)])
+
+
+def _places(trajectories: xr.Dataset) -> list[str]:
+    """What each station is called in a heading."""
+    stations = trajectories["station"]
+    names = [f"{x:g}" for x in stations.values]
+    if "direction" in stations.coords:
+        sides = stations["direction"].values
+        names = [
+            name + ("y" if side == "y" else "") for name, side in zip(names, sides, strict=True)
+        ]
+    before = [names[:i].count(name) for i, name in enumerate(names)]
+    return [
+        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
+    ]

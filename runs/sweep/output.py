@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a sweep leaves for people and programs: labelled numbers, figures, a table."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from rich.console import Console
+
+from runs.folder.files import alone, changed_folder, whole, whole_folder
+from runs.report.tables import TextTable
+from runs.report.theme import NONE, number
+from runs.sweep.figures import draw
+from runs.sweep.points import Plan
+from runs.sweep.quantities import QUANTITIES, Quantity
+from runs.sweep.run import Outcome
+
+NETCDF = "sweep.nc"
+CSV = "sweep.csv"
+
+
+def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """Label the outcomes.
+
+    Returns:
+        dims: the varied keys, in the unit of the case, and ``model``; the quantities of
+        :mod:`runs.sweep.quantities`, NaN where a model has none; ``failed``, 1 where the numerics
+        did.
+    """
+    keys = [variation.key for variation in plan.variations]
+    models = [model.name for model in plan.points[0].case.models]
+    shape = [len(variation.values) for variation in plan.variations]
+    numbers = {
+        quantity: np.array(
+            [[_number(outcome, name, quantity) for name in models] for outcome in outcomes]
+        ).reshape(*shape, len(models))
+        for quantity in QUANTITIES
+    }
+    failed = np.array(
+        [[name in outcome.failures for name in models] for outcome in outcomes], dtype=np.int8
+    ).reshape(*shape, len(models))
+    return xr.Dataset(
+        {
+            quantity.name: (
+                [*keys, "model"],
+                values,
+                {"units": quantity.unit, "long_name": quantity.title},
+            )
+            for quantity, values in numbers.items()
+        }
+        | {"failed": ([*keys, "model"], failed, {"long_name": "the numerics failed"})},
+        coords={
+            variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
+            for variation, unit in zip(plan.variations, plan.units, strict=True)
+        }
+        | {"model": models},
+        attrs={"title": plan.title},
+    )
+
+
+def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
+    """Write ``sweep.nc``, ``sweep.csv`` and the figures, which replace earlier ones at once."""
+    data = gather(plan, outcomes)
+    with (
+        alone(folder),
+        changed_folder(folder) as part,
+        whole(part / NETCDF) as netcdf,
+        whole(part / CSV) as table,
+        whole_folder(part / "figures") as figures,
+    ):
+        data.to_netcdf(netcdf, engine="scipy")
+        _write_csv(plan, outcomes, table)
+        draw(data, plan.play_free, figures)
+    return data
+
+
+def show(data: xr.Dataset, console: Console) -> None:
+    """Print from where to where each model goes, and where its tip goes farthest.
+
+    The energy residual is the largest of all points.
+    """
+    keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
+    tip, force, settling, _, residual = QUANTITIES
+    rows = []
+    for name in data["model"].values:
+        values = data.sel(model=name)
+        ranges = [_range(values[quantity.name], quantity) for quantity in (tip, force, settling)]
+        worst = number(float(values[residual.name].max()), 1)
+        rows.append((str(name), *ranges, worst, _where_largest(values[tip.name], keys)))
+    # Narrow headings leave the models their names on a terminal of 80 columns.
+    headings = [
+        *(f"{quantity.title} {quantity.shown_unit}" for quantity in (tip, force, settling)),
+        residual.title,
+        "farthest at",
+    ]
+    TextTable(
+        f"Sweep over {', '.join(keys)}: {data['failed'].size // data['model'].size} points",
+        ("model", *(heading.replace(" ", "\n") for heading in headings)),
+        rows,
+    ).show(console)
+
+
+def _range(values: xr.DataArray, quantity: Quantity) -> str:
+    finite = quantity.factor * values.values[np.isfinite(values.values)]
+    if not finite.size:
+        return NONE
+    ends = (number(float(finite.min())), number(float(finite.max())))
+    return "…".join(dict.fromkeys(ends))
+
+
+def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
+    if not np.isfinite(values.values).any():
+        return NONE
+    place = np.unravel_index(np.nanargmax(values.values), values.shape)
+    return "\n".join(f"{values[key].values[i]:g}" for key, i in zip(keys, place, strict=True))
+
+
+def _number(outcome: Outcome, model: str, quantity: Quantity) -> float:
+    value = outcome.models.get(model, {}).get(quantity.name)
+    return math.nan if value is None else value
+
+
+def _write_csv(plan: Plan, outcomes: Sequence[Outcome], path: Path) -> None:
+    """One line for each point and model."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            [*(v.key for v in plan.variations), "model", *(q.name for q in QUANTITIES), "failure"]
+        )
+        for point, outcome in zip(plan.points, outcomes, strict=True):
+            for model in point.case.models:
+                values = [_number(outcome, model.name, quantity) for quantity in QUANTITIES]
+                cells = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
+                failure = outcome.failures.get(model.name, "")
+                writer.writerow([*point.values, model.name, *cells, failure])

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The points of a sweep: a checked case for each combination of what is varied.
+
+A designer who varies the play means the same plates. So the sections that a case infers are
+inferred with the case's own play and then held, and a play for which the boxes have no room is
+refused. What gives or shapes sections by itself (section, height_to_width, mass_per_length,
+second_moment_of_area, density) is set before they are inferred. Where no model needs plates, none
+are inferred, and beams take any play.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+from dataclasses import asdict, dataclass
+from itertools import product
+
+from pydantic import ValidationError
+
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.build import build_boom, needs_plates
+from runs.case.messages import BadInput
+from runs.case.schema import Case, SectionTable
+from runs.paper.questions import tied
+from runs.sweep.variation import Tables, Variation, parse, unit_of
+
+Setting = tuple[Variation, float]
+
+# Inferred plates of each segment, None where the case gives them or they cannot be known.
+Plates = list[SectionTable | None]
+
+_WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One case of a sweep.
+
+    Args:
+        values: of what is varied, in the order of the variations.
+        label: the same for messages, ``joint.play=0.01 payload.mass=200``.
+        case: the effective one, checked.
+    """
+
+    values: tuple[float, ...]
+    label: str
+    case: Case
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A sweep before it runs.
+
+    Args:
+        file: of the case, as the user gave it.
+        title: of the case.
+        variations: at least one.
+        units: of each variation, '' for none.
+        play_free: names of the models without play.
+        points: all combinations, the last variation changing fastest.
+    """
+
+    file: str
+    title: str
+    variations: Sequence[Variation]
+    units: Sequence[str]
+    play_free: Sequence[str]
+    points: Sequence[Point]
+
+
+def plan(
+    file: str, texts: Sequence[str], models: Sequence[str] | None, mesh_size: float | None
+) -> Plan:
+    """Check a case and every point of a sweep of it.
+
+    Args:
+        file: a case file.
+        texts: KEY=VALUES each, see :mod:`runs.sweep.variation`.
+        models: names; all unless given.
+        mesh_size: of all shells in m, the case's unless given.
+
+    Raises:
+        BadInput: the case, a key, a value, or a point that cannot be.
+    """
+    whole = case_file.load(file)
+    case_file.select(whole, file, models, mesh_size, 0)
+    tables = whole.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"ensemble"})
+    variations = parse(texts, tables, file)
+
+    def chosen(settings: Sequence[Setting]) -> Case:
+        return case_file.select(_written(file, tables, settings), file, models)
+
+    plates: dict[Sequence[Setting], Plates] = {}
+    points = []
+    for values in product(*(variation.values for variation in variations)):
+        settings = tuple(zip(variations, values, strict=True))
+        shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
+        label = _label(settings)
+        if shaping not in plates:
+            plates[shaping] = _inferred(_checked(file, label, chosen(shaping)))
+        held = _hold(chosen(settings), plates[shaping])
+        checked = _checked(file, label, held, any(plates[shaping]))
+        points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
+    _check_influence(file, variations, points)
+    first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
+    units = [unit_of(variation.places[0], first) for variation in variations]
+    play_free = [model.name for model in points[0].case.models if tied(model)]
+    return Plan(file, whole.title, variations, units, play_free, points)
+
+
+def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
+    """The case with some of its numbers set, as its author would write it."""
+    changed = deepcopy(tables)
+    for variation, value in settings:
+        for place in variation.places:
+            place.put(changed, value)
+    try:
+        return Case.model_validate(changed)
+    except ValidationError as error:
+        fault = BadInput.from_validation(file, error)
+    for variation, _ in settings:
+        if any(f"{place.name}.".startswith(f"{fault.key}.") for place in variation.places):
+            raise BadInput(file, f"--vary {variation.key}", fault.what)
+    raise BadInput(file, f"--vary {_label(settings)}", f"{fault.key}: {fault.what}")
+
+
+def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
+    """The case, which passes all checks that a case file goes through."""
+    try:
+        case_file.check(case, file)
+    except BadInput as fault:
+        whose = _WHOSE_BOXES if fault.key.endswith("play") and held else ""
+        raise BadInput(file, f"--vary {label}", f"{fault.key}: {fault.what}{whose}") from None
+    return case
+
+
+def _inferred(case: Case) -> Plates:
+    sections = [segment.section for segment in build_boom(case).segments]
+    return [
+        None if given.section is not None or section is None else SectionTable(**asdict(section))
+        for given, section in zip(case.segments, sections, strict=True)
+    ]
+
+
+def _hold(case: Case, plates: Plates) -> Case:
+    """The case with inferred plates written into it, or with none to infer where none matter."""
+    in_space = any(joint.lateral_play is not None for joint in case.joints)
+    matter = in_space or any(needs_plates(model) for model in case.models)
+    segments = tuple(
+        segment
+        if plate is None
+        else segment.model_copy(
+            update={"height_to_width": None, "section": plate if matter else None}
+        )
+        for segment, plate in zip(case.segments, plates, strict=True)
+    )
+    return case.model_copy(update={"segments": segments})
+
+
+def _check_influence(file: str, variations: Sequence[Variation], points: Sequence[Point]) -> None:
+    """Refuse a key that nothing of what is run depends on."""
+    digests = [toml.digest(point.case) for point in points]
+    stride = len(points)
+    for variation in variations:
+        stride //= len(variation.values)
+        if digests[0] == digests[stride]:
+            raise BadInput(
+                file,
+                f"--vary {variation.key}",
+                "nothing that is run depends on it; leave it out, or run the models that do",
+            )
+
+
+def _label(settings: Sequence[Setting]) -> str:
+    return " ".join(f"{variation.key}={value:g}" for variation, value in settings)

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Runs the points of a sweep on all cores or ranks, and keeps each one that is done.
+
+A point, ``points/HASH/point.json``, is there whole or not at all, with its checksum beside it. Its
+name is the hash of the point's effective case, of the program's sources and of the libraries, so
+what is done is not done again, whatever sweep of the folder asks for it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from functools import partial
+from multiprocessing import active_children, get_context, parent_process
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Thread
+from typing import TYPE_CHECKING
+
+from pydantic import TypeAdapter
+
+from dynamics.failure import NumericsError
+from runs.case import toml
+from runs.case.messages import BadInput
+from runs.case.schema import Case, ShellTable
+from runs.case.user_files import check_left
+from runs.folder.cache import Cache, Files, key
+from runs.folder.versions import program
+from runs.pipeline import members
+from runs.pipeline.run import Progress, run_case
+from runs.process import notices, ranks
+from runs.process.interruption import undone
+from runs.sweep.points import Point
+from runs.sweep.quantities import QUANTITIES, Measured, measure
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+POINTS = "points"
+_POINT = "point.json"
+
+# A process has one thread, though its libraries would take all cores; and the one that counts what
+# processes share says nothing when all are killed.
+_OF_WORKERS = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+) | {"PYTHONWARNINGS": "ignore::UserWarning:multiprocessing.resource_tracker"}
+# What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
+_OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a point leaves, by the model's name.
+
+    Args:
+        models: the quantities of those that ran.
+        failures: why the others could not be computed, a sentence each.
+    """
+
+    models: dict[str, Measured]
+    failures: dict[str, str]
+
+
+def prepare(folder: Path, file: str) -> None:
+    """Make the folder of a sweep, or take an earlier sweep's.
+
+    Args:
+        folder: as the user gave it.
+        file: the case file, for messages.
+
+    Raises:
+        BadInput: it holds something else, or its user is in it.
+        OSError: it cannot be made.
+    """
+    key = f"--out {folder}"
+    if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
+        raise BadInput(
+            file,
+            key,
+            "holds files that are not a sweep's; give a new folder or an earlier sweep's",
+        )
+    check_left(folder, file, key)
+    (folder / POINTS).mkdir(parents=True, exist_ok=True)
+
+
+def launched_world(file: str) -> MPI.Intracomm | None:
+    """All ranks if a launcher such as ``mpirun`` started several, else None.
+
+    Raises:
+        BadInput: it did, and mpi4py is not installed.
+    """
+    if not ranks.launched():
+        return None
+    try:
+        from mpi4py import MPI
+    except ImportError as error:
+        raise BadInput(
+            file, "mpirun", f"mpi4py cannot be imported ({error}); run without mpirun"
+        ) from None
+    return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
+
+
+@contextmanager
+def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
+    """What runs points at a time: the cores of this machine, or all ranks but the first.
+
+    Args:
+        comm: of several ranks, or None. On other ranks than the first this yields None, once they
+            have nothing to do any more.
+    """
+    if comm is not None and comm.size > 1:
+        with members.workers(comm) as others:
+            yield others
+        return
+    # A process takes these from here when it starts.
+    outside = {name: os.environ.get(name) for name in _OF_WORKERS}
+    os.environ.update(_OF_WORKERS)
+    pool = ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), _start_worker)
+    try:
+        with undone(_end_workers):
+            yield pool
+    except BaseException:
+        _end_workers()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+        for name, value in outside.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def run_points(
+    points: Sequence[Point],
+    folder: Path,
+    pool: Executor,
+    scratch: Path,
+    progress: Progress,
+    cache: Cache | None = None,
+) -> list[Outcome]:
+    """Run the points that are not done yet, write each when it is, and give those of all.
+
+    Args:
+        points: of a sweep.
+        folder: made by :func:`prepare`.
+        pool: of :func:`workers`.
+        scratch: for what is in the making, on the disk of the folder.
+        progress: told about every finished point.
+        cache: of reduced shells.
+
+    Raises:
+        MemoryError: the system has killed a process.
+    """
+    kept = Cache(folder / POINTS)
+    computed_by = program()
+    names = [key(toml.digest(point.case), computed_by) for point in points]
+    outcomes = [
+        kept.load(name, partial(_read, point.case))
+        for name, point in zip(names, points, strict=True)
+    ]
+    stage = f"{len(points)} points"
+    with _deaf_children():
+        futures = {
+            pool.submit(run_point, point.case, scratch, cache): i
+            for i, point in enumerate(points)
+            if outcomes[i] is None
+        }
+    done = len(points) - len(futures)
+    progress("sweep", stage, done / len(points))
+    try:
+        for future in as_completed(futures):
+            i = futures[future]
+            outcomes[i] = outcome = future.result()
+            kept.keep(names[i], _written(outcome, points[i]))
+            done += 1
+            progress("sweep", stage, done / len(points))
+    except BrokenProcessPool:
+        raise MemoryError("the system has killed a process of the sweep") from None
+    finally:
+        for future in futures:
+            future.cancel()
+    return [outcome for outcome in outcomes if outcome is not None]
+
+
+def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
+    """Run the models of a case one by one, since one may fail alone; shells on this process."""
+    outcome = Outcome({}, {})
+    for model in case.models:
+        comm = None
+        if isinstance(model, ShellTable):
+            from mpi4py import MPI
+
+            comm = MPI.COMM_SELF
+        alone = case.model_copy(update={"models": (model,)})
+        with TemporaryDirectory(dir=scratch) as meshes:
+            try:
+                finished = run_case(alone, "", comm, Path(meshes), _silence, cache)
+            except NumericsError as error:
+                # The file, the point and the model's name stand before it where it is shown.
+                outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
+                continue
+        assert finished is not None
+        outcome.models[model.name] = measure(finished.results, model.name)
+    return outcome
+
+
+def _start_worker() -> None:
+    """A worker is no rank, and does not outlive its parent, which ends it when interrupted."""
+    notices.show()
+    for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
+        del os.environ[name]
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_workers() -> None:
+    for process in active_children():
+        process.kill()
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Processes that start meanwhile never hear signals to all of a group, as Ctrl-C is one."""
+    signals = {signal.SIGINT, signal.SIGTERM}
+    signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
+
+
+def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:
+    """The file of a point, for people too."""
+    data = {"point": point.label, "case_hash": toml.digest(point.case), **asdict(outcome)}
+    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
+    return {_POINT: [f"{text}\n".encode()]}
+
+
+def _read(case: Case, files: Files) -> Outcome:
+    """What :func:`_written` has written of a case.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    outcome = TypeAdapter(Outcome).validate_json(bytes(files[_POINT]))
+    models = {model.name for model in case.models}
+    quantities = {quantity.name for quantity in QUANTITIES}
+    measured = all(numbers.keys() == quantities for numbers in outcome.models.values())
+    if not measured or outcome.models.keys() | outcome.failures.keys() != models:
+        raise ValueError(f"{_POINT} is not of the case's models")
+    return outcome
+
+
+def _silence(model: str, stage: str, part: float) -> None:
+    """Several points run at a time."""

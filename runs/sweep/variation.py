@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What ``--vary KEY=VALUES`` says: which numbers of a case take which values.
+
+KEY is a path into the case as its author writes it, counted from 1. Without a number in brackets
+it means all tables of that name: ``joint.play``, ``joint[1].play``, ``segment[2].span[2]``,
+``payload.mass``. VALUES are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+
+# A case file as plain tables and lists.
+Tables = dict[str, Any]
+
+# Weeks of computing: what asks for more is a slip of the pen.
+MOST_POINTS = 10_000
+
+# Evenly spaced numbers are rounded to what a person would write, so that a finer sweep meets them.
+_DIGITS = 12
+
+_STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
+_WHOLE = re.compile(r"[0-9]{1,9}")
+_REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
+
+# Units as the schema's descriptions have them: "in N/m^n where", "in kg m;".
+_UNIT = re.compile(
+    r"\bin ((?:kg|N|Pa|Hz|m|s|1)(?:[ /](?:m|s|kg)(?:\^\w)?)*(?:\^\w)?)(?![\w/^])", re.ASCII
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """One number of a case: the way to it through :data:`Tables`, and how messages call it."""
+
+    steps: tuple[str | int, ...]
+    name: str
+
+    def put(self, tables: Tables, number: float) -> None:
+        """Set it, tables that are not given made on the way."""
+        here: Any = tables
+        for step in self.steps[:-1]:
+            here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
+        # A whole number fits keys of both kinds.
+        here[self.steps[-1]] = int(number) if number.is_integer() else number
+
+    @property
+    def shapes_sections(self) -> bool:
+        """As :attr:`Variation.shapes_sections`."""
+        if self.steps[0] == "segment":
+            return self.steps[2] in {
+                "mass_per_length", "second_moment_of_area", "height_to_width", "section",
+            }  # fmt: skip
+        return self.steps == ("material", "density")
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """One ``--vary``.
+
+    Args:
+        key: as the user gave it.
+        values: rising, in the unit of the case.
+        places: what takes them, all the same at a time.
+    """
+
+    key: str
+    values: tuple[float, ...]
+    places: tuple[Place, ...]
+
+    @property
+    def shapes_sections(self) -> bool:
+        """Whether sections are given by it, or inferred from it, apart from the play."""
+        return any(place.shapes_sections for place in self.places)
+
+
+def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
+    """Read all ``--vary`` options.
+
+    Args:
+        texts: KEY=VALUES each.
+        tables: the case that the keys are looked up in.
+        file: of the case, for messages.
+
+    Raises:
+        BadInput: an option that cannot be understood, or with no place in the case.
+    """
+    variations: list[Variation] = []
+    for text in texts:
+        key, equals, numbers = (part.strip() for part in text.partition("="))
+        option = f"--vary {key}"
+        if not (key and equals):
+            raise BadInput(file, f"--vary {text}", f"not understood; {_REMEDY}")
+        if key in [variation.key for variation in variations]:
+            raise BadInput(file, option, "given twice; give all its values at once")
+        if key.split(".")[0].split("[")[0] == "ensemble":
+            raise BadInput(file, option, "a sweep runs no ensembles; leave it out")
+        steps = [_STEP.fullmatch(step) for step in key.split(".")]
+        try:
+            path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
+            if len(path) < len(steps):
+                raise _Unplaced("not understood; give a key such as joint[1].play")
+            places = tuple(_places(tables, path, Place((), "")))
+            variations.append(Variation(key, _values(numbers), places))
+        except _Unplaced as reason:
+            raise BadInput(file, option, str(reason)) from None
+    num_points = math.prod(len(variation.values) for variation in variations)
+    if num_points > MOST_POINTS:
+        raise BadInput(
+            file, "--vary", f"{num_points} points are too many; at most {MOST_POINTS} are run"
+        )
+    return variations
+
+
+def unit_of(place: Place, case: Case) -> str:
+    """The unit of a number that a case has, as the schema's description says it, '' for none."""
+    here: Any = case
+    description = ""
+    for step in place.steps:
+        if isinstance(here, BaseModel):
+            fields = {f.alias or name: (name, f) for name, f in type(here).model_fields.items()}
+            name, field = fields[str(step)]
+            here, description = getattr(here, name), field.description or ""
+        else:
+            here = here[step]
+    units = set(_UNIT.findall(description))
+    # "in N at x, or in N/m along the segment" depends on other keys.
+    return str(units.pop()) if len(units) == 1 else ""
+
+
+class _Unplaced(Exception):
+    """Why an option has no place in the case, or no values."""
+
+
+def _places(
+    here: Any, path: Sequence[tuple[str, int | str | None]], before: Place
+) -> Iterator[Place]:
+    """All numbers that a path leads to, whether they are there yet or not."""
+    if not path:
+        yield before
+        return
+    (name, number), rest = path[0], path[1:]
+    if not isinstance(here, Mapping):
+        raise _Unplaced(f"{before.name} is not a table; end the key there")
+    found = here.get(name)
+    place = Place((*before.steps, name), f"{before.name}.{name}" if before.name else name)
+    if found is None:
+        # The schema knows whether there is such a key.
+        yield from _places({}, rest, place)
+        return
+    tables = isinstance(found, list) and not _are_numbers(found)
+    if tables and not found:
+        raise _Unplaced(f"the case has no {place.name}; there is nothing to vary")
+    if isinstance(number, int):
+        if not isinstance(found, list):
+            raise _Unplaced(f"{place.name} is not a list; leave out [{number}]")
+        if not 1 <= number <= len(found):
+            raise _Unplaced(
+                f"the case has no {place.name}[{number}], its last one is "
+                f"{place.name}[{len(found)}]"
+            )
+        chosen = [number - 1]
+    elif tables and rest:
+        chosen = list(range(len(found)))
+    else:
+        yield from _places(found, rest, place)
+        return
+    for i in chosen:
+        yield from _places(found[i], rest, Place((*place.steps, i), f"{place.name}[{i + 1}]"))
+
+
+def _are_numbers(values: Sequence[Any]) -> bool:
+    return bool(values) and not isinstance(values[0], Mapping)
+
+
+def _values(text: str) -> tuple[float, ...]:
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) == 3 and not _WHOLE.fullmatch(parts[2]):
+        raise _Unplaced(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
+    if len(parts) == 3:
+        start, stop, count = _number(parts[0]), _number(parts[1]), int(parts[2])
+        if not 2 <= count <= MOST_POINTS:
+            raise _Unplaced(f"COUNT must be from 2 to {MOST_POINTS}, got {count}")
+        numbers = [float(f"{x:.{_DIGITS}g}") for x in np.linspace(start, stop, count)]
+    elif len(parts) == 1:
+        numbers = [_number(part) for part in text.split(",")]
+    else:
+        raise _Unplaced(f"{text!r} is not understood; {_REMEDY}")
+    if len(numbers) == 1:
+        raise _Unplaced("one value varies nothing; give two or more")
+    if len(set(numbers)) < len(numbers):
+        raise _Unplaced(f"a value is given twice in {text!r}; give each once")
+    return tuple(sorted(numbers))
+
+
+def _number(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise _Unplaced(f"must be finite numbers, got {text.strip()!r}; {_REMEDY}")
+    return number

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How much the walls give way where segments touch: what meshes and reductions are measured by.
+
+The compliance of a contact row, B (Ω² + σ)⁻¹ Bᵀ at a slow shift, is nearly all rigid motion: some
+1e-6 m/N around 3e-9 of wall. A squeeze of a station, equal and opposite forces on its two sides, is
+in balance. It moves no segment and bends no beam, and half of what the station opens is the *local
+compliance* of each side. Errors of the compliance are told as parts of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.contact import ContactLaw
+from shell_model.contact.rows import Contact
+from shell_model.reduction.products import gram
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.segment_shell import SegmentShell
+
+Array = npt.NDArray[np.float64]
+
+# Hz: above rigid motion, below all elastic motion.
+SLOW = 20.0
+
+
+def compliance(omega2: Array, rows: Array) -> Array:
+    """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)².
+
+    Args:
+        omega2: (num_modes,) in rad²/s².
+        rows: (num_rows, num_modes).
+    """
+    return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
+
+
+def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact]) -> Array:
+    """(num_contacts, num_contacts) the same of shells that are not reduced. Collective."""
+    found = np.zeros((len(contacts), len(contacts)))
+    for number, shell in enumerate(shells):
+        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        parts = [shell.row(contacts[i].reading[number]) for i in touching]
+        rows = np.array(parts).reshape(-1, shell.free.size).T
+        solve = ShiftedSolver(shell, SLOW)
+        found[np.ix_(touching, touching)] += gram(shell.comm, rows, solve(rows))
+        solve.destroy()
+    return found
+
+
+def local_compliance(
+    whole: Array, laws: Sequence[ContactLaw], station_of_row: Sequence[int]
+) -> Array:
+    """(num_rows,) in m/N; NaN where nothing touches on the other side of the station.
+
+    Args:
+        whole: (num_rows, num_rows) the compliance.
+        laws, station_of_row: of its rows.
+    """
+    found = np.full(len(laws), np.nan)
+    for up, down in _opposite(laws, station_of_row):
+        opening = whole[up, up] + whole[down, down] - 2.0 * whole[up, down]
+        found[[up, down]] = 0.5 * opening
+    return found
+
+
+def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
+    """How far values of a mesh are from the limit of finer ones, as parts (Richardson 1911).
+
+    Args:
+        fine, coarse: of the mesh, and of one with edges of twice the length.
+        order: of the values in the edge length.
+    """
+    return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**order - 1.0))
+
+
+def _opposite(
+    laws: Sequence[ContactLaw], station_of_row: Sequence[int]
+) -> Iterator[tuple[int, int]]:
+    """Rows that press up, and those that press down in the same place of their station."""
+    for station in set(station_of_row):
+        there = [i for i, at in enumerate(station_of_row) if at == station]
+        above = [i for i in there if laws[i].terms[0].side > 0.0]
+        below = [i for i in there if laws[i].terms[0].side < 0.0]
+        if len(above) == len(below):
+            yield from zip(above, below, strict=True)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How two shells approach each other and slide at a station: by lines, corners or patches.
+
+The points of each wall have weights that sum to one, so that a uniform approach gives the paper's
+law (4) exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.boom import Direction
+from geometry.contact_places import Pad, Patch, Side, Stretch
+from shell_model.contact.corner_lines import CornerLines
+from shell_model.contact.surface import gauss
+from shell_model.contact.wall_points import Wall, WallPoints
+from shell_model.cross_section import Reading, Row, combine_readings, relative
+
+Array = npt.NDArray[np.float64]
+
+_SIDES: tuple[Side, Side] = (1, -1)
+
+# Gauss's rule over a patch, along x and across.
+_POINTS = 4
+
+# What a station presses of the inner and of the outer segment's corners.
+Pressed = tuple[Stretch, Stretch]
+
+
+class Touch(NamedTuple):
+    """Side, weight and approach of each pair of points of a pad, and how the pad slides."""
+
+    points: Sequence[tuple[Side, float, Reading]]
+    slide: Reading
+
+
+def near_webs(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
+    """A station of a flat boom, from web to web; both flanges together slide as their mean does."""
+
+    def along(side: Side) -> Reading:
+        rows = (
+            lines.deflection(stretch, "z", 0.0, side)
+            for lines, stretch in zip((inner, outer), pressed, strict=True)
+        )
+        return _approach(pad, *rows)
+
+    return _sliding_as_its_mean([(side, 1.0, along(side)) for side in _SIDES])
+
+
+def across(pad: Pad, inner: WallPoints, outer: WallPoints, pressed: Pressed, width: float) -> Touch:
+    """A station of a flat boom over the width of the inner flanges. Collective."""
+    points = []
+    for side in _SIDES:
+        for y, weight in zip(*_half_gauss(width), strict=True):
+            rows = (
+                walls.mean(Wall("z", side), *_line(stretch, y), "z")
+                for walls, stretch in zip((inner, outer), pressed, strict=True)
+            )
+            points.append((side, weight, _approach(pad, *rows)))
+    return _sliding_as_its_mean(points)
+
+
+def corner(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
+    """A pad of a boom in space."""
+
+    def along(direction: Direction) -> Reading:
+        rows = (
+            lines.deflection(stretch, direction, *offset)
+            for lines, stretch, offset in zip(
+                (inner, outer), pressed, (pad.inner, pad.outer), strict=True
+            )
+        )
+        return _approach(pad, *rows)
+
+    return Touch([(pad.side, pad.weight, along(pad.direction))], along(pad.rubs))
+
+
+def flange_patches(pad: Pad, patch: Patch, inner: WallPoints, outer: WallPoints) -> Touch:
+    """A station of a flat boom with pads of a size; it slides as :func:`near_webs`. Collective."""
+    points = [
+        (
+            side,
+            1.0,
+            combine_readings(
+                [(0.5, _mean_approach(pad, patch, side, half, inner, outer)) for half in (1, -1)]
+            ),
+        )
+        for side in _SIDES
+    ]
+    return _sliding_as_its_mean(points)
+
+
+def corner_patch(
+    pad: Pad, patch: Patch, at_corner: Touch, inner: WallPoints, outer: WallPoints
+) -> Touch:
+    """A pad of a size in space; it slides as its corner does. Collective."""
+    reading = _mean_approach(pad, patch, pad.side, half_of(pad), inner, outer)
+    return Touch([(pad.side, pad.weight, reading)], at_corner.slide)
+
+
+def half_of(pad: Pad) -> int:
+    """On which half of its wall a pad in space sits: 1 where the coordinate across is positive."""
+    return int(np.sign(pad.inner[0] if pad.direction == "z" else pad.inner[1]))
+
+
+def _mean_approach(
+    pad: Pad, patch: Patch, side: Side, half: int, inner: WallPoints, outer: WallPoints
+) -> Reading:
+    """Mean of u − w over a patch: read the other way round, a uniform pressure on both walls."""
+    x, along = gauss(patch.start, patch.end, _POINTS)
+    y, over = gauss(half * patch.near, half * patch.far, _POINTS)
+    places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
+    weights = np.outer(along, over).ravel()
+    wall = Wall(pad.direction, side)
+    return _approach(
+        pad,
+        inner.mean(wall, places, weights, pad.direction),
+        outer.mean(wall, places, weights, pad.direction),
+    )
+
+
+def _sliding_as_its_mean(points: Sequence[tuple[Side, float, Reading]]) -> Touch:
+    return Touch(points, combine_readings([(0.5 * weight, row) for _, weight, row in points]))
+
+
+def _half_gauss(width: float) -> tuple[Array, Array]:
+    """Places at positive y of Gauss's rule with eight points over a width; weights sum to one."""
+    y, weights = gauss(-0.5 * width, 0.5 * width, 8)
+    return y[y > 0.0], 2.0 * weights[y > 0.0]
+
+
+def _line(stretch: Stretch, y: float) -> tuple[Array, Array]:
+    """Places (num_places, 2) at ±y along a stretch, and their weights, which sum to one."""
+    x, weights = gauss(stretch.start, stretch.end, _POINTS)
+    forces = 0.5 * weights * (stretch.end - stretch.start) * stretch.density(x)
+    places = np.column_stack([np.tile(x, 2), np.repeat([y, -y], x.size)])
+    return places, np.tile(forces, 2)
+
+
+def _approach(pad: Pad, inner: Row, outer: Row) -> Reading:
+    return relative((pad.joint.inner, inner), (pad.joint.outer, outer))

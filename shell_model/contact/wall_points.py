@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Rows that read a shell anywhere on a wall, whether there is a node or not.
+
+The triangle that holds the point is found on the rank that has it; its six quadratic shape
+functions there are the row. So the meshes of two segments need not match where these touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.boom import Direction
+from shell_model import compat
+from shell_model.cross_section import COMPONENT, ON_WALL, Row, combine
+from shell_model.segment_shell import SegmentShell
+
+Array = npt.NDArray[np.float64]
+
+# A point this far outside a triangle, in barycentric coordinates, lies on its edge.
+_ON_EDGE = 1.0e-8
+
+
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """One wall of a box: a flange, normal along z, or a web, normal along y.
+
+    Args:
+        normal: its direction.
+        side: 1 for the wall on the positive side of the axis, −1 for the other.
+    """
+
+    normal: Direction
+    side: int
+
+    @property
+    def across(self) -> int:
+        """Position of the coordinate that runs across the wall, at right angles to x."""
+        return COMPONENT["y" if self.normal == "z" else "z"]
+
+
+class _Candidate(NamedTuple):
+    """A triangle's corners, (6,) coordinates on the wall in m, and its row."""
+
+    corners: tuple[float, ...]
+    row: Row
+
+
+class WallPoints:
+    """The triangles of a segment's walls with their nodes. Collective."""
+
+    def __init__(self, shell: SegmentShell) -> None:
+        self._shell = shell
+        displacement, to_parent = shell.space.sub(0).collapse()
+        local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
+        rows = shell.space.dofmap.index_map.local_to_global(local.ravel())
+        self._dofs = np.asarray(rows, dtype=np.int64).reshape(-1, 3)
+        self._places = compat.node_places(displacement)
+        self._cells = compat.cell_nodes(displacement)
+
+    def rows(self, wall: Wall, places: Array, direction: Direction) -> list[Row]:
+        """A row for each place, the same on every rank. Collective.
+
+        Args:
+            wall: that is read.
+            places: (num_places, 2) of x and the coordinate across the wall, in m.
+            direction: of the displacement.
+
+        Raises:
+            ValueError: a place is not on the wall.
+        """
+        cells = self._near(wall, places[:, 0])
+        found = [self._candidate(cells, wall, place, direction) for place in places]
+        on_ranks = self._shell.comm.allgather(found)
+        rows: list[Row] = []
+        for place, candidates in zip(places, zip(*on_ranks, strict=True), strict=True):
+            held = [candidate for candidate in candidates if candidate is not None]
+            if not held:
+                raise ValueError(f"no wall is at x = {place[0]:g} m, {place[1]:g} m across")
+            rows.append(min(held, key=lambda candidate: candidate.corners).row)
+        return rows
+
+    def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
+        """The sum of the rows of places, each with its weight. Collective."""
+        rows = self.rows(wall, places, direction)
+        return combine(*zip(weights.tolist(), rows, strict=True))
+
+    def _near(self, wall: Wall, x: Array) -> npt.NDArray[np.int64]:
+        """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
+        section = self._shell.section
+        size = section.height if wall.normal == "z" else section.width
+        off = self._places[:, COMPONENT[wall.normal]] - 0.5 * wall.side * size
+        flat = np.abs(off) < ON_WALL * section.height
+        along = self._places[self._cells[:, :3], 0]
+        margin = ON_WALL * section.height
+        close = (along.max(axis=1) >= x.min() - margin) & (along.min(axis=1) <= x.max() + margin)
+        return np.asarray(self._cells[flat[self._cells].all(axis=1) & close])
+
+    def _candidate(
+        self, cells: npt.NDArray[np.int64], wall: Wall, place: Array, direction: Direction
+    ) -> _Candidate | None:
+        """The row of the first triangle that holds a place; None where this rank has none."""
+        if not len(cells):
+            return None
+        corners = self._places[cells[:, :3]][:, :, [0, wall.across]]
+        holding = np.flatnonzero(_shares(corners, place).min(axis=1) > -_ON_EDGE)
+        if not holding.size:
+            return None
+        # An order that is that of the places, not of a rank: the same round-off on any number.
+        orders = [np.lexsort(corners[cell].T[::-1]) for cell in holding]
+        first = min(
+            range(holding.size),
+            key=lambda k: corners[holding[k]][orders[k]].ravel().tolist(),
+        )
+        cell, order = holding[first], orders[first]
+        a, b, c = _shares(corners[cell][order][None], place)[0]
+        # Nodes of Lagrange's quadratic triangle: its corners, then the middles opposite to them.
+        weights = (
+            a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0),
+            4.0 * b * c, 4.0 * a * c, 4.0 * a * b,
+        )  # fmt: skip
+        nodes = cells[cell][np.concatenate([order, 3 + order])]
+        dofs = self._dofs[nodes, COMPONENT[direction]].tolist()
+        return _Candidate(
+            tuple(corners[cell][order].ravel().tolist()),
+            dict(zip(dofs, map(float, weights), strict=True)),
+        )
+
+
+def _shares(corners: Array, place: Array) -> Array:
+    """(num_triangles, 3) barycentric coordinates of a place.
+
+    Args:
+        corners: (num_triangles, 3, 2).
+        place: (2,).
+    """
+    sides = corners[:, 1:] - corners[:, :1]
+    offset = place - corners[:, 0]
+    area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+    second = (offset[:, 0] * sides[:, 1, 1] - offset[:, 1] * sides[:, 1, 0]) / area
+    third = (sides[:, 0, 0] * offset[:, 1] - sides[:, 0, 1] * offset[:, 0]) / area
+    return np.stack([1.0 - second - third, second, third], axis=1)

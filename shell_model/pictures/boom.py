@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Pictures of a whole deformed boom, and what all pictures of a shell say about their time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from PIL import Image
+
+from shell_model.pictures import theme as theme
+from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Stop, round_scale
+from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
+
+Array = npt.NDArray[np.float64]
+
+# The whole boom: displacements are drawn up to this part of its length, sections so many times
+# larger, of which the play takes up to this part.
+DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
+
+PIXELS = (theme.SHEET[0], 470)
+
+
+class Instant(NamedTuple):
+    """A time in s, and what happens then."""
+
+    time: float
+    title: str = ""
+
+    def heading(self, shell: MovingShell, tip: float) -> str:
+        """What stands above a picture of a shell whose tip deflects by so much (m)."""
+        title = f"{self.title}:  " if self.title else ""
+        way = " sideways" if shell.from_above else ""
+        return f"{title}t = {self.time:.3f} s,  tip {1.0e3 * tip:+.1f} mm{way}"
+
+
+@dataclass(frozen=True, slots=True)
+class BoomView:
+    """What the pictures of a boom share, so that they can be compared.
+
+    Args:
+        scale: of displacements and play.
+        deflections: the smallest and the largest one in mm.
+        camera: sees the boom at every instant.
+    """
+
+    scale: float
+    deflections: tuple[float, float]
+    camera: Camera
+
+    @classmethod
+    def of(
+        cls,
+        shell: MovingShell,
+        instants: Iterable[Instant],
+        pixels: tuple[int, int] = PIXELS,
+        displacement: float = DISPLACEMENT_DRAWN,
+    ) -> BoomView:
+        """The view for pictures of these instants.
+
+        Args:
+            shell: in motion.
+            instants: of the pictures.
+            pixels: width and height of the picture.
+            displacement: up to which part of the boom's length displacements are drawn.
+        """
+        low, high = 0.0, 0.0
+        for instant in instants:
+            deflection = shell.displacement(instant.time)[:, 2]
+            low, high = min(low, deflection.min()), max(high, deflection.max())
+        # A scale has two ends, even at rest.
+        deflections = 1.0e3 * low, 1.0e3 * max(high, low + SAME_PLACE)
+        begin, end = shell.points[:, 0].min(), shell.points[:, 0].max()
+        half = SECTION_DRAWN * shell.points[:, 2].max()
+        play = sum(overlap.clearance for overlap in shell.overlaps)
+        scale = round_scale(
+            min(
+                displacement * (end - begin) / max(high, -low, SAME_PLACE),
+                PLAY_OF_SECTION * half / max(play, SAME_PLACE),
+            )
+        )
+        for stop in shell.stops:
+            low, high = min(low, stop.side * stop.clearance), max(high, stop.side * stop.clearance)
+        bottom, top = scale * low - 3.0 * half, scale * high + 2.0 * half
+        width = max(1.1 * (end - begin), (top - bottom) * pixels[0] / pixels[1])
+        centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
+        camera = Camera(centre, width, pixels, elevation=10.0)
+        return cls(scale, deflections, camera)
+
+
+def draw_boom(
+    shell: MovingShell, instants: Iterable[Instant], view: BoomView, until: float
+) -> Iterator[Image.Image]:
+    """The deformed boom, above the deflection of its tip in time.
+
+    Args:
+        shell: in motion.
+        instants: of the pictures.
+        view: scale, colours, camera.
+        until: last time in s of the tip's curve.
+    """
+    camera = view.camera
+    time, tip = shell.motion["time"].values, shell.motion["tip"].values
+    sheet = Sheet(camera.pixels, floor=325)
+    sheet.mark_x(camera, shell.points[:, 0].min(), shell.points[:, 0].max())
+    bar = sheet.figure.colorbar(
+        ScalarMappable(Normalize(*view.deflections), theme.DEFLECTION),
+        cax=sheet.axes(1110, 150, 420, 40),
+        orientation="horizontal",
+    )
+    bar.set_label("deflection sideways (mm)" if shell.from_above else "deflection (mm)")
+    curve = sheet.axes(150, 85, 820, 150)
+    curve.plot(time, 1.0e3 * tip, color=theme.FAINT, linewidth=2)
+    (past,) = curve.plot([], [], color=theme.INK, linewidth=3)
+    (now,) = curve.plot([], [], "o", color=theme.FORCE, markersize=13, clip_on=False)
+    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
+    where, black = ("seen from above; ", "") if shell.from_above else ("", "; black: supports")
+    black += "; grey blocks: stops" if shell.stops else ""
+    with Scene(camera.pixels) as scene:
+        # A little behind the boom, or it would shine through where that hardly moves.
+        rest = shell.drawn(np.zeros_like(shell.points), view.scale, SECTION_DRAWN)
+        rest[:, 1] += 0.02
+        scene.outline("rest", rest, shell.triangles, theme.FAINT, 1.5)
+        larger = np.array([1.0, SECTION_DRAWN, SECTION_DRAWN])
+        for number, held in enumerate([] if shell.from_above else shell.supports()):
+            scene.surface(f"support {number}", *_wedge(larger * held), color=theme.INK)
+        for number, stop in enumerate(shell.stops):
+            block = _wedge(_stopped(shell, rest, stop), stop.side, view.scale * stop.clearance)
+            scene.surface(f"stop {number}", *block, color=theme.FAINT)
+        for instant in instants:
+            moved = shell.displacement(instant.time)
+            places = shell.drawn(moved, view.scale, SECTION_DRAWN)
+            scene.surface(
+                "boom",
+                places,
+                shell.triangles,
+                scalars=1.0e3 * moved[:, 2],
+                cmap=theme.DEFLECTION,
+                clim=view.deflections,
+            )
+            scene.outline("edges", places, shell.triangles, theme.INK, 1.2)
+            sheet.show(scene.seen_by(camera))
+            last = int(np.abs(time - instant.time).argmin())
+            past.set_data(time[: last + 1], 1.0e3 * tip[: last + 1])
+            now.set_data(time[[last]], 1.0e3 * tip[[last]])
+            sheet.write(
+                instant.heading(shell, float(tip[last])),
+                f"{where}drawn: displacements and play × {view.scale:g}, sections × "
+                f"{SECTION_DRAWN:g}; grey: at rest{black}",
+            )
+            yield sheet.image()
+
+
+def _stopped(shell: MovingShell, rest: Array, stop: Stop) -> Array:
+    """(num_points, 3) where the section that a stop meets is drawn at rest."""
+    mine = shell.members(stop.segment)
+    return np.asarray(rest[mine[np.abs(shell.points[mine, 0] - stop.x) < SAME_PLACE]])
+
+
+def _wedge(held: Array, side: float = -1.0, gap: float = 0.0) -> tuple[Array, Triangles]:
+    """Points and triangles of a support: a prism whose edge carries a flange.
+
+    Args:
+        held: (num_points, 3) in m, the outline that is held, where it is drawn.
+        side: -1 for the bottom flange, 1 for the top one.
+        gap: from the flange to the edge in m.
+    """
+    x, across = held[:, 0].mean(), np.ptp(held[:, 1])
+    low, high = held[:, 2].min(), held[:, 2].max()
+    edge = (high if side > 0.0 else low) + side * gap
+    size = 0.35 * (high - low)
+    base = edge + side * 2.0 * size
+    profile = np.array([[x, edge], [x - size, base], [x + size, base]])
+    middle = held[:, 1].mean()
+    points = np.array(
+        [[px, y, pz] for y in (middle - 0.5 * across, middle + 0.5 * across) for px, pz in profile]
+    )
+    sides = [(0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (2, 5, 3), (2, 3, 0)]
+    return points, np.array([(0, 1, 2), (3, 5, 4), *sides], dtype=np.int32)

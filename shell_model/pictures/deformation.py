@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where a picture shows the points of a deformed shell.
+
+Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them.
+They magnify the play alike, at the cost of the inner section's height: segments touch in the
+picture when they touch in the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from shell_model.stress.stresses import ShellStress
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int32]
+
+# Walls are drawn with this part of the outer section's height; their thickness is not known here.
+WALL_DRAWN = 0.03
+
+# Lengths in m that are the same; a displacement, as a part of the largest one, that is none in
+# single precision.
+SAME_PLACE, AT_REST = 1.0e-6, 1.0e-6
+
+# x stays, y comes up, z comes towards the eye.
+_FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+class Overlap(NamedTuple):
+    """Two segments that slide in one another.
+
+    Args:
+        outer, inner: their numbers.
+        stations: where they touch, as positions in the trajectories.
+        clearance: Δ in m.
+    """
+
+    outer: int
+    inner: int
+    stations: list[int]
+    clearance: float
+
+
+class Stop(NamedTuple):
+    """A rest on the ground.
+
+    Args:
+        segment: the number of the one that it stops.
+        x: m.
+        side: 1 above the segment, -1 below it.
+        clearance: Δ in m.
+    """
+
+    segment: int
+    x: float
+    side: float
+    clearance: float
+
+
+@dataclass(frozen=True, slots=True)
+class MovingShell:
+    """A reduced shell and its motion.
+
+    Args:
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3) point numbers.
+        segment: (num_triangles,) of each triangle.
+        overlaps: from the base to the tip, where the segments touch along the third direction.
+        stops: above and below segments.
+        modes: (num_modes, num_points, 3) in 1/√kg.
+        state: (time, mode) modal coordinates.
+        motion: trajectories of this shell alone, in which ``tip`` is along the third direction.
+        stress: of the triangles.
+        from_above: whether y has taken the place of z, see :meth:`views`.
+    """
+
+    points: Array
+    triangles: Indices
+    segment: Indices
+    overlaps: Sequence[Overlap]
+    stops: Sequence[Stop]
+    modes: npt.NDArray[np.float32]
+    state: xr.DataArray
+    motion: xr.Dataset
+    stress: ShellStress
+    from_above: bool
+
+    @classmethod
+    def views(cls, fields: xr.Dataset, motion: xr.Dataset) -> list[MovingShell]:
+        """From what a run has written: seen from the side, and a boom in space from above too.
+
+        For the view from above the boom is turned about x, so that y points up.
+
+        Args:
+            fields: what ``shell_model.stress.fields`` gathers, ``state`` (time, mode), and the
+                joints: ``joint_outer``, ``joint_inner``, ``clearance`` and ``lateral_clearance``
+                (joint), ``station_joint`` (station); ``stop_segment``, ``stop_x``, ``stop_side``
+                and ``stop_clearance`` (stop). What the boom has none of may be missing.
+            motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
+                ``contact_force`` and ``contact_force_peak`` in N; coordinate ``direction`` of the
+                stations.
+        """
+        directions = np.asarray(motion["direction"].values)
+        side = cls(
+            points=fields["points"].values,
+            triangles=fields["triangles"].values,
+            segment=fields["segment"].values,
+            overlaps=_overlaps(fields, directions, "z"),
+            stops=_stops(fields),
+            modes=fields["modes"].values,
+            state=fields["state"].load(),
+            motion=motion,
+            stress=ShellStress.of(fields),
+            from_above=False,
+        )
+        sideways = _overlaps(fields, directions, "y")
+        if not sideways:
+            return [side]
+        above = replace(
+            side,
+            points=side.points @ _FROM_ABOVE,
+            overlaps=sideways,
+            stops=[],
+            modes=side.modes @ _FROM_ABOVE.astype(np.float32),
+            motion=motion.assign(tip=motion["tip_lateral"]),
+            from_above=True,
+        )
+        return [side, above]
+
+    def displacement(self, t: float) -> Array:
+        """(num_points, 3) in m, at the output time next to ``t`` (s)."""
+        state = self.state.sel(time=t, method="nearest").values
+        return np.asarray(np.tensordot(state, self.modes, axes=1), dtype=np.float64)
+
+    def members(self, segment: int) -> Indices:
+        """(num_members,) point numbers of a segment."""
+        return np.asarray(np.unique(self.triangles[self.segment == segment]))
+
+    def half_height(self, segment: int) -> float:
+        """Distance of a segment's flanges from its axis in m."""
+        return float(self.points[self.members(segment), 2].max())
+
+    def supports(self) -> list[Array]:
+        """(num_points, 3) each: the outlines that no mode moves across the boom."""
+        across = np.abs(self.modes[..., 1:]).max(axis=(0, 2))
+        held = self.points[across <= AT_REST * across.max()]
+        return [held[np.abs(held[:, 0] - x) < SAME_PLACE] for x in np.unique(held[:, 0].round(6))]
+
+    def flange_in_plane(self, segment: int, side: int) -> Indices:
+        """(num_points,) the points of a flange in the plane of bending, from base to tip.
+
+        Args:
+            segment: which.
+            side: 1 for the top, -1 for the bottom.
+        """
+        mine = self.members(segment)
+        _, y, z = self.points[mine].T
+        mine = mine[(np.abs(y) < SAME_PLACE) & (side * z > z.max() - SAME_PLACE)]
+        return np.asarray(mine[self.points[mine, 0].argsort()])
+
+    def change_of_shape(self, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
+        """(num_points + 1, 2) y and z in m once around a section, and how they change.
+
+        What moves and turns the section as a whole is left out: two shifts and a turn, fitted
+        by least squares.
+
+        Args:
+            moved: (num_points, 3) displacement in m.
+            segment: which.
+            x: of the section in m, a mesh line.
+        """
+        mine = self.members(segment)
+        mine = mine[np.abs(self.points[mine, 0] - x) < SAME_PLACE]
+        y, z = np.abs(self.points[mine, 1:]).T
+        # Those inside belong to a diaphragm.
+        mine = mine[(y > y.max() - SAME_PLACE) | (z > z.max() - SAME_PLACE)]
+        y, z = self.points[mine, 1:].T
+        mine = mine[np.arctan2(z, y).argsort()]
+        y, z = self.points[mine, 1:].T
+        none, unit = np.zeros_like(y), np.ones_like(y)
+        whole = np.concatenate(
+            [np.stack([unit, none, -z], axis=1), np.stack([none, unit, y], axis=1)]
+        )
+        fitted, *_ = np.linalg.lstsq(whole, moved[mine, 1:].T.ravel(), rcond=None)
+        change = moved[mine, 1:] - (whole @ fitted).reshape(2, -1).T
+        around = np.append(np.arange(mine.size), 0)
+        return self.points[mine[around], 1:], change[around]
+
+    def wall(self, overlap: Overlap) -> float:
+        """Thickness in m with which the walls of an overlap are drawn."""
+        return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
+
+    def drawn(self, moved: Array, scale: float, section: float = 1.0) -> Array:
+        """(num_points, 3) places in m at which a picture shows the points.
+
+        A section that is drawn larger also turns with its larger height. What moves along the
+        line of sight stays, or it would come out of the picture.
+
+        Args:
+            moved: (num_points, 3) displacement in m.
+            scale: of displacement and play.
+            section: of the outermost section.
+        """
+        factor = self._section_factors(scale, section)
+        x, y, z = self.points.T
+        ux, _, uz = scale * moved.T
+        return np.stack([x + factor * ux, factor * y, factor * z + uz], axis=1)
+
+    def _section_factors(self, scale: float, section: float) -> Array:
+        """(num_points,) of y and z; every inner segment makes room for the play around it."""
+        factors = np.full(int(self.segment.max()) + 1, section)
+        for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
+            around = factors[overlap.outer] * self.half_height(overlap.outer)
+            room = scale * overlap.clearance + section * self.wall(overlap)
+            factors[overlap.inner] = (around - room) / self.half_height(overlap.inner)
+        at_points = np.ones(len(self.points))
+        at_points[self.triangles] = factors[self.segment][:, None]
+        return at_points
+
+
+def _overlaps(fields: xr.Dataset, directions: npt.NDArray[np.str_], along: str) -> list[Overlap]:
+    """The overlaps of the joints that have play along ``z`` or ``y``, from the base to the tip.
+
+    A stop belongs to no joint, wherever it is.
+    """
+    if "joint_outer" not in fields:
+        return []
+    clearances = fields["clearance" if along == "z" else "lateral_clearance"].values
+    return [
+        Overlap(
+            outer=int(fields["joint_outer"][number]),
+            inner=int(fields["joint_inner"][number]),
+            stations=np.flatnonzero(
+                (fields["station_joint"].values == number) & (directions == along)
+            ).tolist(),
+            clearance=float(clearance),
+        )
+        for number, clearance in enumerate(clearances)
+        if np.isfinite(clearance)
+    ]
+
+
+def _stops(fields: xr.Dataset) -> list[Stop]:
+    if "stop_segment" not in fields:
+        return []
+    columns = [fields[f"stop_{name}"].values.tolist() for name in Stop._fields]
+    return [Stop(*row) for row in zip(*columns, strict=True)]
+
+
+def round_scale(largest: float) -> float:
+    """The largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
+    decade = 10.0 ** np.floor(np.log10(largest))
+    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

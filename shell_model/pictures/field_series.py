@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Fields over time for ParaView: one ``.vtu`` for each time, and a ``.pvd`` that lists them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress
+
+
+def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
+    """Write displacement and stresses at some times; a program opens them by the ``.pvd``.
+
+    Each ``.vtu`` has at the points the displacement in m, and on the triangles the number of
+    the segment, von Mises stresses of both faces and the middle, and the six ``COMPONENTS``,
+    all in Pa. The times in the ``.pvd`` are those of the output that are next to the given ones.
+
+    Args:
+        fields: what ``shell_model.stress.fields`` gathers, and the modal coordinates ``state``
+            (time, mode); attribute ``model``.
+        folder: gets ``MODEL.pvd`` and ``MODEL-NUMBER.vtu``.
+        times: in s.
+
+    Returns:
+        The files, the ``.pvd`` last.
+
+    Raises:
+        ValueError: a time lies outside the run.
+    """
+    known = np.asarray(fields["time"].values, dtype=float)
+    for t in times:
+        if not known[0] <= t <= known[-1]:
+            raise ValueError(f"time must be between {known[0]:g} and {known[-1]:g} s, got {t:g}")
+    steps = np.unique([np.abs(known - t).argmin() for t in times])
+    stress, model = ShellStress.of(fields), str(fields.attrs["model"])
+    digits = len(str(steps.size - 1))
+    written = []
+    for number, step in enumerate(steps):
+        path = folder / f"{model}-{number:0{digits}}.vtu"
+        _frame(fields, stress, int(step)).write(path)
+        written.append(path)
+    collection = folder / f"{model}.pvd"
+    names = [path.name for path in written]
+    _write_collection(collection, known[steps].tolist(), names)
+    return [*written, collection]
+
+
+def _frame(fields: xr.Dataset, shell: ShellStress, step: int) -> meshio.Mesh:
+    state, modes = fields["state"].values[step], fields["modes"].values
+    stress = shell.at(float(shell.time[step]))
+    triangles: dict[str, npt.NDArray[np.generic]] = {"segment": fields["segment"].values + 1}
+    triangles |= {f"von Mises, {face} (Pa)": stress.von_mises(face) for face in FACES}
+    components = np.concatenate([stress.membrane, stress.bending], axis=1)
+    triangles |= {
+        f"{name.replace('_', ' ')} (Pa)": np.ascontiguousarray(values)
+        for name, values in zip(COMPONENTS, components.T, strict=True)
+    }
+    return meshio.Mesh(
+        fields["points"].values,
+        [("triangle", fields["triangles"].values)],
+        point_data={"displacement (m)": np.tensordot(state, modes, axes=1).astype(np.float32)},
+        cell_data={name: [values] for name, values in triangles.items()},
+    )
+
+
+def _write_collection(path: Path, times: Sequence[float], names: Sequence[str]) -> None:
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    collection = ElementTree.SubElement(root, "Collection")
+    for t, name in zip(times, names, strict=True):
+        ElementTree.SubElement(collection, "DataSet", timestep=f"{t:.9g}", part="0", file=name)
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Pictures of a run's shell: at which instants, in which files, and whether any can be made."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib import rc_context
+from PIL import Image
+
+from dynamics.trajectory import Trajectory
+from shell_model.pictures.boom import BoomView, Instant, draw_boom
+from shell_model.pictures.deformation import MovingShell
+from shell_model.pictures.overlap import draw_overlap
+from shell_model.pictures.stress import StressScale, draw_stress
+from shell_model.pictures.theme import LETTERS
+
+# The animation: seconds of the run, number of pictures, seconds on the screen, size in pixels.
+ANIMATION = "motion.gif"
+ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, (960, 540)
+
+TITLES = {
+    "first-peak": "first peak of the tip",
+    "largest-deflection": "largest deflection of the tip",
+    "largest-force": "largest contact force",
+    "first-contact": "first contact",
+}
+
+# What happens at one station, of a joint or a stop.
+AT_A_STATION = ("largest-force", "first-contact")
+
+# Without a working OpenGL VTK ends its process, so another process makes a picture first.
+PROBE = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=[32, 32])
+plotter.add_mesh(pyvista.Sphere(), color="black")
+picture = plotter.screenshot(return_img=True)
+if picture.min() == picture.max():
+    raise SystemExit("VTK draws nothing")
+"""
+PROBE_SECONDS = 60.0
+REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"
+
+
+class RenderingUnavailable(RuntimeError):
+    """No picture can be made here; the message says why, in one line."""
+
+
+def render_snapshots(
+    fields: xr.Dataset,
+    trajectories: xr.Dataset,
+    model: str,
+    folder: Path,
+    times: Sequence[float] | None = None,
+) -> list[Path]:
+    """Draw a shell at some instants, and its first motion.
+
+    Args:
+        fields: what ``shell_model.stress.fields`` gathers, the modal coordinates ``state`` (time,
+            mode), and the joints, see :meth:`MovingShell.views`.
+        trajectories: dims ``model``, ``time``, ``station``: ``tip`` in m, ``contact_force`` and
+            ``contact_force_peak`` in N.
+        model: the shell's name in ``trajectories``.
+        folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
+            instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
+            seen from above too (``boom-above-WHEN.png``), and ``motion.gif``.
+        times: in s; those of :func:`telling_instants` unless given.
+
+    Returns:
+        The files.
+
+    Raises:
+        RenderingUnavailable: there is no VTK, or no OpenGL that works.
+        ValueError: a time lies outside the run.
+    """
+    views = MovingShell.views(fields, trajectories.sel(model=model))
+    shell = views[0]
+    begin, end = (float(t) for t in shell.motion["time"].values[[0, -1]])
+    when = telling_instants(shell.motion) if times is None else {f"{t:g}s": t for t in times}
+    for t in when.values():
+        if not begin <= t <= end:
+            raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
+    require_opengl()
+
+    instants = [
+        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
+        for name, t in when.items()
+    ]
+    film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
+    drawn: dict[str, Image.Image] = {}
+    with rc_context(LETTERS):
+        scale = StressScale.of(shell, instants)
+        for seen in views:
+            view = BoomView.of(seen, [*instants, *film])
+            above = "-above" if seen.from_above else ""
+            for name, picture in zip(when, draw_boom(seen, instants, view, end), strict=True):
+                drawn[f"boom{above}-{name}.png"] = picture
+            for number, overlap in enumerate(seen.overlaps, start=1):
+                joint = above if number == 1 else f"{above}-{number}"
+                pictures = {
+                    "overlap": draw_overlap(seen, instants, overlap),
+                    "stress": draw_stress(seen, instants, scale, overlap),
+                }
+                for kind, several in pictures.items():
+                    for name, picture in zip(when, several, strict=True):
+                        drawn[f"{kind}{joint}-{name}.png"] = picture
+            if not seen.from_above:
+                moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, film[-1].time)]
+    for name, picture in drawn.items():
+        picture.save(folder / name)
+    _save_animation(moving, folder / ANIMATION)
+    return [folder / name for name in (*drawn, ANIMATION)]
+
+
+def telling_instants(motion: xr.Dataset) -> dict[str, float]:
+    """Times in s that are worth a look, by what happens then.
+
+    ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
+    ``largest-force`` of the run, at any station; the ``first-contact``. Without contact there
+    is the first alone.
+
+    Args:
+        motion: trajectories of one model.
+    """
+    time = np.asarray(motion["time"].values)
+    peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
+    if np.isnan(peak):
+        instants = {"largest-deflection": float(time[np.abs(motion["tip"].values).argmax()])}
+    else:
+        instants = {"first-peak": peak}
+    force = np.abs(np.nan_to_num(motion["contact_force_peak"].values))
+    if force.any():
+        instants["largest-force"] = float(time[force.max(axis=1).argmax()])
+        instants["first-contact"] = float(time[force.any(axis=1).argmax()])
+    return instants
+
+
+def where_pressed(views: Sequence[MovingShell], time: float) -> str:
+    """Where the force is largest at a time (s); nothing where there is but one such place."""
+    shell = views[0]
+    places = [
+        (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
+        for seen in views
+        for number, overlap in enumerate(seen.overlaps, start=1)
+    ]
+    if len(places) + len(shell.stops) < 2:
+        return ""
+    peaks = shell.motion["contact_force_peak"].sel(time=time, method="nearest").values
+    hardest = int(np.abs(np.nan_to_num(peaks)).argmax())
+    return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
+
+
+def require_opengl() -> None:
+    """Make sure that VTK can draw.
+
+    Raises:
+        RenderingUnavailable: it cannot.
+    """
+    try:
+        probe = subprocess.run(
+            [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=PROBE_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        raise RenderingUnavailable(
+            f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}"
+        ) from None
+    if probe.returncode < 0:
+        name = signal.Signals(-probe.returncode).name
+        raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
+    if probe.returncode > 0:
+        why = probe.stderr.strip().splitlines()[-1]
+        raise RenderingUnavailable(f"pyvista makes no picture: {why}")
+
+
+def _save_animation(pictures: Sequence[Image.Image], path: Path) -> None:
+    # All in one, hence of one palette: colours would flicker otherwise.
+    width, height = SMALL
+    column = Image.new("RGB", (width, height * len(pictures)))
+    for row, picture in enumerate(pictures):
+        column.paste(picture, (0, row * height))
+    coarse = column.quantize(256, Image.Quantize.FASTOCTREE)
+    first, *rest = (
+        coarse.crop((0, row * height, width, (row + 1) * height)) for row in range(len(pictures))
+    )
+    first.save(
+        path,
+        save_all=True,
+        append_images=rest,
+        duration=round(1.0e3 * SHOWN / len(pictures)),
+        loop=0,
+    )

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Reduction of one family of motions: its Krylov basis, its errors, its coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, repeat
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eigh
+
+from dynamics.failure import NumericsError
+from shell_model.reduction.products import times
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.segment_shell import Shell
+
+Array = npt.NDArray[np.float64]
+
+# A direction that is left with less than this part of its length is in the space already.
+_DEPENDENT = 1.0e-9
+
+# Blocks at each shift, beyond which a tolerance that is not met will not be.
+_MOST_MOMENTS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class KrylovOptions:
+    """Shifts and moments of the basis, or the error that it may have.
+
+    Args:
+        shifts: frequencies in Hz at which the response is matched.
+        moments: how many derivatives with respect to ω² are matched at each.
+        tolerance: largest relative error of the contact compliance, and of what the readings get
+            of it; moments are then matched, one at each shift in turn, until it is met.
+        most: largest number of coordinates of a segment; each of its families keeps its rigid
+            motions and one coordinate at least.
+    """
+
+    shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
+    moments: int = 3
+    tolerance: float | None = None
+    most: int | None = None
+
+    @property
+    def order(self) -> Iterator[float]:
+        """The shifts of the blocks, one after another.
+
+        Several blocks at a shift take one factorisation. But what may end early takes one block
+        at each shift first.
+        """
+        if self.tolerance is None and self.most is None:
+            return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
+        rounds = self.moments if self.tolerance is None else _MOST_MOMENTS
+        return chain.from_iterable(repeat(self.shifts, rounds))
+
+    @property
+    def tests(self) -> Sequence[float]:
+        """Frequencies in Hz, between the shifts, at which errors are measured; falling."""
+        shifts = np.sort(self.shifts)
+        between = np.sqrt(shifts[:-1] * shifts[1:]) if shifts.size > 1 else shifts
+        return [float(frequency) for frequency in between[::-1]]
+
+
+class FamilyCoordinates(NamedTuple):
+    """Mass-normalised coordinates of a family.
+
+    Args:
+        omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
+        shapes: (num_rows, num_modes) in 1/√kg.
+        compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
+        right: (num_modes,) whether some natural frequency is within 0.1 %.
+    """
+
+    omega2: Array
+    shapes: Array
+    compliance_error: float
+    reading_error: float
+    lost_compliance: Array
+    right: npt.NDArray[np.bool_]
+
+
+def reduce_family(
+    shell: Shell,
+    inputs: Array,
+    readings: Array,
+    options: KrylovOptions,
+    progress: Callable[[float], None],
+) -> FamilyCoordinates:
+    """Reduce a shell that is on this rank alone.
+
+    Args:
+        shell: the full model.
+        inputs: (num_rows, num_inputs) forces, in any order, zero and dependent ones among them.
+        readings: (num_rows, num_readings).
+        options: ``most`` counts the coordinates of this shell.
+        progress: called with the part done, 0 to 1.
+
+    Raises:
+        NumericsError: a compliance is not finite, or the tolerance is not met.
+    """
+    inputs = inputs * shell.free[:, None]
+    forces = _independent(inputs)
+    rows = readings * shell.free[:, None]
+    rows = rows[:, rows.any(axis=0)]
+    order, tests = list(options.order), options.tests
+    stages = len(order) + len(tests)
+    basis = _Basis(shell, forces, options.most)
+    solve = ShiftedSolver(shell, order[0] if options.tolerance is None else tests[0])
+    if options.tolerance is not None:
+        full = [_Full.at(frequency, solve, forces, rows) for frequency in tests]
+    for done, frequency in enumerate(order, start=1):
+        solve.move(frequency)
+        grown = basis.grow(solve)
+        progress(done / stages)
+        if not grown or (
+            options.tolerance is not None and max(basis.errors(full, rows)) <= options.tolerance
+        ):
+            break
+    if options.tolerance is None:
+        full = [_Full.at(frequency, solve, forces, rows) for frequency in tests]
+    errors = basis.errors(full, rows)
+    if not np.isfinite(errors).all():
+        raise NumericsError("the reduced compliance is not finite; check the mesh and the material")
+    if options.tolerance is not None and max(errors) > options.tolerance:
+        raise NumericsError(
+            f"a segment's reduction errs by {max(errors):.1e} with {basis.size} coordinates in one "
+            f"of its planes, and {options.tolerance:.1e} is asked for; give a larger tolerance, or "
+            "a coarser mesh, whose round-off is less"
+        )
+    lost = basis.lost(full, forces.T @ inputs)
+    omega2, shapes = basis.modes()
+    solve.move(tests[-1])
+    right = _right(shell, omega2, shapes, solve)
+    solve.destroy()
+    progress(1.0)
+    return FamilyCoordinates(omega2, shapes, *errors, lost, right)
+
+
+class _Full(NamedTuple):
+    """Answers of the full model at a frequency, with what they are measured by.
+
+    Args:
+        sigma: (2π frequency)² in rad²/s².
+        compliance: (num_inputs, num_inputs) of the forces.
+        scale: the geometric means of its diagonal.
+        transfer: (num_readings, num_inputs) what the forces move at the readings.
+        transfer_scale: the geometric means of both compliances.
+    """
+
+    sigma: float
+    compliance: Array
+    scale: Array
+    transfer: Array
+    transfer_scale: Array
+
+    @classmethod
+    def at(cls, frequency: float, solve: ShiftedSolver, forces: Array, rows: Array) -> _Full:
+        solve.move(frequency)
+        moved = solve(forces)
+        compliance = forces.T @ moved
+        of_forces = np.diag(compliance)
+        of_rows = np.einsum("ij,ij->j", rows, solve(rows))
+        return cls(
+            solve.sigma,
+            compliance,
+            np.sqrt(np.outer(of_forces, of_forces)),
+            rows.T @ moved,
+            np.sqrt(np.outer(of_rows, of_forces)),
+        )
+
+
+class _Basis:
+    """M-orthonormal vectors, rigid motions first, and the stiffness in their space."""
+
+    def __init__(self, shell: Shell, forces: Array, most: int | None) -> None:
+        self._shell, self._forces = shell, forces
+        rigid = _independent(shell.rigid_motions() * shell.free[:, None])
+        self._most = shell.free.size if most is None else max(most, rigid.shape[1] + 1)
+        self._vectors = np.empty((shell.free.size, 0), order="F")
+        self._stiffness = np.zeros((0, 0))
+        self._append(rigid)
+        self._rigid = self.size
+        self._pushes = forces
+
+    @property
+    def size(self) -> int:
+        return int(self._vectors.shape[1])
+
+    def grow(self, solve: ShiftedSolver) -> bool:
+        """Add the next block; whether anything was new and found room."""
+        block = self._append(solve(self._pushes))
+        self._pushes = times(self._shell.mass, block)
+        return bool(block.shape[1])
+
+    def errors(self, full: Sequence[_Full], rows: Array) -> tuple[float, float]:
+        """Relative error of the compliance, and of what the readings get."""
+        gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
+        compliance = transfer = 0.0
+        for answer in full:
+            shifted = self._stiffness + answer.sigma * np.eye(self.size)
+            moved = np.linalg.solve(shifted, gains)
+            off = np.abs(gains.T @ moved - answer.compliance) / answer.scale
+            compliance = float(np.maximum(compliance, off.max()))
+            off = np.abs(read.T @ moved - answer.transfer) / answer.transfer_scale
+            transfer = float(np.maximum(transfer, off.max(initial=0.0)))
+        return compliance, transfer
+
+    def lost(self, full: Sequence[_Full], parts: Array) -> Array:
+        """(num_inputs,) the most by which inputs give way less than in the full model, in m/N.
+
+        Args:
+            full: answers of the full model.
+            parts: (num_forces, num_inputs) of the forces in the inputs.
+        """
+        gains = self._vectors.T @ self._forces @ parts
+        lost = np.zeros(parts.shape[1])
+        for answer in full:
+            shifted = self._stiffness + answer.sigma * np.eye(self.size)
+            own = np.einsum("ij,ij->j", parts, answer.compliance @ parts)
+            reduced = np.einsum("ij,ij->j", gains, np.linalg.solve(shifted, gains))
+            lost = np.maximum(lost, own - reduced)
+        return lost
+
+    def modes(self) -> tuple[Array, Array]:
+        """ω² and shapes in the space, rigid motions first."""
+        rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
+        omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
+        # The slide along x has to be in the basis, or round-off would find it; but nothing
+        # moves it.
+        moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
+        shapes = np.hstack([rigid[:, moved], elastic @ combination])
+        return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * self._signs(shapes)
+
+    def _signs(self, shapes: Array) -> Array:
+        """Signs with which every shape goes along with an input that moves it much."""
+        gains = shapes.T @ self._forces
+        much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
+        first = gains[np.arange(len(gains)), much.argmax(axis=1)]
+        return np.where(first < 0.0, -1.0, 1.0)
+
+    def _append(self, block: Array) -> Array:
+        """Add what is new in a block, column by column; gives the orthonormal new part."""
+        before = self.size
+        vectors = np.empty((len(block), before + block.shape[1]), order="F")
+        vectors[:, :before] = self._vectors
+        size = before
+        for column in block.T:
+            if size == self._most:
+                break
+            weighed = self._weighed(column)
+            length = np.sqrt(column @ weighed)
+            for _ in range(2):  # twice is enough (Kahan; Parlett 1980)
+                column = column - vectors[:, :size] @ (vectors[:, :size].T @ weighed)
+                weighed = self._weighed(column)
+            left = np.sqrt(column @ weighed)
+            if left > _DEPENDENT * length:
+                vectors[:, size] = column / left
+                size += 1
+        self._vectors = vectors[:, :size]
+        new = self._vectors[:, before:]
+        part = self._vectors.T @ (times(self._shell.stiffness, new) * self._shell.free[:, None])
+        stiffness = np.empty((size, size))
+        stiffness[:before, :before] = self._stiffness
+        stiffness[:, before:] = part
+        stiffness[before:, :] = part.T
+        self._stiffness = stiffness
+        return new
+
+    def _weighed(self, column: Array) -> Array:
+        return times(self._shell.mass, column[:, None])[:, 0]
+
+
+def _independent(block: Array) -> Array:
+    """Orthonormal basis of a block, column by column."""
+    lengths = np.linalg.norm(block, axis=0)
+    found = np.empty((len(block), 0))
+    for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
+        for _ in range(2):
+            column = column - found @ (found.T @ column)
+        left = float(np.linalg.norm(column))
+        if left > _DEPENDENT:
+            found = np.hstack([found, column / left])
+    return found
+
+
+def _right(
+    shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver
+) -> npt.NDArray[np.bool_]:
+    """Whether each ω is within 0.1 % of a natural one, up to the first that may not be.
+
+    With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
+    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). It is a bound: the
+    error itself is of the order of its square.
+    """
+    right = np.asarray(omega2 == 0.0)
+    for i in np.flatnonzero(~right):
+        shape = shapes[:, i : i + 1]
+        residual = times(shell.stiffness, shape) - omega2[i] * times(shell.mass, shape)
+        residual[~shell.free] = 0.0
+        bound2 = float((residual.T @ solve(residual))[0, 0])
+        off = np.sqrt(max(bound2, 0.0) * (omega2[i] + solve.sigma))
+        right[i] = off <= 2.0e-3 * omega2[i]
+        if not right[i]:
+            break
+    return right

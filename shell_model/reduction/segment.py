@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Few coordinates for a shell: a block rational Krylov basis on its loads and contact points.
+
+The space holds (K + σ M)⁻¹ F and its moments for several shifts σ > 0, so the response to a
+contact force is right from statics to the frequencies of the shifts, its local flexibility
+included; natural modes alone would need thousands of vectors for the latter (Ruhe 1984;
+Craig and Hurty's static modes are the case σ = 0, one moment). Rigid motions are kept apart,
+which leaves their frequency exactly zero.
+
+Each family of mirrored motions has a basis of its own, on a quarter of the shell and on one rank,
+which makes the coordinates the same to the last bit on any number of ranks
+(:mod:`shell_model.reduction.symmetry`). Errors are measured against full solves at frequencies
+between the shifts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from dynamics.failure import NumericsError
+from shell_model.reduction.agreement import together
+from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding, Job
+from shell_model.segment_shell import SegmentShell
+
+__all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedSegment:
+    """Mass-normalised coordinates of one segment.
+
+    Args:
+        omega2: (num_modes,) in rad²/s², rising, rigid motions first and exactly 0.
+        shapes: (num_owned, num_modes) this rank's rows of each shape, in 1/√kg.
+        compliance_error: largest relative error of the contact compliance matrix at the test
+            frequencies between the shifts, against full solves.
+        reading_error: the same of what the inputs move at the readings, over the geometric mean of
+            the compliances of both.
+        lost_compliance: (num_inputs,) the most by which each input gives way less than in the full
+            model at these frequencies, in m/N; no pair of them loses more than the geometric mean
+            of both, since the space is a part of the full one (Galerkin).
+        frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
+    """
+
+    omega2: Array
+    shapes: Array
+    compliance_error: float
+    reading_error: float
+    lost_compliance: Array
+    frequency_limit: float
+
+
+def reduce_segment(
+    shell: SegmentShell,
+    inputs: Array,
+    options: KrylovOptions,
+    progress: Callable[[float], None] | None = None,
+    readings: Array | None = None,
+) -> ReducedSegment:
+    """Reduce a segment to the space that its inputs excite. Collective.
+
+    Args:
+        shell: the full model.
+        inputs: (num_owned, num_inputs) forces that act on it, in any order; zero and dependent
+            ones cost nothing.
+        options: shifts and moments, or a tolerance.
+        progress: called with the part done, 0 to 1.
+        readings: (num_owned, num_readings) rows whose answer to the inputs is to be right too.
+
+    Raises:
+        NumericsError: a compliance is not finite, the shell does not mirror itself, all inputs
+            are zero, or the tolerance is not met.
+    """
+    comm = shell.comm
+    folding = Folding(shell)
+    jobs = folding.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
+    families = comm.bcast([job.family for job in jobs])
+    if not families:
+        raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
+    roots = [number % comm.size for number in range(len(families))]
+    most = comm.bcast(_shares(options.most, jobs))
+    mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
+
+    def reduce_mine() -> dict[int, FamilyCoordinates]:
+        found: dict[int, FamilyCoordinates] = {}
+        for number, job in mine.items():
+            part = partial(_tell, progress, len(found), len(mine))
+            limited = replace(options, most=most[number])
+            found[number] = reduce_family(job.shell(), job.forces, job.readings, limited, part)
+        return found
+
+    found = together(comm, reduce_mine)
+    parts = []
+    shapes = []
+    for number, (family, root) in enumerate(zip(families, roots, strict=True)):
+        own = found.pop(number, None)
+        shapes.append(folding.unfold(None if own is None else own.shapes, family, root))
+        parts.append(comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root))
+    omega2 = np.concatenate([part.omega2 for part in parts])
+    right = np.concatenate([part.right for part in parts])
+    order = np.argsort(omega2, kind="stable")
+    if progress is not None:
+        progress(1.0)
+    return ReducedSegment(
+        omega2=omega2[order],
+        shapes=np.hstack(shapes)[:, order],
+        compliance_error=max(part.compliance_error for part in parts),
+        reading_error=max(part.reading_error for part in parts),
+        lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
+        frequency_limit=_limit(omega2[order], right[order]),
+    )
+
+
+def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
+    """Every job of rank 0 in turn, on the rank that is to do it; None elsewhere."""
+    for number, root in enumerate(roots):
+        if comm.rank == 0 and root != 0:
+            comm.send(jobs[number], root)
+            yield None
+        elif comm.rank == root:
+            yield jobs[number] if root == 0 else comm.recv(source=0)
+        else:
+            yield None
+
+
+def _shares(most: int | None, jobs: Sequence[Job]) -> list[int | None]:
+    """How many coordinates each family may have: as many to each of its forces as the others."""
+    if most is None:
+        return [None] * len(jobs)
+    counts = [np.count_nonzero(job.forces.any(axis=0)) for job in jobs]
+    return [most * count // sum(counts) for count in counts]
+
+
+def _tell(progress: Callable[[float], None] | None, done: int, count: int, part: float) -> None:
+    if progress is not None:
+        progress((done + part) / count)
+
+
+def _limit(omega2: Array, right: npt.NDArray[np.bool_]) -> float:
+    """Hz up to which all of the rising frequencies are right."""
+    first_wrong = int(np.argmin(right)) if not right.all() else right.size
+    return float(np.sqrt(omega2[first_wrong - 1]) / (2.0 * np.pi)) if first_wrong else 0.0

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The families of a segment's motions, each as a quarter shell on one rank.
+
+A family's matrices are those of a quarter of the segment, so they are small, a motion cannot drift
+into another family, and the numbers are the same to the last bit whichever rank computes them:
+what ranks exchange are forces and shapes, taken apart and put together by sums of fixed order.
+Round-off that depended on the number of ranks would not do, since contact amplifies the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+from petsc4py import PETSc
+from scipy.sparse import csr_array
+
+from geometry.boom import Segment
+from geometry.mesh import SegmentMesh, plate_thickness
+from shell_model.contact.attachments import Attached
+from shell_model.reduction.agreement import together
+from shell_model.reduction.mirror import (
+    FAMILIES,
+    Family,
+    matches,
+    on_plane,
+    quarter_mesh,
+    quarter_of,
+)
+from shell_model.segment_shell import (
+    Matrices,
+    SegmentShell,
+    Shell,
+    assemble_plates,
+    free_rows,
+    hold,
+    owned_nodes,
+)
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.integer[Any]]
+
+# Part of its largest value below which a force has no part in a family.
+_NO_PART = 1.0e-9
+
+
+class _Compact(Matrices):
+    """Matrices of one rank without the zeros that the pattern of their forms has.
+
+    A plane wall's motions in its plane and across it do not know of each other, nor does the mass
+    of one component of another: with these zeros factors would hold them too.
+    """
+
+    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
+        full = super()._assembled(form, diagonal, attached)
+        first, columns, values = full.getValuesCSR()
+        rows = csr_array((values, columns, first), shape=full.getSize())
+        full.destroy()
+        rows.eliminate_zeros()
+        return PETSc.Mat().createAIJ(
+            rows.shape, csr=(rows.indptr, rows.indices, rows.data), comm=self._comm
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What the rank that computes a family needs.
+
+    Args:
+        family: of the motions.
+        segment: the whole one.
+        mesh: of its quarter.
+        forces, readings: (num_rows, num_columns) on the quarter's rows, images added up.
+        springs, masses: of the segment, on the quarter's rows.
+    """
+
+    family: Family
+    segment: Segment
+    mesh: SegmentMesh
+    forces: Array
+    readings: Array
+    springs: Attached
+    masses: Attached
+
+    def shell(self) -> Shell:
+        """The quarter, with the energies of the whole segment."""
+        quarter = assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
+        holds = [
+            *quarter.holds,
+            *(
+                hold(quarter.space, part, component, partial(on_plane, axis=axis))
+                for axis in (1, 2)
+                for part, component in self.family.held(axis)
+            ),
+        ]
+        nodes, node_dofs = owned_nodes(quarter.space, 0)
+        rotation_nodes, rotation_dofs = owned_nodes(quarter.space, 1)
+        return Shell(
+            comm=MPI.COMM_SELF,
+            matrices=_Compact(MPI.COMM_SELF, quarter, holds, self.springs, self.masses, 4.0),
+            free=free_rows(quarter.space, holds),
+            springs=self.springs,
+            nodes=nodes,
+            node_dofs=node_dofs,
+            rotation_nodes=rotation_nodes,
+            rotation_dofs=rotation_dofs,
+            space=quarter.space,
+        )
+
+
+class _Rows(NamedTuple):
+    """What the rows of a quarter are.
+
+    Args:
+        component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
+        in_mirror: (2, num_rows) whether they lie in the mirror of y, and of z.
+    """
+
+    component: Indices
+    in_mirror: npt.NDArray[np.bool_]
+
+
+class Folding:
+    """How the rows of a segment, distributed, are those of its quarter. Collective.
+
+    Args:
+        shell: of the whole segment.
+
+    Raises:
+        NumericsError: it is not its own mirror image.
+    """
+
+    def __init__(self, shell: SegmentShell) -> None:
+        self._shell, self._comm = shell, shell.comm
+        self._mesh = together(self._comm, lambda: _quarter_mesh(shell))
+        parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
+        quarter: list[tuple[Array, Indices]] = []
+        if self._mesh is not None:
+            space = assemble_plates(MPI.COMM_SELF, shell.segment, self._mesh).space
+            quarter = [owned_nodes(space, part) for part in range(len(parts))]
+            self._quarter_rows = _rows_of(quarter)
+        first, _ = shell.owned
+        self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int32)
+        for part, (nodes, dofs) in enumerate(parts):
+            gathered = self._comm.gather(np.column_stack([nodes[:, 0], np.abs(nodes[:, 1:])]))
+            found: Sequence[Any] = []
+            if gathered is not None:
+                places, rows = quarter[part]
+                found = [rows[matches(some, places)] for some in gathered]
+            self._row[dofs - first] = self._comm.scatter(found)
+            self._quarter[dofs - first] = quarter_of(nodes)[:, None]
+            self._component[dofs - first] = _components(part)
+
+    def jobs(self, inputs: Array, readings: Array) -> list[Job]:
+        """One for each family that an input excites, on rank 0; none elsewhere. Collective.
+
+        Args:
+            inputs, readings: (num_owned, num_columns) of the whole segment.
+        """
+        shell = self._shell
+        blocks = inputs, readings, shell.springs.rows, shell.masses.rows
+        gathered = [self._gather(block) for block in blocks]
+        if self._mesh is None:
+            return []
+        images = [self._images(entries) for entries in gathered if entries is not None]
+        jobs = []
+        for family in FAMILIES:
+            signs = family.signs[:, self._quarter_rows.component]
+            forces, read, springs, masses = (_added_up(image, signs) for image in images)
+            if forces.any():
+                attached = (
+                    Attached(springs, shell.springs.factors),
+                    Attached(masses, shell.masses.factors),
+                )
+                jobs.append(Job(family, shell.segment, self._mesh, forces, read, *attached))
+        return jobs
+
+    def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
+        """(num_owned, num_shapes) shapes of a family on the whole segment. Collective.
+
+        Args:
+            shapes: (num_rows, num_shapes) on the quarter, on one rank; None elsewhere.
+            family: theirs.
+            root: the rank that has them.
+        """
+        comm = self._comm
+        count = comm.bcast(None if shapes is None else shapes.shape[1], root)
+        rows = comm.gather(self._row, root)
+        every = sizes = None
+        if rows is not None:
+            every, sizes = np.concatenate(rows), [one.size for one in rows]
+        signs = family.signs[self._quarter, self._component]
+        unfolded = np.empty((self._row.size, count), order="F")
+        for column in range(count):
+            # One after another, so that no rank holds the whole block.
+            send = None if shapes is None else (shapes[every, column], sizes)
+            comm.Scatterv(send, unfolded[:, column], root)
+            unfolded[:, column] *= signs
+        return unfolded
+
+    def _gather(self, block: Array) -> list[_Entries] | None:
+        """The numbers of a block that are not 0, on rank 0."""
+        row, column = np.nonzero(block)
+        value, columns = block[row, column], block.shape[1]
+        mine = _Entries(self._row[row], self._quarter[row], column, value, columns)
+        return self._comm.gather(mine)
+
+    def _images(self, gathered: list[_Entries]) -> Array:
+        """(4, num_rows, num_columns) a block in each quarter; half in each of what lies between."""
+        in_mirror = self._quarter_rows.in_mirror
+        images = np.zeros((4, in_mirror.shape[1], gathered[0].columns))
+        for entries in gathered:
+            images[entries.quarter, entries.row, entries.column] = entries.value
+        for beyond, within in zip(_IMAGES, in_mirror, strict=True):
+            for here, there in beyond:
+                images[here, within] *= 0.5
+                images[there, within] = images[here, within]
+        return images
+
+
+class _Entries(NamedTuple):
+    """Numbers of a block: (num_entries,) each, and how many columns the block has."""
+
+    row: Indices
+    quarter: Indices
+    column: Indices
+    value: Array
+    columns: int
+
+
+# Quarters that meet in the mirror of y, and in that of z.
+_IMAGES = (((0, 1), (2, 3)), ((0, 2), (1, 3)))
+
+
+def _quarter_mesh(shell: SegmentShell) -> SegmentMesh | None:
+    if shell.mesh is None:
+        return None
+    return quarter_mesh(shell.mesh, plate_thickness(shell.segment, shell.mesh))
+
+
+def _components(part: int) -> Indices:
+    return np.arange(3 * part, 3 * part + 3)
+
+
+def _rows_of(quarter: Sequence[tuple[Array, Indices]]) -> _Rows:
+    size = sum(rows.size for _, rows in quarter)
+    found = _Rows(np.empty(size, dtype=np.int64), np.empty((2, size), dtype=bool))
+    for part, (places, rows) in enumerate(quarter):
+        found.component[rows] = _components(part)
+        for axis in (1, 2):
+            found.in_mirror[axis - 1, rows] = on_plane(places, axis)[:, None]
+    return found
+
+
+def _added_up(images: Array, signs: Array) -> Array:
+    """(num_rows, num_columns) the part of a family; exactly 0 where it has none."""
+    part = np.zeros(images.shape[1:])
+    for image, sign in zip(images, signs, strict=True):
+        part += sign[:, None] * image
+    largest = np.abs(images).max(axis=(0, 1), initial=0.0)
+    part[:, np.abs(part).max(axis=0, initial=0.0) <= _NO_PART * largest] = 0.0
+    return part

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The largest stresses of a run: near stations and supports at every output time, and of all.
+
+Where a force enters at a line, as beside a web, the stress of the nearest triangles grows as
+the mesh refines: it tells where and when, and is no design stress. The mean over a patch of
+fixed size settles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from geometry.mesh import WALLS
+from shell_model.stress.stresses import Face, Indices, ShellStress, wall_forces, wall_name
+
+Array = npt.NDArray[np.float64]
+
+# How far a band reaches to each side of its place, in m; a patch is half a wall of it.
+BAND = 0.25
+
+# A summary tells the history in so many parts of the run.
+PARTS = 80
+
+# Away from the bands the stress changes with the slow motion; so many instants show it.
+INSTANTS = 400
+
+
+_FLANGES = [WALLS.index(wall) for wall in ("bottom", "top")]
+
+
+class Largest(NamedTuple):
+    """A von Mises stress in Pa, the position of its output time, and its triangle."""
+
+    von_mises: float
+    step: int
+    triangle: int
+
+
+def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str]) -> xr.Dataset:
+    """The largest stresses of each segment in a band around each place, over time.
+
+    Args:
+        shell: in motion.
+        places: x in m.
+        names: of the segments.
+
+    Returns:
+        ``von_mises`` (time, segment, place), the largest of any triangle at either face, and
+        ``von_mises_patch``, the largest of the mean stresses of the patches, in Pa; NaN where
+        a segment does not come.
+    """
+    shape = (shell.time.size, len(names), len(places))
+    largest, patched = (np.full(shape, np.nan, dtype=np.float32) for _ in range(2))
+    for number in range(len(names)):
+        for i, x in enumerate(places):
+            band = shell.near(number, x, BAND)
+            if band.size == 0:
+                continue
+            for part, stress in shell.over_time(band):
+                largest[part, number, i] = stress.largest().max(axis=1)
+            patches = _patches(shell, band)
+            for part, stress in shell.over_time(band, means=patches):
+                patched[part, number, i] = stress.largest().max(axis=1)
+    dims = ("time", "segment", "place")
+    return xr.Dataset(
+        {
+            "von_mises": (dims, largest, {"units": "Pa"}),
+            "von_mises_patch": (dims, patched, {"units": "Pa"}),
+        },
+        coords={
+            "time": ("time", shell.time, {"units": "s"}),
+            "segment": list(names),
+            "place": ("place", np.array(places, dtype=float), {"units": "m"}),
+        },
+        attrs={"band": BAND},
+    )
+
+
+def sum_up(shell: ShellStress, history: xr.Dataset) -> dict[str, Any]:
+    """The largest stress of a run, that of a patch, and what the walls carry then, as JSON.
+
+    Args:
+        shell: in motion.
+        history: of :func:`near_places`.
+    """
+    names = [str(name) for name in history["segment"].values]
+    places = [float(x) for x in history["place"].values]
+    worst = _largest(shell, history)
+    number = int(shell.segment[worst.triangle])
+    time = float(shell.time[worst.step])
+    stress = shell.at(time)
+    faces: tuple[Face, ...] = ("outer", "inner")
+    face = max(faces, key=lambda f: float(stress.von_mises(f)[worst.triangle]))
+    x, y, z = (float(c) for c in shell.centroids[worst.triangle])
+    found: dict[str, Any] = {
+        "von_mises": worst.von_mises,
+        "time": time,
+        "segment": names[number],
+        "wall": wall_name(int(shell.wall[worst.triangle])),
+        "face": face,
+        "x": x,
+        "y": y,
+        "z": z,
+        "band": BAND,
+        "patch": None,
+        "walls": [],
+        "history": _summed_history(history),
+    }
+    patched = history["von_mises_patch"].values
+    if np.isfinite(patched).any():
+        step, segment, place = np.unravel_index(np.nanargmax(patched), patched.shape)
+        found["patch"] = {
+            "von_mises": float(patched[step, segment, place]),
+            "time": float(shell.time[step]),
+            "segment": names[segment],
+            "x": places[place],
+        }
+    for k, name in enumerate(names):
+        for x in places:
+            if shell.holds(k, x):
+                forces = wall_forces(shell, time, k, x)
+                walls = {wall: carried._asdict() for wall, carried in forces.items()}
+                found["walls"].append({"segment": name, "x": x, "forces": walls})
+    return found
+
+
+def _summed_history(history: xr.Dataset) -> dict[str, Any]:
+    """The largest values of each part of the run, as JSON."""
+    time = history["time"].values
+    parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
+    rows = []
+    for name in history["segment"].values:
+        for place in history["place"].values:
+            here = history.sel(segment=name, place=place)
+            if not here["von_mises"].isnull().any():
+                row: dict[str, Any] = {"segment": str(name), "x": float(place)}
+                for kind in ("von_mises", "von_mises_patch"):
+                    values = here[kind].values
+                    row[kind] = [float(f"{values[part].max():.4g}") for part in parts]
+                rows.append(row)
+    middles = [float(time[part].mean()) for part in parts]
+    return {"time": middles, "places": rows}
+
+
+def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
+    """Of the bands at every output time, and of all triangles at some."""
+    bands = history["von_mises"].values
+    stride = max(1, shell.time.size // INSTANTS)
+    segments = np.unique(shell.segment)
+    found = [
+        _search(shell, np.flatnonzero(shell.segment == number), 0, stride) for number in segments
+    ]
+    if np.isfinite(bands).any():
+        step, number, place = np.unravel_index(np.nanargmax(bands), bands.shape)
+        band = shell.near(int(number), float(history["place"].values[place]), BAND)
+        found.append(_search(shell, band, int(step), shell.time.size))
+    return max(found)
+
+
+def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> Largest:
+    """The largest of some triangles at every so many output times from one on."""
+    worst = Largest(-1.0, 0, 0)
+    for part, stress in shell.over_time(triangles, slice(first, None, stride)):
+        values = stress.largest()
+        step, triangle = np.unravel_index(values.argmax(), values.shape)
+        time = first + stride * (part.start + int(step))
+        here = Largest(float(values[step, triangle]), time, int(triangles[triangle]))
+        worst = max(worst, here)
+    return worst
+
+
+def _patches(shell: ShellStress, band: Indices) -> Array:
+    """(num_patches, num_triangles) area weights of the halves of the walls in a band."""
+    y, z = shell.centroids[band, 1:].T
+    # A flange is halved at its middle, a web or a diaphragm at half its height.
+    upper = np.where(np.isin(shell.wall[band], _FLANGES), y, z) > 0.0
+    patch = 2 * shell.wall[band] + upper
+    weights = np.equal.outer(np.unique(patch), patch) * shell.areas[band]
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))

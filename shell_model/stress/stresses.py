@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Stresses of a reduced shell in motion: at an instant, over time, and as forces of the walls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from geometry.mesh import WALLS, SegmentMesh
+
+Array = npt.NDArray[np.float64]
+Modes = npt.NDArray[np.float32]
+Indices = npt.NDArray[np.int64]
+
+Face = Literal["outer", "middle", "inner"]
+
+# Membrane stress, and the bending stress at the outer face, along x, along s, and their shear.
+COMPONENTS = (
+    "membrane_x",
+    "membrane_s",
+    "membrane_xs",
+    "bending_x",
+    "bending_s",
+    "bending_xs",
+)
+
+# What a face adds of the bending stress.
+FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
+
+# Lengths in m that are the same.
+_SAME_PLACE = 1.0e-6
+
+# Numbers that are in memory at once when a history is computed.
+_AT_ONCE = 20_000_000
+
+
+class Stress(NamedTuple):
+    """Stresses at the centroids of triangles, in Pa.
+
+    Args:
+        membrane: (..., 3) σ_x, σ_s, τ_xs of the mid-surface.
+        bending: (..., 3) what the outer face has beyond that, and the inner one lacks.
+    """
+
+    membrane: npt.NDArray[np.float32]
+    bending: npt.NDArray[np.float32]
+
+    def at(self, face: Face) -> npt.NDArray[np.float32]:
+        """(..., 3) σ_x, σ_s, τ_xs of a face in Pa."""
+        return np.asarray(self.membrane + FACES[face] * self.bending)
+
+    def von_mises(self, face: Face) -> npt.NDArray[np.float32]:
+        """(...) of the plane stress of a face, in Pa (Huber 1904, von Mises 1913)."""
+        x, s, xs = np.moveaxis(self.at(face), -1, 0)
+        return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
+
+    def largest(self) -> npt.NDArray[np.float32]:
+        """(...) the larger von Mises stress of the two faces in Pa; the middle is never above."""
+        return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
+
+
+@dataclass(frozen=True, slots=True)
+class ShellStress:
+    """The stresses of a shell in motion.
+
+    Args:
+        centroids: (num_triangles, 3) in m.
+        areas: (num_triangles,) in m².
+        thickness: (num_triangles,) in m.
+        spans: (num_triangles, 2) the smallest and the largest x in m.
+        segment: (num_triangles,) of each triangle, rising.
+        wall: (num_triangles,) position in ``WALLS``; beyond it, a diaphragm.
+        modes: for each segment (num_own, num_triangles_of_it, 6) ``COMPONENTS`` in Pa for a unit
+            of each of its own coordinates.
+        states: for each segment (num_times, num_own) these coordinates.
+        time: (num_times,) in s.
+    """
+
+    centroids: Array
+    areas: Array
+    thickness: Array
+    spans: Array
+    segment: npt.NDArray[np.int32]
+    wall: npt.NDArray[np.int32]
+    modes: Sequence[Modes]
+    states: Sequence[Modes]
+    time: Array
+
+    @classmethod
+    def of(cls, fields: xr.Dataset) -> ShellStress:
+        """From the fields that a run has written, see ``shell_model.stress.fields``."""
+        segment, state = fields["segment"].values, fields["state"].values
+        numbers = range(1, int(segment.max()) + 2)
+        own = [fields[f"coordinates_{k}"].values for k in numbers]
+        return cls(
+            **_geometry(fields["points"].values, fields["triangles"].values),
+            thickness=fields["thickness"].values,
+            segment=segment,
+            wall=fields["wall"].values,
+            modes=[fields[f"stress_{k}"].values for k in numbers],
+            states=[(state @ combination.T).astype(np.float32) for combination in own],
+            time=np.asarray(fields["time"].values, dtype=float),
+        )
+
+    @classmethod
+    def still(cls, mesh: SegmentMesh, thickness: Array, modes: Modes) -> ShellStress:
+        """Of one segment in one state.
+
+        Args:
+            mesh: of the segment.
+            thickness: (num_triangles,) in m.
+            modes: (1, num_triangles, 6) ``COMPONENTS`` of the state in Pa.
+        """
+        return cls(
+            **_geometry(mesh.points, mesh.triangles),
+            thickness=thickness,
+            segment=np.zeros(len(mesh.triangles), dtype=np.int32),
+            wall=mesh.walls,
+            modes=[modes],
+            states=[np.ones((1, 1), dtype=np.float32)],
+            time=np.zeros(1),
+        )
+
+    def at(self, t: float) -> Stress:
+        """Of all triangles, at the output time next to ``t`` (s)."""
+        step = int(np.abs(self.time - t).argmin())
+        values = [
+            np.tensordot(state[step], modes, axes=1)
+            for state, modes in zip(self.states, self.modes, strict=True)
+        ]
+        return _stress(np.concatenate(values))
+
+    def over_time(
+        self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
+    ) -> Iterator[tuple[slice, Stress]]:
+        """Stresses (num_of_these_times, num_triangles, 3) of some triangles, piece by piece.
+
+        Args:
+            triangles: numbers, all of one segment.
+            steps: which times; the slices that are given count from the first of them.
+            means: (num_means, num_triangles) weights of the triangles in means, which take the
+                triangles' place.
+        """
+        (number,) = np.unique(self.segment[triangles])
+        first = int(np.searchsorted(self.segment, number))
+        states = self.states[number][steps]
+        modes = self.modes[number][:, triangles - first]
+        if means is not None:
+            modes = np.einsum("pt,mtc->mpc", means.astype(np.float32), modes)
+        flat = modes.reshape(len(modes), -1)
+        piece = max(1, _AT_ONCE // max(1, flat.shape[1]))
+        for begin in range(0, len(states), piece):
+            part = slice(begin, min(begin + piece, len(states)))
+            values = states[part] @ flat
+            yield part, _stress(values.reshape(len(values), *modes.shape[1:]))
+
+    def holds(self, segment: int, x: float) -> bool:
+        """Whether a segment comes to x (m)."""
+        spans = self.spans[self.segment == segment]
+        return bool(spans[:, 0].min() - _SAME_PLACE <= x <= spans[:, 1].max() + _SAME_PLACE)
+
+    def near(self, segment: int, x: float, reach: float) -> Indices:
+        """Numbers of a segment's triangles whose centroids are no farther from x than this (m)."""
+        close = np.abs(self.centroids[:, 0] - x) <= reach
+        return np.flatnonzero(close & (self.segment == segment))
+
+    def row(self, segment: int, x: float) -> Indices:
+        """Numbers of the triangles of the row of elements, all around a segment, that holds x (m).
+
+        At a mesh line, of the row towards the tip.
+        """
+        mine = (self.segment == segment) & (self.wall < len(WALLS))
+        lines = np.unique(self.spans[mine].round(6))
+        after = int(np.clip(np.searchsorted(lines, x, side="right"), 1, lines.size - 1))
+        along = self.centroids[:, 0]
+        return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
+
+
+def _geometry(points: Array, triangles: Indices) -> dict[str, Array]:
+    corners = points[triangles]
+    along = corners[..., 0]
+    return {
+        "centroids": corners.mean(axis=1),
+        "areas": triangle_areas(points, triangles),
+        "spans": np.stack([along.min(axis=1), along.max(axis=1)], axis=1),
+    }
+
+
+def triangle_areas(points: Array, triangles: Indices) -> Array:
+    """(num_triangles,) in m²."""
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
+
+
+def wall_name(number: int) -> str:
+    """What people call a wall or diaphragm."""
+    return WALLS[number] if number < len(WALLS) else f"diaphragm {number - len(WALLS) + 1}"
+
+
+class WallForces(NamedTuple):
+    """What one wall carries through a cross-section, at the side towards the tip.
+
+    Args:
+        axial: force along x in N, positive in tension.
+        shear: force in the wall's plane in N, along y in a flange and along z in a web, of the
+            part beyond the section on the part before it.
+        moment: of its axial stresses about the section's y-axis in N m, positive where they pull
+            at the top.
+    """
+
+    axial: float
+    shear: float
+    moment: float
+
+
+def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
+    """The forces of each wall, means over the row of elements that holds x.
+
+    Args:
+        shell: in motion.
+        t: in s.
+        segment: which.
+        x: in m.
+    """
+    stress, row = shell.at(t), shell.row(segment, x)
+    length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
+    forces = {}
+    for number, name in enumerate(WALLS):
+        part = row[shell.wall[row] == number]
+        width = shell.areas[part] / length
+        membrane, bending = stress.membrane[part], stress.bending[part]
+        strength = shell.thickness[part] * width
+        z, sigma = shell.centroids[part, 2], membrane[:, 0]
+        outward = {"top": 1.0, "bottom": -1.0}.get(name, 0.0)
+        own = outward * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
+        moment = (strength * z) @ sigma + _within(strength, z, sigma, width.sum())
+        # s runs along -z on the right and along -y on the bottom.
+        sense = 1.0 if name in ("top", "left") else -1.0
+        forces[name] = WallForces(
+            axial=float(strength @ sigma),
+            shear=float(sense * strength @ membrane[:, 2]),
+            moment=float(moment + own),
+        )
+    return forces
+
+
+def _within(strength: Array, z: Array, sigma: npt.NDArray[np.float32], height: float) -> float:
+    """What a stress that is linear up a web adds to the moment of its centroids' values, in N m.
+
+    Args:
+        strength: (num_triangles,) thickness times width in m².
+        z: (num_triangles,) of the centroids in m.
+        sigma: (num_triangles,) in Pa.
+        height: of the web in m.
+    """
+    at_centroids = strength @ z**2
+    if np.ptp(z) < 1.0e-6 * height:
+        return 0.0
+    slope = (strength * z) @ sigma / at_centroids
+    return float(slope * (strength.sum() * height**2 / 12.0 - at_centroids))
+
+
+def _stress(values: npt.NDArray[np.float32]) -> Stress:
+    return Stress(values[..., :3], values[..., 3:])

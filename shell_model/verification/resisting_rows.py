@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The forces of contact and friction of one implicit step, to round-off.
+
+Rows that resist read z = free − C p, with their forces p and the compliance C that the step gives
+them. A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997); a
+friction row obeys |p| ≤ μN, with p = μN sign(z − place) where it moves from its place: the sign as
+a set. Both are monotone, so the forces are the minimum of a convex function: sweeps row by row go
+down (Gauss-Seidel), and Newton's method ends it where the active rows are the right ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from dynamics.contact import ContactLaw, Terms, contact_terms
+from dynamics.failure import StepTooLong
+from dynamics.friction import DryFriction
+from dynamics.kernels.contact_kicks import contact_energy
+
+Array = npt.NDArray[np.float64]
+
+_ROUNDS = 1000
+_MOST_NEWTON = 100
+# Parts of what a row reads, with the numbers that add up to it, that are round-off.
+_ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
+
+
+class ResistingRows:
+    """Contact and friction rows from step to step, from rest.
+
+    Args:
+        laws: of the contact rows, without damping.
+        frictions: of the rows that follow, with prescribed normal forces.
+        compliance: (num_rows, num_rows) C in m/N, of what the rows read at the time of the forces.
+        onward: what a change of that reading makes over the whole step.
+
+    Attributes:
+        readings: (num_rows,) at the end of the step, in m.
+        friction_loss: so far, in J.
+    """
+
+    def __init__(
+        self,
+        laws: Sequence[ContactLaw],
+        frictions: Sequence[DryFriction],
+        compliance: Array,
+        onward: float,
+    ) -> None:
+        self._terms, self._contacts = contact_terms(laws), len(laws)
+        self._bound = np.array([one.coefficient * one.normal_force for one in frictions])
+        self._compliance, self._onward = compliance, onward
+        self._place, self._forces = np.zeros(len(frictions)), np.zeros(len(compliance))
+        self.readings = np.zeros(len(compliance))
+        self.friction_loss = 0.0
+
+    def forces(self, free: Array) -> Array:
+        """(num_rows,) forces of the next step in N, positive against a positive reading.
+
+        Args:
+            free: (num_rows,) what the rows would read without, in m.
+
+        Raises:
+            StepTooLong: they are not found.
+        """
+        forces, friction = self._forces, slice(self._contacts, None)
+        problem = self._compliance, free, self._terms, self._bound, self._place
+        if not (np.isfinite(free).all() and resist(*problem, forces)):
+            raise StepTooLong("the forces of contact and friction are not found; halve the step")
+        way = self._onward * (free - self._compliance @ forces - self.readings)
+        self.readings += way
+        self.friction_loss += float(forces[friction] @ way[friction])
+        slides = np.abs(forces[friction]) >= self._bound
+        self._place[slides] = self.readings[friction][slides]
+        return forces
+
+    @property
+    def contact_energy(self) -> float:
+        """In J."""
+        return float(contact_energy(self.readings[: self._contacts], self._terms))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def resist(
+    compliance: Array, free: Array, terms: Terms, bound: Array, place: Array, force: Array
+) -> bool:
+    """Improve ``force`` (num_rows,) until it solves the problem; False if it does not.
+
+    Args:
+        compliance: (num_rows, num_rows) C in m/N, the contact rows first.
+        free: (num_rows,) what the rows read without forces, in m.
+        terms: of the contact rows' laws, one on each side of a row at most.
+        bound: (num_frictions,) μN in N.
+        place: (num_frictions,) readings in m at which the friction rows stay if they are held.
+        force: (num_rows,) a guess in N, positive against a positive reading.
+    """
+    n = free.size
+    left, slope = np.zeros(n), np.zeros(n)
+    for _ in range(_ROUNDS):
+        settled = True
+        for j in range(n):
+            answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
+            left[j] = answer - force[j]
+            settled = settled and _excess(compliance, free, force, left[j], j) <= 1.0
+            # The sweep goes on with what it has found.
+            force[j] = answer
+        if settled:
+            return True
+        before = _defect(compliance, free, terms, bound, place, force, left, slope)
+        matrix = np.eye(n)
+        for j in range(n):
+            for k in range(n):
+                if k != j:
+                    matrix[j, k] = slope[j] * compliance[j, k]
+        trial = force + np.linalg.lstsq(matrix, left)[0]
+        if _defect(compliance, free, terms, bound, place, trial, left, slope) < before:
+            force[:] = trial
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _defect(
+    compliance: Array,
+    free: Array,
+    terms: Terms,
+    bound: Array,
+    place: Array,
+    force: Array,
+    left: Array,
+    slope: Array,
+) -> float:
+    """Largest way in m by which a row misses its answer to the others; the answers' slopes."""
+    worst = 0.0
+    for j in range(free.size):
+        answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
+        left[j] = answer - force[j]
+        worst = max(worst, abs(left[j]) * compliance[j, j])
+    return worst
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
+    """A change of row j's force, as a multiple of one that is round-off."""
+    reach = abs(free[j])
+    for k in range(free.size):
+        reach += abs(compliance[j, k] * force[k])
+    return abs(change) * compliance[j, j] / (_ROUND_OFF * reach) if reach > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _answer(
+    compliance: Array,
+    free: Array,
+    terms: Terms,
+    bound: Array,
+    place: Array,
+    force: Array,
+    j: int,
+) -> tuple[float, float]:
+    """The force of row j under those of the others, and its slope over what it would read."""
+    alone = free[j]
+    for i in range(free.size):
+        if i != j:
+            alone -= compliance[j, i] * force[i]
+    own = compliance[j, j]
+    contacts = free.size - bound.size
+    if j >= contacts:
+        held = (alone - place[j - contacts]) / own
+        most = bound[j - contacts]
+        if abs(held) < most:
+            return held, 1.0 / own
+        return np.sign(held) * most, 0.0
+    touching = False
+    for t in range(terms.size):
+        if terms[t]["row"] == j and terms[t]["side"] * alone > terms[t]["onset"]:
+            k, n = terms[t]["stiffness"], terms[t]["exponent"]
+            depth = abs(alone) - terms[t]["onset"]
+            touching = True
+    if not touching:
+        return 0.0, 0.0
+    # e + own k eⁿ = depth: convex, so that Newton's method comes down to the root from above.
+    e = depth if n > 1.0 else depth / (1.0 + own * k)
+    for _ in range(_MOST_NEWTON if n > 1.0 else 0):
+        before = e
+        e -= (e + own * k * e**n - depth) / (1.0 + own * k * n * e ** (n - 1.0))
+        if not e < before:
+            break
+    stiffness = k * n * e ** (n - 1.0)
+    return np.sign(alone) * k * e**n, stiffness / (1.0 + own * stiffness)

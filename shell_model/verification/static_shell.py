@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Any triangle mesh as a shell under a load that does not move, on one process.
+
+Degrees of freedom are components in space, so that supports, loads and readings are named by
+places, whatever the facets' frames are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from dynamics.failure import NumericsError
+from geometry.boom import Material
+from shell_model import compat
+from shell_model.contact.attachments import Attached
+from shell_model.forms import DRILLING, SHEAR_CORRECTION, shell_forms
+from shell_model.segment_shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+Indices = npt.NDArray[np.int64]
+
+# Part of the load that may be left over.
+_UNBALANCED = 1.0e-3
+
+# Degree of freedom → the value in m or rad at which it is held.
+Held = Mapping[int, float]
+
+
+class StaticShell:
+    """A shell that nothing holds yet.
+
+    Args:
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3) point numbers.
+        thickness: in m, one for all triangles or (num_triangles,).
+        material: isotropic.
+        drilling, shear_correction: see :func:`forms.shell_forms`.
+
+    Attributes:
+        nodes: (num_nodes, 3) places of the displacement nodes in m: points and middles of edges.
+        node_dofs: (num_nodes, 3) rows of their displacements.
+        rotation_nodes: (num_edges, 3) places of the rotation nodes in m: middles of edges.
+        rotation_dofs: (num_edges, 3) rows of their rotations.
+        stiffness: (num_dofs, num_dofs).
+    """
+
+    def __init__(
+        self,
+        points: Array,
+        triangles: Indices,
+        thickness: float | Array,
+        material: Material,
+        drilling: float = DRILLING,
+        shear_correction: float = SHEAR_CORRECTION,
+    ) -> None:
+        domain = compat.create_triangle_mesh(MPI.COMM_SELF, points, triangles)
+        space = compat.shell_space(domain)
+        walls = compat.cellwise_function(
+            domain, np.broadcast_to(np.asarray(thickness, dtype=float), len(triangles))
+        )
+        forms = shell_forms(space, walls, material, drilling, shear_correction=shear_correction)
+        self._plates = Plates(space, walls, forms, [])
+        self.stiffness = compat.assemble_matrix(forms.stiffness, [], diagonal=1.0)
+        self.nodes, self.node_dofs = owned_nodes(space, 0)
+        self.rotation_nodes, self.rotation_dofs = owned_nodes(space, 1)
+
+    @property
+    def num_dofs(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.stiffness.getSize()[0])
+
+    def node_at(self, place: Array) -> int:
+        """Number of the displacement node at a place (3,) in m."""
+        distance = np.linalg.norm(self.nodes - place, axis=1)
+        node = int(distance.argmin())
+        assert distance[node] < ON_LINE, f"no node at {place}"
+        return node
+
+    def mirror(self, axis: int) -> dict[int, float]:
+        """What holds a half on the plane through the origin across an axis, as the other half."""
+        others = [i for i in range(3) if i != axis]
+        on_plane, rotations = (
+            np.abs(places[:, axis]) < ON_LINE for places in (self.nodes, self.rotation_nodes)
+        )
+        return hold(self.node_dofs[on_plane, axis]) | hold(self.rotation_dofs[rotations][:, others])
+
+    def surface_load(
+        self, force: Array, couple: Array | None = None, on: Mask | None = None
+    ) -> Array:
+        """(num_dofs,) of a force (3,) in N/m² and a couple (3,) in N m/m².
+
+        Args:
+            force, couple: uniform.
+            on: (num_triangles,) which facets feel them; all unless given.
+        """
+        v, eta = ufl.split(ufl.TestFunction(self._plates.space))
+        domain = self._plates.space.mesh
+        force_density, couple_density = (
+            fem.Constant(domain, np.asarray(density, dtype=PETSc.ScalarType))
+            for density in (force, np.zeros(3) if couple is None else couple)
+        )
+        power = ufl.dot(force_density, v) + ufl.dot(couple_density, eta)
+        if on is not None:
+            power *= compat.cellwise_function(domain, on.astype(float))
+        form: Any = fem.form(power * ufl.dx(degree=2, domain=domain))
+        return compat.assemble_vector(form)
+
+    def point_load(self, place: Array, force: Array) -> Array:
+        """(num_dofs,) of a force (3,) in N on the node at a place (3,) in m."""
+        load = np.zeros(self.num_dofs)
+        load[self.node_dofs[self.node_at(place)]] = force
+        return load
+
+    def line_load(self, on_line: Mask, force: Array) -> Array:
+        """(num_dofs,) of a force (3,) in N that is spread evenly over a straight line of edges.
+
+        Args:
+            on_line: (num_nodes,) which nodes are on it: points and middles by turns.
+            force: all of it.
+        """
+        nodes = np.flatnonzero(on_line)
+        places = self.nodes[nodes]
+        along = (places - places[0]) @ np.linalg.svd(places - places.mean(axis=0))[2][0]
+        order = along.argsort()
+        lengths = np.diff(along[order][::2])
+        weights = np.zeros(nodes.size)
+        # Simpson's rule, exact for what is quadratic along an edge.
+        weights[:-1:2] += lengths / 6.0
+        weights[1::2] += 4.0 * lengths / 6.0
+        weights[2::2] += lengths / 6.0
+        load = np.zeros(self.num_dofs)
+        load[self.node_dofs[nodes[order]]] = np.outer(weights / lengths.sum(), force)
+        return load
+
+    def solve(self, held: Held, load: Array) -> Array:
+        """(num_dofs,) displacements in m and rotations in rad, by MUMPS.
+
+        Args:
+            held: what is held, enough to leave no rigid motion.
+            load: (num_dofs,) in N and N m.
+
+        Raises:
+            NumericsError: rigid motions are left, so that forces do not balance.
+        """
+        rows = np.fromiter(held, dtype=PETSc.IntType, count=len(held))
+        matrix = self.stiffness.copy()
+        right, solution = matrix.createVecs()
+        right.array[:] = load
+        solution.array[rows] = np.fromiter(held.values(), dtype=float, count=len(held))
+        matrix.zeroRowsColumns(rows, 1.0, solution, right)
+        matrix.setOption(PETSc.Mat.Option.SPD, True)
+        solver = PETSc.KSP().create(MPI.COMM_SELF)
+        solver.setOperators(matrix)
+        solver.setType(PETSc.KSP.Type.PREONLY)
+        factor = solver.getPC()
+        factor.setType(PETSc.PC.Type.CHOLESKY)
+        factor.setFactorSolverType("mumps")
+        solver.solve(right, solution)
+        found = solution.array.copy()
+        size = right.norm()
+        matrix.multAdd(-solution, right, right)
+        unbalanced = right.norm()
+        for thing in (solver, matrix, right, solution):
+            thing.destroy()
+        if not unbalanced <= _UNBALANCED * size:
+            raise NumericsError("the shell does not carry its load; hold its rigid motions")
+        return np.asarray(found)
+
+    def forces(self, solution: Array) -> Array:
+        """(num_dofs,) forces in N and moments in N m that keep a solution, K times it."""
+        right, left = self.stiffness.createVecs()
+        right.array[:] = solution
+        self.stiffness.mult(right, left)
+        found = left.array.copy()
+        right.destroy()
+        left.destroy()
+        return np.asarray(found)
+
+    def held(self, dofs: Held) -> Shell:
+        """The shell with some degrees of freedom held at zero, ready to vibrate."""
+        rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
+        zero = fem.Function(self._plates.space)
+        holds = [fem.dirichletbc(zero, np.sort(rows))]
+        free = np.ones(self.num_dofs, dtype=bool)
+        free[rows] = False
+        nothing = Attached.of([], [], free.size)
+        return Shell(
+            comm=MPI.COMM_SELF,
+            matrices=Matrices(MPI.COMM_SELF, self._plates, holds, nothing, nothing),
+            free=free,
+            springs=nothing,
+            nodes=self.nodes,
+            node_dofs=self.node_dofs,
+            rotation_nodes=self.rotation_nodes,
+            rotation_dofs=self.rotation_dofs,
+            space=self._plates.space,
+        )
+
+
+def hold(dofs: Indices, values: float | Array = 0.0) -> dict[int, float]:
+    """Degrees of freedom, any shape, held at a value or at values of the same shape."""
+    values = np.broadcast_to(np.asarray(values, dtype=float), dofs.shape)
+    return dict(zip(dofs.ravel().tolist(), values.ravel().tolist(), strict=True))

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The motion of the unreduced shells: what the reduction is held against.
+
+Every segment goes by the generalised-α method, its matrix factorised once. Contact and friction
+are condensed: a step is one back-substitution for each segment as if nothing resisted, then a small
+problem in the forces of the rows, whose compliance does not change from step to step, then their
+displacements, which are known combinations of columns. The forces are those at the time of the
+method's own balance, friction opposes the way over the whole step, and what it holds stays where it
+is to round-off.
+
+Energy that is not accounted for is what the method takes, and what a step misses of a contact that
+opens or closes within it. Any number of ranks may share the shells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from mpi4py import MPI
+
+from dynamics.contact import ContactLaw
+from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
+from geometry.boom import Boom, BoomError
+from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
+from shell_model.contact.rows import Contact, Friction, contacts_and_frictions
+from shell_model.cross_section import Reading
+from shell_model.segment_shell import SegmentShell
+from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
+from shell_model.verification.resisting_rows import ResistingRows
+
+Array = npt.NDArray[np.float64]
+
+RADIUS = 0.8
+
+# How often a motion looks whether its energies can be trusted.
+_CHECKS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class FullShell:
+    """All degrees of freedom of a boom.
+
+    Args:
+        comm: the ranks that share it.
+        shells: of the segments.
+        loads: (num_owned,) of each, in N, applied at t = 0 and kept.
+        contacts, frictions: rows that resist.
+        observers: name → what a motion records.
+    """
+
+    comm: MPI.Comm
+    shells: Sequence[SegmentShell]
+    loads: Sequence[Array]
+    contacts: Sequence[Contact]
+    frictions: Sequence[Friction]
+    observers: Mapping[str, Reading]
+
+    @property
+    def num_dofs(self) -> int:
+        """Of all segments."""
+        return sum(shell.num_dofs for shell in self.shells)
+
+
+@dataclass(frozen=True, slots=True)
+class DirectMotion:
+    """A motion of the unreduced shells.
+
+    Args:
+        time: (num_times,) in s.
+        observed: name → (num_times,) in m.
+        contact_forces: (num_times, num_contacts) in N, means over the output interval that ends at
+            the time, positive where the inner segment presses up.
+        friction_forces: (num_times, num_frictions) in N, likewise, positive where they push the
+            inner segment along its row.
+        slides: (num_times, num_frictions) what the friction rows read, in m.
+        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
+        step: in s.
+    """
+
+    time: Array
+    observed: Mapping[str, Array]
+    contact_forces: Array
+    friction_forces: Array
+    slides: Array
+    energies: Array
+    step: float
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest unaccounted energy as a part of the energy put in."""
+        return float(np.abs(energy_residual(self.energies)).max())
+
+
+def assemble_boom(
+    boom: Boom, laws: Sequence[ContactLaw], options: ShellOptions, comm: MPI.Comm
+) -> FullShell:
+    """The shells of a flat boom with what acts on them, not reduced. Collective.
+
+    Args:
+        boom: with constant loads and prescribed normal forces.
+        laws: one for each joint, without damping.
+        options: mesh and contact points.
+        comm: the ranks that share the shells.
+
+    Raises:
+        BoomError: it has what the direct integration does not take.
+    """
+    if boom.spatial or boom.loads or any(joint.tied for joint in boom.joints):
+        raise BoomError(
+            "joint",
+            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+        )
+    shells = assemble_segments(boom, options, comm)
+    contacts, frictions = contacts_and_frictions(
+        boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
+    )
+    if any(contact.law.damping > 0.0 for contact in contacts):
+        raise BoomError("joint", "the unreduced shell takes contacts without damping")
+    if any(friction.law.pressed_by for friction in frictions):
+        raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
+    return FullShell(
+        comm,
+        shells,
+        [own_load(boom, number, shell) for number, shell in enumerate(shells)],
+        contacts,
+        frictions,
+        {
+            name: {number: shells[number].outline(x).mean_deflection()}
+            for name, (number, x) in boom.observed().items()
+        },
+    )
+
+
+def integrate_directly(
+    full: FullShell,
+    duration: float,
+    step: float,
+    output_step: float = 1.0e-3,
+    radius: float = RADIUS,
+    energy_bound: float = ENERGY_BOUND,
+    progress: Callable[[float], None] | None = None,
+) -> DirectMotion:
+    """Move the unreduced shells from rest. Collective.
+
+    Args:
+        full: what moves.
+        duration: in s; a whole number of output steps is made, at least one.
+        step: in s, made smaller to fit the output step.
+        output_step: in s.
+        radius: ρ∞, see :class:`GeneralisedAlpha`.
+        energy_bound: largest energy residual that passes.
+        progress: called with the part done, 0 to 1.
+
+    Raises:
+        NumericsError: forces are not found, numbers are not finite, or the energy residual passes
+            its bound.
+    """
+    outputs = max(1, round(duration / output_step))
+    substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
+    alpha = GeneralisedAlpha(output_step / substeps, radius)
+    resisting = [c.reading for c in full.contacts] + [f.reading for f in full.frictions]
+    steppers = [
+        SegmentStepper(shell, load, _rows(resisting, number, shell), alpha)
+        for number, (shell, load) in enumerate(zip(full.shells, full.loads, strict=True))
+    ]
+    try:
+        return _march(full, alpha, steppers, outputs, substeps, energy_bound, progress)
+    finally:
+        for stepper in steppers:
+            stepper.destroy()
+
+
+def _march(
+    full: FullShell,
+    alpha: GeneralisedAlpha,
+    steppers: Sequence[SegmentStepper],
+    outputs: int,
+    substeps: int,
+    energy_bound: float,
+    progress: Callable[[float], None] | None,
+) -> DirectMotion:
+    """Make ``substeps`` steps for each of the outputs."""
+    rows = ResistingRows(
+        [contact.law for contact in full.contacts],
+        [friction.law for friction in full.frictions],
+        np.sum([stepper.compliance for stepper in steppers], axis=0),
+        1.0 / (1.0 - alpha.force_shift),
+    )
+    readings = list(full.observers.values())
+    observers = [_rows(readings, number, shell) for number, shell in enumerate(full.shells)]
+    contacts = len(full.contacts)
+    observed = np.zeros((outputs + 1, len(readings)))
+    means = np.zeros((outputs + 1, contacts + len(full.frictions)))
+    slides = np.zeros((outputs + 1, len(full.frictions)))
+    energies = np.zeros((outputs + 1, len(ENERGIES)))
+    energies[0, 2] = rows.contact_energy
+    for k in range(1, outputs + 1):
+        for _ in range(substeps):
+            for stepper in steppers:
+                stepper.free_response()
+            read = np.sum([stepper.read() for stepper in steppers], axis=0)
+            forces = rows.forces(full.comm.allreduce(read))
+            for stepper in steppers:
+                stepper.push(forces)
+            means[k] += forces / substeps
+        parts = zip(observers, steppers, strict=True)
+        seen = np.sum([row @ stepper.displacement() for row, stepper in parts], axis=0)
+        observed[k] = full.comm.allreduce(seen)
+        slides[k] = rows.readings[contacts:]
+        energies[k, [0, 1, 3]] = np.sum([stepper.energies() for stepper in steppers], axis=0)
+        energies[k, [2, 5]] = rows.contact_energy, rows.friction_loss
+        if k == outputs or k % max(1, outputs // _CHECKS) == 0:
+            check_energy(energies[: k + 1], alpha.step, energy_bound)
+        if progress is not None:
+            progress(k / outputs)
+    return DirectMotion(
+        time=substeps * alpha.step * np.arange(outputs + 1),
+        observed=dict(zip(full.observers, observed.T, strict=True)),
+        contact_forces=means[:, :contacts],
+        friction_forces=-means[:, contacts:],
+        slides=slides,
+        energies=energies,
+        step=alpha.step,
+    )
+
+
+def _rows(readings: Sequence[Reading], number: int, shell: SegmentShell) -> scipy.sparse.csr_matrix:
+    """(num_readings, num_owned) this rank's part of what readings read of a segment."""
+    parts = [shell.row(reading.get(number, {})) for reading in readings]
+    return scipy.sparse.csr_matrix(np.array(parts).reshape(-1, shell.free.size))

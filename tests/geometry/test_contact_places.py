@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Pads: on the axis in the plane, in the corners of the boxes in space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.boom import Boom, Stop
+from geometry.contact_places import Pad, Stretch, pads
+
+pytestmark = pytest.mark.quick
+
+
+def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
+    (joint,) = paper_boom.joints
+    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
+    boom = replace(paper_boom, joints=(joint,))
+    axis = (0.0, 0.0)
+    assert pads(boom) == [
+        Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0),
+        Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0),
+    ]
+
+
+def test_a_tied_joint_has_none(paper_boom: Boom) -> None:
+    (joint,) = paper_boom.joints
+    assert not pads(replace(paper_boom, joints=(replace(joint, tied=True),)))
+
+
+def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
+    """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each.
+
+    The inner faces of the outer box, the webs and flanges of the inner one, and between the
+    two boxes the clearance.
+    """
+    outer, inner = (segment.section for segment in spatial_boom.segments)
+    assert outer is not None
+    assert inner is not None
+    found = pads(spatial_boom)
+    assert [(pad.station, pad.x) for pad in found[::4]] == [
+        (0, 9.0),
+        (1, 10.0),
+        (2, 9.0),
+        (3, 10.0),
+    ]
+    assert [(pad.direction, pad.rubs) for pad in found[::4]] == 2 * [("z", "y")] + 2 * [("y", "z")]
+    b, h = 0.5 * inner.width, 0.5 * inner.height
+    top, side = 0.5 * (outer.height - outer.flange), 0.5 * (outer.width - outer.web)
+    flange = [(pad.side, pad.inner, pad.outer) for pad in found[:4]]
+    assert flange == [
+        (1, (-b, top - 7.0e-3), (-b, top)),
+        (1, (b, top - 7.0e-3), (b, top)),
+        (-1, (-b, 7.0e-3 - top), (-b, -top)),
+        (-1, (b, 7.0e-3 - top), (b, -top)),
+    ]
+    web = [(pad.side, pad.inner, pad.outer) for pad in found[8:12]]
+    assert web == [
+        (1, (side - 5.0e-3, -h), (side, -h)),
+        (1, (side - 5.0e-3, h), (side, h)),
+        (-1, (5.0e-3 - side, -h), (-side, -h)),
+        (-1, (5.0e-3 - side, h), (-side, h)),
+    ]
+    # The boxes of this boom leave the vertical clearance by themselves.
+    assert top - 7.0e-3 == pytest.approx(0.5 * (inner.height + inner.flange), rel=1e-12)
+
+
+def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
+    """Three segments and a stop, one joint tied or none."""
+    (joint,) = spatial_boom.joints
+    inner = spatial_boom.segments[1]
+    assert inner.section is not None
+    box = replace(inner.section, height=0.4, width=0.2)
+    last = replace(inner, name="last", start=17.0, end=26.0, section=box)
+    for tied in (False, True):
+        boom = Boom(
+            (*spatial_boom.segments, last),
+            (
+                replace(joint, tied=tied),
+                replace(joint, outer=1, inner=2, stations=(17.0, 18.0, 19.0)),
+            ),
+            stops=(Stop(2, 26.0, 1.0e-2, 1.0e8, 1.0e8, 1.0),),
+        )
+        found = pads(boom)
+        assert len(boom.stations) == (7 if tied else 11)
+        assert len(found) == 4 * (len(boom.stations) - 1)
+        for pad in found:
+            assert (pad.x, pad.direction) == boom.stations[pad.station]
+            assert boom.joints[pad.number] is pad.joint
+            assert pad.x in pad.joint.stations
+
+
+def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
+    """Reference: analytic. Each side presses with the whole law; all pads rub with the whole N."""
+    (joint,) = spatial_boom.joints
+    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
+    found = pads(replace(spatial_boom, joints=(joint,)))
+    assert len(found) == 16
+    for station, force in enumerate((4500.0, 5000.0, 4500.0, 5000.0)):
+        here = [pad for pad in found if pad.station == station]
+        for side in (1, -1):
+            assert sum(pad.weight for pad in here if pad.side == side) == 1.0
+        assert sum(pad.prescribed for pad in here) == force
+
+
+@pytest.mark.parametrize(
+    ("station", "start", "ends"),
+    [(4.0, 3.95, (10.0, 10.0)), (10.0, 9.9, (-20.0, 40.0)), (0.02, 0.0, (28.0, -8.0))],
+)
+def test_a_station_presses_corners_evenly_or_about_itself(
+    paper_boom: Boom, station: float, start: float, ends: tuple[float, float]
+) -> None:
+    """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre
+    of the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end.
+    """
+    stretch = Stretch.on(paper_boom.segments[0], station, 0.1)
+    assert (stretch.start, stretch.end) == pytest.approx((start, start + 0.1))
+    assert stretch.density(np.array([start, start + 0.1])) == pytest.approx(ends)
+    x, weights = np.polynomial.legendre.leggauss(2)
+    x = start + 0.05 + 0.05 * x
+    forces = 0.05 * weights * stretch.density(x)
+    assert [forces.sum(), forces @ x] == pytest.approx([1.0, station])

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How few steps keep the slow motion's peaks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.gap_system import GapSystem
+from dynamics.predictability.low_pass import slow_peaks
+from dynamics.splitting import integrate
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.pipeline.fewest_steps import PEAKS, steps_for_peaks
+from runs.pipeline.members import slow_below
+from runs.pipeline.models import beam_system
+
+pytestmark = pytest.mark.quick
+
+PAPER = CASES / "paper.toml"
+STEP = 1.0e-3
+
+
+@pytest.fixture(scope="module")
+def five_terms() -> tuple[GapSystem, float]:
+    """The five-term series, and the cut-off of its slow motion in Hz."""
+    case = case_file.load(str(PAPER))
+    boom = build_boom(case)
+    model = next(model for model in case.models if model.name == "kantorovich-5")
+    assert model.kind == "kantorovich"
+    cutoff = slow_below(boom, case.time)
+    assert cutoff is not None
+    return beam_system(case, boom, model), cutoff
+
+
+def peaks_of(system: GapSystem, cutoff: float, spread: float) -> dict[str, Any]:
+    """Slow peaks of one run as those of an ensemble."""
+    run = integrate(system, 4.0, STEP)
+    times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
+    return {
+        "time": times.tolist(),
+        "time_spread": np.full(times.size, spread).tolist(),
+        "height": heights.tolist(),
+        "height_spread": (spread * heights).tolist(),
+        "period": float(np.diff(times).mean()),
+    }
+
+
+def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
+    """Reference: non-regression. Slow peaks scatter by some percent from the second on."""
+    system, cutoff = five_terms
+    found = steps_for_peaks(system, peaks_of(system, cutoff, 0.1), cutoff, STEP)
+    assert found is not None
+    assert {trial["integrator"] for trial in found["trials"]} == {"splitting", "events"}
+    for integrator in ("splitting", "events"):
+        steps = [t["steps"] for t in found["trials"] if t["integrator"] == integrator]
+        # One run more or less of a chaotic motion counts some contacts more or less.
+        assert min(steps) < 0.9 * steps[0]
+    sizes = [trial["step"] for trial in found["trials"] if trial["integrator"] == "splitting"]
+    assert sizes == pytest.approx([2.0**i * sizes[0] for i in range(len(sizes))], rel=0.1)
+    holding = [trial["steps"] for trial in found["trials"] if trial["holds"]]
+    assert found["fewest"] == min(holding)
+    assert 2000 < found["fewest"] < 20_000
+
+
+def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, float]) -> None:
+    system, cutoff = five_terms
+    peaks = peaks_of(system, cutoff, 0.0)
+    peaks["height"] = [1.05 * height for height in peaks["height"]]
+    found = steps_for_peaks(system, peaks, cutoff, STEP)
+    assert found is not None
+    assert found["fewest"] is None
+
+
+def test_too_few_peaks_are_not_asked_for(five_terms: tuple[GapSystem, float]) -> None:
+    system, cutoff = five_terms
+    two = {"time": [0.5, 1.6]}
+    assert len(two["time"]) < PEAKS
+    assert steps_for_peaks(system, two, cutoff, STEP) is None
