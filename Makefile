@@ -63,7 +63,7 @@ torture: $(READY) ## full disks, kills, flipped bits, shared folders: what they 
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m tests.torture
 
 quick: $(READY) ## the quick tests alone
-	$(BIN)/python -m pytest -m quick
+	$(BIN)/python -m pytest -m 'not slow'
 
 lint: $(READY) ## ruff and mypy
 	$(BIN)/python -m ruff check .

@@ -19,8 +19,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom
 
-pytestmark = pytest.mark.quick
-
 LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
 STATIONS = 2
 

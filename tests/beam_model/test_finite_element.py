@@ -24,8 +24,6 @@ from tests.beam_model.exact import (
 Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
-pytestmark = pytest.mark.quick
-
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
 
 

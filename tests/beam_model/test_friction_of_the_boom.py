@@ -17,8 +17,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.splitting import integrate
 from geometry.boom import Boom
 
-pytestmark = pytest.mark.quick
-
 # Nearly three times the default step: what is shown here does not need that.
 STEP = 1.2e-5
 

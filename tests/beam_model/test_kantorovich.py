@@ -25,8 +25,6 @@ from tests.beam_model.exact import (
 Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
-pytestmark = pytest.mark.quick
-
 
 def frequencies(model: Component) -> Array:
     """ω of the elastic modes in rad/s."""

@@ -14,8 +14,6 @@ from beam_model.segment_model import SegmentModel, gap_system
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Segment
 
-pytestmark = pytest.mark.quick
-
 
 def chain(boom: Boom, count: int) -> Boom:
     """The paper's boom, and so many segments more like its inner one, each a metre in the last."""

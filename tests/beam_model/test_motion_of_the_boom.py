@@ -22,8 +22,6 @@ from geometry.boom import Boom, Segment, Support
 
 Models = Callable[..., list[SegmentModel]]
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> GapSystem:

@@ -21,8 +21,6 @@ from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequ
 
 Models = Callable[..., list[SegmentModel]]
 
-pytestmark = pytest.mark.quick
-
 
 def rest(system: GapSystem) -> dict[str, float]:
     """Observed deflections at rest under the load in m."""

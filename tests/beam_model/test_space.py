@@ -26,8 +26,6 @@ from tests.space import in_space
 Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
-pytestmark = pytest.mark.quick
-
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
 LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0, clearance=5.0e-3)
 

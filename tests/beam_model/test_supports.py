@@ -26,8 +26,6 @@ Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 Models = Callable[..., list[SegmentModel]]
 
-pytestmark = pytest.mark.quick
-
 # βL (Blevins 1979).
 CLAMPED_PINNED = (3.926602312047919, 7.068582745628732, 10.210176122813031)
 CLAMPED_CLAMPED = (4.730040744862704, 7.853204624095838, 10.995607838001671)

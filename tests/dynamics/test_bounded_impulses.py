@@ -17,8 +17,6 @@ from dynamics.kernels.bounded_impulses import (
     problem_for,
 )
 
-pytestmark = pytest.mark.quick
-
 Array = npt.NDArray[np.float64]
 
 

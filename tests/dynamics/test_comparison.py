@@ -19,8 +19,6 @@ from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.predictability.low_pass import SlowPeaks
 from tests.dynamics.two_stops import CHAOTIC
 
-pytestmark = pytest.mark.quick
-
 TIME = np.arange(10_001) * 1e-3
 CUTOFF = 1.7
 

@@ -11,8 +11,6 @@ import pytest
 
 from dynamics.contact import PowerContact
 
-pytestmark = pytest.mark.quick
-
 LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3, stiffness_below=4.0e12)
 
 

@@ -24,8 +24,6 @@ from dynamics.kernels.contact_series import (
 
 Array = npt.NDArray[np.float64]
 
-pytestmark = pytest.mark.quick
-
 
 def series_of(
     a: Array, v: Array, omega2: Array, load: Array, rows: Array, law: PowerContact, pressed: Array

@@ -13,8 +13,6 @@ from dynamics.event_driven import what_hinders
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 
-pytestmark = pytest.mark.quick
-
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
 DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)
 LAW = TableContact(DEPTHS, FORCES, clearance=7.0e-3)

@@ -23,8 +23,6 @@ from dynamics.predictability.ensemble import Vary, integrate_ensemble, perturbat
 from dynamics.splitting import integrate
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
-pytestmark = pytest.mark.quick
-
 THROWN = np.array([0.5, -1.0])
 
 

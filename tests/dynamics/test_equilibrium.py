@@ -15,8 +15,6 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 from geometry.boom import Boom
 
-pytestmark = pytest.mark.quick
-
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
     """2 kg on a spring, and a stop of 3e6 N/mⁿ after 4 mm above alone."""

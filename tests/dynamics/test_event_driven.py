@@ -27,8 +27,6 @@ from dynamics.trajectory import Trajectory
 OneMass = Callable[..., GapSystem]
 Array = npt.NDArray[np.float64]
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture(autouse=True)
 def _deadline() -> Iterator[None]:

@@ -20,8 +20,6 @@ from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.studies.histories import KINKED, OMEGAS, masses, response
 
-pytestmark = pytest.mark.quick
-
 OneMass = Callable[..., GapSystem]
 Array = npt.NDArray[np.float64]
 

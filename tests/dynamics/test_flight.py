@@ -8,8 +8,6 @@ import pytest
 
 from dynamics.kernels.flight import jump, pulls, safe_time, stay, tabulate
 
-pytestmark = pytest.mark.quick
-
 OMEGA = np.array([0.0, 3.0, 20.0])
 LOAD = np.array([0.5, -2.0, 30.0])
 ROWS = np.array([[1.0, 0.4, -0.3], [0.2, -1.0, 0.5]])

@@ -20,8 +20,6 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
-pytestmark = pytest.mark.quick
-
 OneMass = Callable[..., GapSystem]
 Array = npt.NDArray[np.float64]
 

@@ -21,8 +21,6 @@ from dynamics.predictability.horizon import (
 )
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
-pytestmark = pytest.mark.quick
-
 
 def test_spread_of_a_linear_system_is_in_proportion_to_the_change() -> None:
     """Reference: analytic. All outputs of a linear system from rest scale with the load."""

@@ -14,8 +14,6 @@ from dynamics.contact import PowerContact, restitution_damping
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 
-pytestmark = pytest.mark.quick
-
 OneMass = Callable[..., GapSystem]
 
 

@@ -15,8 +15,6 @@ from dynamics.splitting import integrate
 from dynamics.step import contact_step, initial_speeds
 from tests.dynamics.two_stops import CHAOTIC
 
-pytestmark = pytest.mark.quick
-
 START = {"position": np.array([0.01, 0.0]), "velocity": np.array([0.5, -1.0])}
 
 

@@ -10,8 +10,6 @@ import pytest
 
 from dynamics.predictability.low_pass import SlowPeaks, slow, slow_peaks
 
-pytestmark = pytest.mark.quick
-
 TIME = np.arange(10_001) * 1e-3
 CUTOFF = 1.7
 

@@ -13,8 +13,6 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.modal_flow import ModalFlow, tabulate
 from dynamics.splitting import integrate
 
-pytestmark = pytest.mark.quick
-
 # ω² in rad²/s², c in 1/s, load in N/√kg
 MODES = {
     "undamped": (40.0, 0.0, 3.0),

@@ -31,7 +31,6 @@ def crossings(time: Array, y: Array, level: float) -> Array:
     return np.asarray(time[before] + part * (time[before + 1] - time[before]))
 
 
-@pytest.mark.quick
 def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
     """Reference: external source, SDND101 of the Code_Aster validation manual.
 
@@ -50,7 +49,6 @@ def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
     assert impulse == pytest.approx(200.0 * 1.0e6 / 1.01e6, rel=1e-4)
 
 
-@pytest.mark.quick
 def test_falling_mass(one_mass: OneMass) -> None:
     """Reference: external source, SDND108 of the Code_Aster validation manual.
 
@@ -67,7 +65,6 @@ def test_falling_mass(one_mass: OneMass) -> None:
     assert float(run.data["contact_force"].max()) == 0.0
 
 
-@pytest.mark.quick
 def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     """Reference: analytic. Flights of 2Δ/v and presses of π √(m/k) on either side."""
     law = PowerContact(stiffness=4.0e4, exponent=1.0, clearance=0.1, stiffness_below=9.0e4)
@@ -88,7 +85,6 @@ def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     assert impulse == pytest.approx(3 * 4.0, rel=1e-6)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
 def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
     """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
@@ -101,7 +97,6 @@ def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: floa
     assert abs(run.first_contact - exact) < 10.0 * step**2 / 8.0 / np.sqrt(41.0) + 1e-13
 
 
-@pytest.mark.quick
 def test_first_contact_is_that_of_the_first_row() -> None:
     """Two rows close within one step; the second one in the list does so earlier."""
     stop = PowerContact(stiffness=1.0, exponent=1.0, clearance=0.0105)
@@ -118,7 +113,6 @@ def test_first_contact_is_that_of_the_first_row() -> None:
     assert run.first_contact == pytest.approx(0.0102, rel=1e-9)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("step", [2.0e-3, 3.0e-4])
 def test_first_contact_with_a_stop_without_gap(one_mass: OneMass, step: float) -> None:
     """Reference: analytic. A mass comes from below at 1 m/s to a one-sided stop at 0."""
@@ -131,7 +125,6 @@ def test_first_contact_with_a_stop_without_gap(one_mass: OneMass, step: float) -
     assert run.data.attrs["contact_changes"] == 2
 
 
-@pytest.mark.quick
 def test_letting_go_is_no_first_contact(one_mass: OneMass) -> None:
     """A mass that starts pressed is in contact from the start."""
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
@@ -141,7 +134,6 @@ def test_letting_go_is_no_first_contact(one_mass: OneMass) -> None:
     assert run.first_contact == 0.0
 
 
-@pytest.mark.quick
 def test_no_contact_is_not_a_number(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0)
     run = integrate(one_mass(1.0, stop, spring=4.0, force=1.0), 1.0)
@@ -180,7 +172,6 @@ def reference_state(system: GapSystem, duration: float) -> Array:
     return np.asarray(end.y[:n, -1])
 
 
-@pytest.mark.quick
 def test_order_and_error_through_one_contact() -> None:
     """Reference: other code, scipy's DOP853. Slope 2, and the error itself is small."""
     system, duration = two_modes(), 0.6
@@ -205,7 +196,6 @@ def end_velocity(system: GapSystem, run: Trajectory) -> Array:
     return np.asarray(flow.va * run.states[-2] + flow.vv * before + flow.vp)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
 def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
     """Reference: analytic, time reversibility; the load is the same both ways."""
@@ -223,7 +213,6 @@ def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
     assert speed < 1e-9 * np.abs(turned).max()
 
 
-@pytest.mark.quick
 def test_units_do_not_matter() -> None:
     """Reference: analytic. The same system in mm, t and s, before chaos sets in.
 
@@ -251,7 +240,6 @@ def test_units_do_not_matter() -> None:
         assert error < 1e-9 * np.abs(expected).max(), name
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e13, 2.0)])
 def test_bouncing_ball_keeps_its_energy(
     one_mass: OneMass, stiffness: float, exponent: float
@@ -270,7 +258,6 @@ def test_bouncing_ball_keeps_its_energy(
     assert tip.max() < 2e-7
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("speed", [0.1, 10.0, 300.0])
 def test_a_hard_blow_gives_back_its_speed(one_mass: OneMass, speed: float) -> None:
     """Reference: analytic. The step is resolved from the blow itself, k = 1e13 N/m²."""
@@ -288,7 +275,6 @@ def test_a_hard_blow_gives_back_its_speed(one_mass: OneMass, speed: float) -> No
     np.testing.assert_allclose(kinetic, 0.5 * speed**2, rtol=0.5 * PHASE**2)
 
 
-@pytest.mark.quick
 def test_damping_takes_what_the_ledger_says(one_mass: OneMass) -> None:
     """Reference: analytic, the free decay and the step response of a damped oscillator."""
     mass, spring, dashpot, force = 4.0, 100.0, 2.0, 30.0
@@ -309,7 +295,6 @@ def test_damping_takes_what_the_ledger_says(one_mass: OneMass) -> None:
     assert run.energy_residual < 1e-12
 
 
-@pytest.mark.quick
 def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
     """Reference: analytic. In the end all of the work not held at rest is dissipated."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.1)
@@ -325,7 +310,6 @@ def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
     assert run.energy_residual < 1e-4
 
 
-@pytest.mark.quick
 def test_step_fits_the_output_and_progress_is_told(one_mass: OneMass) -> None:
     told: list[float] = []
     system = one_mass(1.0, spring=1.0)
@@ -338,7 +322,6 @@ def test_step_fits_the_output_and_progress_is_told(one_mass: OneMass) -> None:
     assert integrate(system, 0.01, output_step=0.1).time.size == 2
 
 
-@pytest.mark.quick
 def test_complains_of_energy_from_a_coarse_step(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e8, exponent=1.0, clearance=1.0e-3)
     message = (
@@ -352,7 +335,6 @@ def test_complains_of_energy_from_a_coarse_step(one_mass: OneMass) -> None:
     assert float(found[1]) > 0.01
 
 
-@pytest.mark.quick
 def test_energy_bound_can_be_set(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e8, exponent=1.0, clearance=1.0e-3)
     system = one_mass(1.0, stop, force=-10.0)
@@ -366,7 +348,6 @@ def test_energy_bound_can_be_set(one_mass: OneMass) -> None:
         integrate(system, 0.1, energy_bound=0.99 * residual)
 
 
-@pytest.mark.quick
 def test_complains_of_a_motion_that_is_not_finite(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e13, exponent=3.0, clearance=1.0e-3)
     message = "the motion is not finite at a step of 0.01 s; halve the step"
@@ -374,7 +355,6 @@ def test_complains_of_a_motion_that_is_not_finite(one_mass: OneMass) -> None:
         integrate(one_mass(1.0, stop, force=-10.0), 200.0, output_step=0.1, step=0.01)
 
 
-@pytest.mark.quick
 def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
     """A boom may have segments without load: their gaps close at no speed at all."""
     run = integrate(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1, step=1.0e-4)
@@ -382,7 +362,6 @@ def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
     assert np.isnan(run.first_contact)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("load", [0.0, 3.0])
 def test_steps_made_at_once_miss_no_contact(load: float) -> None:
     """Reference: the same motion with strides that the gap's bound forbids nowhere.

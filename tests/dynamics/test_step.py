@@ -21,8 +21,6 @@ from dynamics.step import (
     sliding_frequencies,
 )
 
-pytestmark = pytest.mark.quick
-
 
 def test_closing_speeds_by_hand(one_mass: Callable[..., GapSystem]) -> None:
     """Reference: analytic. A step load swings a spring mass at F/√(k m); a free one falls 2Δ."""

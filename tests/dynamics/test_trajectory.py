@@ -18,8 +18,6 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
-pytestmark = pytest.mark.quick
-
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=1.0e-2)
 
 

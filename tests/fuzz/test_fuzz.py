@@ -12,6 +12,7 @@ import pytest
 from tests.fuzz.contract import Ending
 
 
+@pytest.mark.slow
 def test_a_sample_keeps_the_contract() -> None:
     """In a process of its own, which may fork."""
     answer = subprocess.run(
@@ -25,7 +26,6 @@ def test_a_sample_keeps_the_contract() -> None:
     assert answer.stdout.endswith("40 of 40 keep the contract\n")
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("status", "err", "breach"),
     [

@@ -23,8 +23,6 @@ from geometry.boom import (
 
 Fault = Callable[[Segment, Segment, Joint], tuple[tuple[Segment, ...], tuple[Joint, ...]]]
 
-pytestmark = pytest.mark.quick
-
 
 def test_numbers_of_a_segment(paper_boom: Boom) -> None:
     """Reference: analytic, by hand from the paper's data."""

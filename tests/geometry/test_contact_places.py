@@ -11,8 +11,6 @@ import pytest
 from geometry.boom import Boom, Stop
 from geometry.contact_places import Pad, Stretch, pads
 
-pytestmark = pytest.mark.quick
-
 
 def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
     (joint,) = paper_boom.joints

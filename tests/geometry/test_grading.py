@@ -16,8 +16,6 @@ from geometry.mesh import WALLS, SegmentMesh, mesh_segment
 from geometry.section import BoxSection
 from geometry.spots import spots
 
-pytestmark = pytest.mark.quick
-
 BOX = BoxSection(height=0.4, width=0.3, flange=0.006, web=0.005)
 BREAKS = {"start": 0.0, "middle": 2.0, "end": 5.0}
 CORNER = Spot((2.0, 0.15, 0.2), (2.1, 0.15, 0.2), 0.02, 0.5)

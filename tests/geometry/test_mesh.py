@@ -64,7 +64,6 @@ def line_length(mesh: SegmentMesh, edges: npt.NDArray[np.int64]) -> float:
     return float(np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum())
 
 
-@pytest.mark.quick
 def test_tube_is_closed_between_its_ends(mesh: SegmentMesh) -> None:
     """Every edge lies between two triangles but for the two end outlines; no node is loose."""
     open_edges = [edge for edge, count in edge_counts(mesh.triangles).items() if count != 2]
@@ -79,12 +78,10 @@ def test_tube_is_closed_between_its_ends(mesh: SegmentMesh) -> None:
     assert len(mesh.points) - len(edge_counts(mesh.triangles)) + len(mesh.triangles) == 0
 
 
-@pytest.mark.quick
 def test_no_two_points_coincide(mesh: SegmentMesh) -> None:
     assert len(np.unique(np.round(mesh.points, 9), axis=0)) == len(mesh.points)
 
 
-@pytest.mark.quick
 def test_area_is_the_perimeter_times_the_length(mesh: SegmentMesh) -> None:
     """Reference: analytic, of the whole and of each wall."""
     assert areas(mesh).sum() == pytest.approx(2.0 * (0.4945 + 0.3027) * 10.0, rel=1e-12)
@@ -93,7 +90,6 @@ def test_area_is_the_perimeter_times_the_length(mesh: SegmentMesh) -> None:
         assert areas(mesh)[mesh.walls == number].sum() == pytest.approx(10.0 * side, rel=1e-12)
 
 
-@pytest.mark.quick
 def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
     planes = {
         "bottom": (2, -0.5 * BOX.height),
@@ -107,7 +103,6 @@ def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
         assert np.abs(corners[..., axis] - value).max() < 1e-14
 
 
-@pytest.mark.quick
 def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMesh) -> None:
     """Reference: analytic. Its area is the enclosed one; three triangles meet on its outline
     within the segment, two at the segment's end; no two points coincide.
@@ -125,7 +120,6 @@ def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMe
     np.testing.assert_array_equal(closed_mesh.on_walls, closed_mesh.walls < 4)
 
 
-@pytest.mark.quick
 def test_a_diaphragm_leaves_the_walls_as_they_are(closed_mesh: SegmentMesh) -> None:
     """Reference: the mesh without it."""
     plain = mesh_segment(BOX, BREAKS, 0.1)
@@ -136,7 +130,6 @@ def test_a_diaphragm_leaves_the_walls_as_they_are(closed_mesh: SegmentMesh) -> N
     )
 
 
-@pytest.mark.quick
 def test_plates_have_their_thicknesses() -> None:
     """Reference: analytic, the volume of walls, of a collar on all of them, and of two plates."""
     box = BoxSection(height=0.5, width=0.3, flange=0.008, web=0.006)
@@ -160,7 +153,6 @@ def test_plates_have_their_thicknesses() -> None:
     )
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("kind", ["mesh", "closed_mesh"])
 @pytest.mark.parametrize("axis", [1, 2], ids=["y", "z"])
 def test_mesh_mirrors_itself(kind: str, axis: int, request: pytest.FixtureRequest) -> None:
@@ -174,7 +166,6 @@ def test_mesh_mirrors_itself(kind: str, axis: int, request: pytest.FixtureReques
     assert {tuple(t) for t in np.sort(image[mesh.triangles], axis=1).tolist()} == triangles
 
 
-@pytest.mark.quick
 def test_mesh_of_a_box_on_its_side_lies_on_its_side(closed_mesh: SegmentMesh) -> None:
     """With y and z exchanged the points are the same, and so are the triangles."""
     mesh, lying = closed_mesh, mesh_segment(BOX.turned(), BREAKS, 0.1, closed=CLOSED)
@@ -185,7 +176,6 @@ def test_mesh_of_a_box_on_its_side_lies_on_its_side(closed_mesh: SegmentMesh) ->
     assert {tuple(t) for t in np.sort(image[lying.triangles], axis=1).tolist()} == triangles
 
 
-@pytest.mark.quick
 def test_named_lines_go_once_around_the_section(mesh: SegmentMesh) -> None:
     assert set(mesh.lines) == {f"{name}:{wall}" for name in BREAKS for wall in WALLS}
     edges = edge_counts(mesh.triangles)
@@ -203,6 +193,7 @@ def test_named_lines_go_once_around_the_section(mesh: SegmentMesh) -> None:
         np.testing.assert_array_equal(mesh.lines[f"head:{wall}"], mesh.lines[f"station-10:{wall}"])
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(
     spans=st.lists(st.floats(0.013, 3.7), min_size=1, max_size=4),
@@ -238,7 +229,6 @@ def test_lines_lie_at_the_breaks_for_awkward_lengths(
         assert steps == max(1, int((b - a) / size + 0.5))
 
 
-@pytest.mark.quick
 def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
     """Reference: other code, meshio's reader of gmsh's own file."""
     breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "head": 3.5}
@@ -266,7 +256,6 @@ def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
         )
 
 
-@pytest.mark.quick
 def test_lines_that_share_a_place_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
     mesh = mesh_segment(BOX, {"tail": 0.0, "station": 1.0, "head": 1.0}, 0.5)
     mesh.write_gmsh(tmp_path / "m.msh")
@@ -287,7 +276,6 @@ def files_of_at_most(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("room", [0, 4_000])
 def test_a_full_disk_is_noticed(tmp_path: Path, room: int) -> None:
     mesh = mesh_segment(BOX, {"tail": 0.0, "head": 1.0}, 0.2)
@@ -310,7 +298,6 @@ def sorted_places(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return places[np.lexsort(np.round(places, 9).T)]
 
 
-@pytest.mark.quick
 def test_written_mesh_is_read_back(mesh: SegmentMesh, tmp_path: Path) -> None:
     """Reference: other code, meshio's reader."""
     mesh.write(tmp_path / "outer.vtu")
@@ -320,14 +307,12 @@ def test_written_mesh_is_read_back(mesh: SegmentMesh, tmp_path: Path) -> None:
     np.testing.assert_array_equal(read.cell_data_dict["wall"]["triangle"], mesh.walls)
 
 
-@pytest.mark.quick
 def test_the_same_call_gives_the_same_mesh(mesh: SegmentMesh) -> None:
     again = mesh_segment(BOX, BREAKS, 0.2)
     np.testing.assert_array_equal(again.points, mesh.points)
     np.testing.assert_array_equal(again.triangles, mesh.triangles)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("size", [0.0, -0.1, float("nan"), float("inf")])
 def test_refuses_a_size_that_is_none(size: float) -> None:
     message = f"mesh size must be a positive number of m, got {size}"
@@ -335,7 +320,6 @@ def test_refuses_a_size_that_is_none(size: float) -> None:
         mesh_segment(BOX, BREAKS, size)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("breaks", [{}, {"tail": 1.0}, {"tail": 1.0, "head": 1.0 + 1e-12}])
 def test_refuses_a_segment_without_length(breaks: dict[str, float]) -> None:
     message = "a segment needs breaks at two places at least, its ends"

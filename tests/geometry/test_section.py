@@ -22,7 +22,6 @@ PAPER_SECOND_MOMENTS = (3.7986e-4, 2.1829e-4)
 BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
 
 
-@pytest.mark.quick
 def test_a_box_worked_by_hand() -> None:
     """Reference: analytic, by hand."""
     assert BOX.area == pytest.approx(0.64 * 0.41 - 0.56 * 0.39, rel=1e-14, abs=0.0)
@@ -39,7 +38,6 @@ def test_a_box_worked_by_hand() -> None:
     assert BOX.mass_per_length(7850.0) == pytest.approx(7850.0 * 0.044, rel=1e-14, abs=0.0)
 
 
-@pytest.mark.quick
 def test_a_box_on_its_side() -> None:
     """Reference: analytic, y and z exchanged; what does not know of the two stays."""
     side = BOX.turned()
@@ -51,7 +49,6 @@ def test_a_box_on_its_side() -> None:
     assert side.turned() == BOX
 
 
-@pytest.mark.quick
 def test_area_and_second_moments_against_integration_over_the_plane() -> None:
     """Reference: other code, scipy's adaptive quadrature over the rectangle less its hole."""
 
@@ -100,7 +97,6 @@ def torsion_by_stress_function(height: float, width: float, wall: float, cells: 
     return float(source @ spsolve((difference.T @ difference).tocsc(), source))
 
 
-@pytest.mark.quick
 def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
     """Reference: other code, finite differences for Prandtl's stress function.
 
@@ -116,7 +112,6 @@ def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
     assert errors[2] / errors[1] == pytest.approx(0.5, abs=0.06)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("ratio", "outer_mm", "inner_mm"),
     [
@@ -141,7 +136,6 @@ def test_boxes_of_the_paper(
     assert outer.clear_width_around(inner) > 0.0
 
 
-@pytest.mark.quick
 def test_clear_room_by_hand() -> None:
     """Reference: analytic. Hole of 0.56 m x 0.39 m around a box 0.51 m x 0.33 m outside."""
     inner = BoxSection(height=0.49, width=0.30, flange=0.02, web=0.03)
@@ -159,6 +153,7 @@ def uniform_box(height: float, ratio: float, wall: float) -> BoxSection:
     return BoxSection(height, height / ratio, wall, wall)
 
 
+@pytest.mark.slow
 @given(plates)
 @example((0.5, 1.5, 0.15))
 def test_outer_box_round_trip(numbers: tuple[float, float, float]) -> None:
@@ -170,6 +165,7 @@ def test_outer_box_round_trip(numbers: tuple[float, float, float]) -> None:
     assert found.web == found.flange == pytest.approx(box.flange, rel=1e-8)
 
 
+@pytest.mark.slow
 @given(plates, st.floats(0.002, 0.03), st.floats(0.0, 0.03), st.floats(0.002, 0.05))
 @example((0.469, 1.867, 0.0194), 0.007, 5.0e-4, 0.0066)
 def test_inner_box_round_trip(
@@ -190,7 +186,6 @@ def test_inner_box_round_trip(
     assert found.web == found.flange == pytest.approx(box.flange, rel=1e-7)
 
 
-@pytest.mark.quick
 def test_no_uniform_box_closes_a_clearance_of_14_mm() -> None:
     outer = infer_outer_section(PAPER_AREAS[0], PAPER_SECOND_MOMENTS[0], 494.5 / 302.7)
     message = (
@@ -202,7 +197,6 @@ def test_no_uniform_box_closes_a_clearance_of_14_mm() -> None:
         infer_inner_section(PAPER_AREAS[1], PAPER_SECOND_MOMENTS[1], outer, 14.0e-3)
 
 
-@pytest.mark.quick
 def test_no_outer_box_so_compact() -> None:
     message = (
         "no uniform-wall box has A = 0.01 m², J = 1e-06 m⁴ and height/width = 1.5; "
@@ -212,7 +206,6 @@ def test_no_outer_box_so_compact() -> None:
         infer_outer_section(0.01, 1.0e-6, 1.5)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("dimension", "value", "message"),
     [

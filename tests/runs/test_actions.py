@@ -19,8 +19,6 @@ from runs.pipeline.motion import Motion
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 
-pytestmark = pytest.mark.quick
-
 CANTILEVER = """
 title = "One segment"
 

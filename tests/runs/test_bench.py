@@ -58,6 +58,7 @@ def data(folder: Path) -> Any:
     return json.loads((folder / "bench.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_generic_solvers_leave_no_more_energy_than_ours(data: Any) -> None:
     """Reference: the event-driven run of the same table over the same time, kind: other code; and
     not so much less that the generic solvers did a hundred times the work.
@@ -77,6 +78,7 @@ def test_generic_solvers_leave_no_more_energy_than_ours(data: Any) -> None:
             assert 0.01 * target < entry["energy_residual"] <= target
 
 
+@pytest.mark.slow
 def test_the_levels_of_the_command() -> None:
     """Tighter and tighter, down to what event-driven motion leaves as it comes; every solver."""
     tolerances = [tolerance for tolerance, _ in LEVELS]
@@ -85,6 +87,7 @@ def test_the_levels_of_the_command() -> None:
     assert {name for _, names in LEVELS for name in names} == set(SOLVERS)
 
 
+@pytest.mark.slow
 def test_a_solver_that_leaves_more_is_named() -> None:
     """Reference: analytic in kind, no double-precision run keeps the energy to 1e-20."""
     system = five_terms(case_file.load(str(PAPER)))
@@ -93,6 +96,7 @@ def test_a_solver_that_leaves_more_is_named() -> None:
     assert 1e-17 < least < 1e-8
 
 
+@pytest.mark.slow
 def test_every_table_is_complete(folder: Path, data: Any) -> None:
     for level in data["comparisons"]:
         for entry in level["methods"]:
@@ -115,6 +119,7 @@ def test_every_table_is_complete(folder: Path, data: Any) -> None:
     assert sorted(path.name for path in folder.iterdir()) == ["bench.json", "bench.md"]
 
 
+@pytest.mark.slow
 def test_the_rates_are_those_of_the_series() -> None:
     """Reference: the event-driven motion at a second, kind: other code. By then the boom has
     touched; 1e-5 of the tip's range is far below what a wrong force would do.
@@ -128,7 +133,6 @@ def test_the_rates_are_those_of_the_series() -> None:
     assert 0.05 < ours.first_contact < 0.19
 
 
-@pytest.mark.quick
 def test_a_lost_energy_is_seen() -> None:
     """Reference: half of every velocity is three quarters of the kinetic energy, analytic."""
     system = five_terms(case_file.load(str(PAPER)))
@@ -138,7 +142,6 @@ def test_a_lost_energy_is_seen() -> None:
     assert residual_of(system, slowed) > 0.5
 
 
-@pytest.mark.quick
 def test_all_rows_of_the_made_up_system_press() -> None:
     """Reference: no clearance, so only an exact zero is open; analytic."""
     system = pressed_system(7, 3)

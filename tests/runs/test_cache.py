@@ -19,9 +19,6 @@ from geometry.boom import Boom
 from runs.folder.cache import Cache, default_folder, key
 from runs.process.shown import shown
 
-pytestmark = pytest.mark.quick
-
-
 TEXT = "text"
 ROOT = Path(__file__).parents[2]
 

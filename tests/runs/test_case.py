@@ -18,8 +18,6 @@ from runs.case.schema import Case, ShellTable
 from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.coarse_case import COARSE
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

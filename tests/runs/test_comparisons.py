@@ -14,8 +14,6 @@ from runs.case import reading as case_file
 from runs.case.schema import Case
 from runs.pipeline.comparisons import compare_models, reference_of, rubs
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 SERIES = ["kantorovich-4", "kantorovich-5"]
 TIME = np.arange(10_001) / 1000

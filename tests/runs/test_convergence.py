@@ -15,8 +15,6 @@ from runs.report.tables import TextTable
 from runs.studies import convergence, verification
 from runs.studies.study import Plot, Proof, Study
 
-pytestmark = pytest.mark.quick
-
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 
 

@@ -16,8 +16,6 @@ from runs.case.build import build_boom
 from runs.pipeline.models import beam_system
 from runs.pipeline.motion import Motion
 
-pytestmark = pytest.mark.quick
-
 HEAD = """
 title = "Under its weight"
 

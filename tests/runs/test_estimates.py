@@ -57,6 +57,7 @@ def memory(*arguments: str) -> int:
     return int(answer.stdout.split()[-1])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("edits", "options", "members"),
     [
@@ -78,7 +79,6 @@ def test_memory_is_not_above_the_estimate_and_not_far_below(
     assert used <= of_run(case).memory <= 4.0 * used
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("edits", "line"),
     [
@@ -101,7 +101,6 @@ def test_what_takes_much_is_refused_with_the_number(
     )
 
 
-@pytest.mark.quick
 def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: analytic. Two points at a time, all alike."""
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
@@ -115,13 +114,11 @@ def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -
 VARY = ["joint.stiffness=1e13:1.1e13:100"]
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_cases_that_come_with_the_project_start_unasked(path: Path) -> None:
     refuse_large(of_run(case_file.load(str(path))), str(path))
 
 
-@pytest.mark.quick
 def test_an_unknown_cost_is_a_large_one() -> None:
     with pytest.raises(BadInput):
         refuse_large(Cost(float("nan"), 0.0), "case.toml")

@@ -18,8 +18,6 @@ from runs.pipeline.fewest_steps import PEAKS, steps_for_peaks
 from runs.pipeline.members import slow_below
 from runs.pipeline.models import beam_system
 
-pytestmark = pytest.mark.quick
-
 PAPER = CASES / "paper.toml"
 STEP = 1.0e-3
 

@@ -26,6 +26,9 @@ from runs.report.figure_context import Figure, Pen
 from runs.report.figures import draw
 from runs.report.horizon_figures import horizons
 
+pytestmark = pytest.mark.slow
+
+
 COARSE = CASES / "coarse.toml"
 WITH_PLAY = ["kantorovich-4", "kantorovich-5", "beam-fe"]
 

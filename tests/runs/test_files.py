@@ -14,8 +14,6 @@ import pytest
 
 from runs.folder.files import MANIFEST, alone, beside, changed_folder, whole, whole_folder
 
-pytestmark = pytest.mark.quick
-
 ROOT = Path(__file__).parents[2]
 
 

@@ -11,8 +11,6 @@ from PIL import Image
 
 from runs.report import gallery
 
-pytestmark = pytest.mark.quick
-
 DOCS = Path(__file__).parents[2] / "docs"
 MADE = {*gallery.COPIED, "mesh", "sections-largest-force"}
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 import xarray as xr
 
 from dynamics.predictability.comparison import Distributions, PeakDifferences, Pointwise
@@ -15,8 +14,6 @@ from runs.pipeline.results import Results
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.tables import TextTable
-
-pytestmark = pytest.mark.quick
 
 COARSE = CASES / "coarse.toml"
 MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")

@@ -23,8 +23,6 @@ from runs.pipeline.run import Run, run_case
 from runs.report.figures import draw
 from runs.report.output import write
 
-pytestmark = pytest.mark.quick
-
 SERIES = ["kantorovich-4", "kantorovich-5"]
 MODELS = [*SERIES, "beam-fe-tied"]
 

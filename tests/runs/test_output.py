@@ -20,8 +20,6 @@ from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 
 

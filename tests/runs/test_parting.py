@@ -8,8 +8,6 @@ import pytest
 
 from runs.paper.parting import apart_at_the_end, peaks_apart
 
-pytestmark = pytest.mark.quick
-
 TIME = np.arange(10_001) / 1000
 CUTOFF = 1.7
 

@@ -16,8 +16,6 @@ from runs.paper.statements import STATEMENTS, Judgement, Verdict
 from runs.pipeline.results import Results
 from runs.report.printed import decisive, print_models, print_verdicts
 
-pytestmark = pytest.mark.quick
-
 
 def run(case: str, **judgements: Judgement) -> Results:
     """A run that leaves open what is not given."""

@@ -13,8 +13,6 @@ import pytest
 
 from runs.process import ranks
 
-pytestmark = pytest.mark.quick
-
 
 def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reader comes late: whoever asks for the end at once asks before the line is read."""

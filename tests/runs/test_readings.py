@@ -37,7 +37,6 @@ def judged(reading: Reading, peak: float = 0.17, **verdicts: Judgement) -> Judge
     return Judged(reading, findings, dict.fromkeys(MODELS, peak), 0.0)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) -> None:
     """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand; the slope here is a
@@ -51,19 +50,16 @@ def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) ->
     assert float(slope) == pytest.approx(1.0e9, rel=1e-6)
 
 
-@pytest.mark.quick
 def test_a_literal_stiffness_is_literal_for_every_exponent() -> None:
     for reading in all_readings():
         assert (reading.contact_stiffness == 1.01e6) == (reading.stiffness == "literal")
 
 
-@pytest.mark.quick
 def test_all_combinations_are_read_once() -> None:
     """Reference: 2 clearances, 2 stiffnesses, 3 bases, 3 exponents."""
     assert len(set(all_readings())) == len(all_readings()) == 36
 
 
-@pytest.mark.quick
 def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
     reading = Reading(0.014, "literal", "pinned", 1.5)
     case = reading.case(paper, 0.5)
@@ -76,7 +72,6 @@ def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
     assert [segment.load for segment in boom.segments] == [1.5 * 83.16, 1.5 * 55.07]
 
 
-@pytest.mark.quick
 def test_what_a_statement_contradicts_is_excluded_by_it() -> None:
     verdicts = [judged(LITERAL, S2="contradicted", S9="contradicted"), judged(RESTORED)]
     assert [entry.excluded_by() for entry in verdicts] == [["S2", "S9"], []]
@@ -87,20 +82,17 @@ def test_what_a_statement_contradicts_is_excluded_by_it() -> None:
     ]
 
 
-@pytest.mark.quick
 def test_an_undecided_statement_excludes_nothing() -> None:
     verdicts = [judged(LITERAL, S2="undecided"), judged(RESTORED, S4="undecided")]
     assert conclude(verdicts)[0] == "0 of 2 readings are excluded."
 
 
-@pytest.mark.quick
 def test_a_value_that_is_excluded_in_part_is_said_to_be() -> None:
     others = [replace(reading, base="pinned") for reading in (LITERAL, RESTORED)]
     verdicts = [judged(LITERAL, S1="contradicted"), *map(judged, (RESTORED, *others))]
     assert "stiffness literal: 1 of 2 excluded, by S1 1 times." in conclude(verdicts)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("peak", "verdict"), [(0.171, "reproduced"), (0.1785, "undecided"), (0.34, "contradicted")]
 )
@@ -115,6 +107,7 @@ def test_exponents_are_compared_within_their_group(peak: float, verdict: str) ->
     assert other.findings["S9"] == Finding("undecided", ())
 
 
+@pytest.mark.slow
 def test_a_survey_of_two_readings(tmp_path: Path) -> None:
     """Reference: the literal stiffness gives n = 1 and n = 2 first tip peaks that differ by more
     than half, and the series stay within a tenth of one another; non-regression.
@@ -162,6 +155,5 @@ def check_refusals(folder: Path, paper: Case) -> None:
         assert message.endswith(f"); {remedy}")
 
 
-@pytest.mark.quick
 def test_a_folder_without_a_survey_has_none(paper: Case, tmp_path: Path) -> None:
     assert load(tmp_path, paper) == []

@@ -18,8 +18,6 @@ from dynamics.gap_system import Observer
 from geometry.boom import Boom
 from runs.folder.records import pack, unpack
 
-pytestmark = pytest.mark.quick
-
 
 def joined(thing: Any) -> dict[str, memoryview]:
     """The files of a record as they are read from a disk."""

@@ -25,8 +25,6 @@ from runs.report.figure_context import Figure
 from runs.report.printed import print_models, print_verdicts
 from runs.report.tables import TextTable
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
 GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")

@@ -13,6 +13,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.benchmarks.scaling import STAGES, STEPS, Sizes, scaling
 
+pytestmark = pytest.mark.slow
+
+
 SIZES = Sizes(meshes=(0.5, 0.3), default=0.5, ranks=(1,), duration=0.2)
 
 

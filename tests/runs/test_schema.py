@@ -17,8 +17,6 @@ from runs.case import toml
 from runs.case.reading import load
 from runs.case.schema import case_schema
 
-pytestmark = pytest.mark.quick
-
 VALIDATOR = jsonschema.Draft202012Validator(case_schema())
 
 

@@ -23,6 +23,8 @@ from runs.pipeline.models import reduce_shell
 from runs.process.shown import shown
 from shell_model.boom_shell import ReducedShell
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def case() -> Case:

@@ -19,6 +19,8 @@ from runs.pipeline.shell_output import ShellOutput
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 
+pytestmark = pytest.mark.slow
+
 
 def output(boom: Boom) -> ShellOutput:
     """Of a shell that rests for one second."""

@@ -3,13 +3,10 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from runs.process.shown import LONGEST, message, shown
-
-pytestmark = pytest.mark.quick
 
 
 @given(st.text(st.characters(), max_size=2000))

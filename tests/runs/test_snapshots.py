@@ -15,8 +15,6 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report.snapshots import describe
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
 

@@ -16,8 +16,6 @@ from runs.case.reading import load
 from tests.runs.coarse_case import COARSE
 from tests.shell_model.booms import three_segments
 
-pytestmark = pytest.mark.quick
-
 STIFFENED = COARSE.replace(
     "supports = [0.0, 2.0]",
     "supports = [0.0, 2.0]\ncollars = [{ span = [9.7, 10.0], thickness = 0.01 }]\n"

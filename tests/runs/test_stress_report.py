@@ -8,7 +8,6 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-import pytest
 import xarray as xr
 from PIL import Image
 
@@ -19,8 +18,6 @@ from runs.report import theme
 from runs.report.figure_context import Pen
 from runs.report.stress_figures import stress_history
 from runs.report.stress_tables import wall_table
-
-pytestmark = pytest.mark.quick
 
 COARSE = CASES / "coarse.toml"
 STRESS: dict[str, Any] = {

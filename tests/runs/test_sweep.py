@@ -33,8 +33,6 @@ from runs.sweep.points import Plan, plan
 from runs.sweep.quantities import QUANTITIES, measure, settling_time
 from runs.sweep.run import Outcome
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 FAST = ["kantorovich-4", "beam-fe-tied"]
 

@@ -10,8 +10,6 @@ from rich.console import Console
 
 from runs.report.tables import ROOMY, TextTable
 
-pytestmark = pytest.mark.quick
-
 TABLE = TextTable(
     "Peaks", ("model", "first\nmm"), [("beam", "1 s\n2 mm"), ("[b]", "–")], ("A note.",), "peaks"
 )

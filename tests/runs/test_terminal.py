@@ -12,8 +12,6 @@ import pytest
 
 from runs import CASES
 
-pytestmark = pytest.mark.quick
-
 COARSE = CASES / "coarse.toml"
 ROOT = Path(__file__).parents[2]
 

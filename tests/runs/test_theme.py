@@ -11,8 +11,6 @@ from matplotlib.colors import to_rgb
 
 from runs.report import theme
 
-pytestmark = pytest.mark.quick
-
 
 def test_colours_can_be_told_apart() -> None:
     """Reference: external, WCAG 2.1. A graphical object needs a contrast of 3 to the paper."""

@@ -11,8 +11,6 @@ import pytest
 from runs.benchmarks import timing
 from runs.benchmarks.timing import MEASURABLE, by_turns, shown
 
-pytestmark = pytest.mark.quick
-
 
 class Clock:
     """Time that passes only where something sleeps: the machine's own load does not count."""

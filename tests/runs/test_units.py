@@ -27,6 +27,9 @@ from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Se
 from geometry.section import BoxSection
 from tests.shell_model.booms import flat_boom
 
+pytestmark = pytest.mark.slow
+
+
 Array = npt.NDArray[np.float64]
 
 # Millimetres of a metre, tonnes of a kilogram.

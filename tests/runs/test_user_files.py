@@ -15,8 +15,6 @@ from runs.case.user_files import LARGEST, check_left
 from runs.report import output
 from tests.runs.coarse_case import COARSE
 
-pytestmark = pytest.mark.quick
-
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
 
 

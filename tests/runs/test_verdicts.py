@@ -23,8 +23,6 @@ from runs.paper.rules import PEAK_SCATTER, judge
 from runs.paper.statements import STATEMENTS, Verdict
 from runs.pipeline.run import run_case
 
-pytestmark = pytest.mark.quick
-
 PAPER = CASES / "paper.toml"
 FIRST_CONTACT = 0.12
 PERIOD = 1.1

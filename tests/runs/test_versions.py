@@ -5,11 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from runs.folder.versions import packages, program, sources
-
-pytestmark = pytest.mark.quick
 
 
 def test_every_module_counts_wherever_it_lies(tmp_path: Path) -> None:

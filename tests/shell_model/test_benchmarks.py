@@ -18,6 +18,7 @@ from shell_model.verification.benchmarks import (
 )
 
 
+@pytest.mark.slow
 def test_scordelis_lo_roof() -> None:
     """Reference: external, 0.3024. Flat facets close in with the order 1.1 at least."""
     errors = [scordelis_lo_roof(n) / PUBLISHED.scordelis_lo_roof - 1.0 for n in (4, 8, 16)]
@@ -26,6 +27,7 @@ def test_scordelis_lo_roof() -> None:
     assert np.log2(errors[0] / errors[1]) > 1.1
 
 
+@pytest.mark.slow
 def test_pinched_cylinder() -> None:
     """Reference: external, 1.8248e-5, of a shell without shear strain.
 
@@ -41,6 +43,7 @@ def test_pinched_cylinder() -> None:
     assert 0.02 < sheared < 0.03
 
 
+@pytest.mark.slow
 def test_hemisphere() -> None:
     """Reference: external, 0.0940. Bending without stretching, which locks a poor element."""
     errors = [hemisphere(n) / PUBLISHED.hemisphere - 1.0 for n in (16, 32)]
@@ -48,7 +51,6 @@ def test_hemisphere() -> None:
     assert np.log2(errors[0] / errors[1]) > 2.0
 
 
-@pytest.mark.quick
 def test_twisted_beam() -> None:
     """Reference: external, 5.4245e-3 in plane and 1.7532e-3 out of plane."""
     coarse, fine = (twisted_beam(n) for n in (2, 4))
@@ -56,6 +58,7 @@ def test_twisted_beam() -> None:
     assert fine == pytest.approx(PUBLISHED.twisted_beam, rel=1.0e-3)
 
 
+@pytest.mark.slow
 def test_a_curved_shell_needs_a_stiff_drilling_tie() -> None:
     """Reference: external, 5.4245e-3 in plane and 1.7532e-3 out of plane.
 

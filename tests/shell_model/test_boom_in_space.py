@@ -48,6 +48,7 @@ def _differ(found: Array, expected: Array) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     """Reference: this shell in its plane. The mean of a wall's two pads is the flat row: equal
     compliances to 1e-9. Until the first press the motions agree to 1e-9; after it the
@@ -66,6 +67,7 @@ def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     assert sideways < 1.0e-9 * np.abs(tips[1]).max()
 
 
+@pytest.mark.slow
 def test_a_boom_on_its_side_is_the_same_boom() -> None:
     """Reference: symmetry. With its sections, loads and plays exchanged between the planes, the
     boom has the same frequencies, its stations the same compliances with directions
@@ -95,6 +97,7 @@ def test_a_boom_on_its_side_is_the_same_boom() -> None:
     assert tips[1] == pytest.approx(tips[0], rel=1.0e-9)
 
 
+@pytest.mark.slow
 def test_corners_that_roll_together_do_not_part() -> None:
     """Reference: analytic. Turned rigidly by φ about the axis, the free inner segment's pads read
     the lever arms of geometry's pads: φ y of a flange's, −φ z of a web's.
@@ -119,6 +122,7 @@ def test_corners_that_roll_together_do_not_part() -> None:
     assert np.abs(slides[along_z]) == pytest.approx(1.0e-3 * arm, rel=1.0e-9)
 
 
+@pytest.mark.slow
 def test_each_pad_rubs_where_it_presses() -> None:
     """Reference: (11). Every pad's own contact row presses it; it slides across its normal."""
     system = _system(boom_in_space(friction=0.2))
@@ -138,6 +142,7 @@ def test_each_pad_rubs_where_it_presses() -> None:
         assert sum(law.below for law in laws) == pytest.approx(1.0e13)
 
 
+@pytest.mark.slow
 def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
     """Reference: analytic. Pressed sideways the boom loses energy at each station, gains
     none, and rubs with less than μ times the largest blow."""
@@ -152,6 +157,7 @@ def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
     assert (rubbed < 0.2 * blows).all()
 
 
+@pytest.mark.slow
 def test_lateral_motion_is_that_of_beams() -> None:
     """Reference: other code, this project's Timoshenko frame elements in space, under loads along
     y alone: first press at the same time, the tip at the same place until then and about it after.
@@ -175,6 +181,7 @@ def test_lateral_motion_is_that_of_beams() -> None:
     assert np.abs(shell.data["tip"].values).max() < 1.0e-9 * np.abs(tips[0]).max()
 
 
+@pytest.mark.slow
 def test_the_tied_boom_vibrates_as_beams_in_both_planes() -> None:
     """Reference: other code, this project's tied Timoshenko frame elements: three bending
     frequencies in each plane. Up to 0.7 % apart; shear is 3 % of the lowest.
@@ -189,7 +196,6 @@ def test_the_tied_boom_vibrates_as_beams_in_both_planes() -> None:
     assert _system(boom).frequencies[:6] == pytest.approx(expected, rel=0.01)
 
 
-@pytest.mark.quick
 def test_a_load_along_y_pushes_along_y() -> None:
     boom = replace(boom_in_space(), loads=(Load(1, "y", 50.0, 19.0, Step()),))
     system = _system(boom)
@@ -199,7 +205,6 @@ def test_a_load_along_y_pushes_along_y() -> None:
     assert abs(system.observers["tip"].row @ rest) < 1.0e-9
 
 
-@pytest.mark.quick
 def test_contact_across_the_flanges_is_for_flat_booms() -> None:
     message = (
         "contact_line: 'across' spreads the force over the flanges of a flat boom; in space the "

@@ -24,6 +24,7 @@ def _shell(line: ContactLine) -> ReducedShell:
     return reduce_boom(flat_boom(), [LAW], options, MPI.COMM_WORLD)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine) -> None:
     """Reference: analytic, (4). Lift the free inner segment without strain, beyond its play:
@@ -43,6 +44,7 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
             assert total == pytest.approx(np.sign(lift) * 1.0e13 * 0.3e-3**2, rel=1.0e-9)
 
 
+@pytest.mark.slow
 def test_the_load_lifts_the_boom_by_its_weight() -> None:
     """Reference: analytic. The free segment's centre moves with q/m̄ = 1 m/s²."""
     system = _shell("near webs").system
@@ -52,6 +54,7 @@ def test_the_load_lifts_the_boom_by_its_weight() -> None:
     assert acceleration == pytest.approx(1.0, rel=1.0e-9)
 
 
+@pytest.mark.slow
 def test_the_first_press_is_that_of_the_beam() -> None:
     """Reference: other code, this project's beams: the first contact of stiff thin beams is at
     0.1195 s; shear and distortion delay it by less than 1 %. Energy is kept.
@@ -63,6 +66,7 @@ def test_the_first_press_is_that_of_the_beam() -> None:
     assert trajectory.data["tip_rotation"].attrs["units"] == "rad"
 
 
+@pytest.mark.slow
 def test_fields_add_up_to_what_the_observers_read() -> None:
     """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
     shell = _shell("near webs")
@@ -75,7 +79,6 @@ def test_fields_add_up_to_what_the_observers_read() -> None:
     assert read > 1.0e-3
 
 
-@pytest.mark.quick
 def test_a_shell_needs_a_section() -> None:
     boom = flat_boom()
     bare = replace(boom, segments=(replace(boom.segments[0], section=None), boom.segments[1]))
@@ -87,7 +90,6 @@ def test_a_shell_needs_a_section() -> None:
         reduce_boom(bare, [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
 
 
-@pytest.mark.quick
 def test_a_side_without_stiffness_never_touches() -> None:
     """One station, pressing up alone: one row, one-sided, above."""
     law = replace(LAW, stiffness_below=0.0)
@@ -97,7 +99,6 @@ def test_a_side_without_stiffness_never_touches() -> None:
     assert all(row.below == 0.0 for row in system.laws)
 
 
-@pytest.mark.quick
 def test_a_segment_without_load_is_reduced_like_any_other() -> None:
     """Its empty input must not hide the error of its contact points, nor spoil it."""
     boom = flat_boom()

@@ -94,7 +94,6 @@ def _full(boom: Boom, size: float = 0.5) -> FullShell:
     return assemble_boom(boom, [_SOFT] * len(boom.joints), ShellOptions(size), MPI.COMM_SELF)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
 def test_free_motion_is_of_second_order(loaded: _Loaded, radius: float) -> None:
     """Reference: analytic, the natural modes that a step load excites, of the same matrices."""
@@ -110,7 +109,6 @@ def test_free_motion_is_of_second_order(loaded: _Loaded, radius: float) -> None:
     assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(2.0, abs=0.2)
 
 
-@pytest.mark.quick
 def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
     """Reference: analytic, the static deflection; with ρ∞ = 0 a long step leaves nothing else."""
     period = loaded.period
@@ -120,7 +118,6 @@ def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
     assert motion.observed["tip"][-1] == pytest.approx(loaded.rest, rel=1.0e-8)
 
 
-@pytest.mark.quick
 def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
     """Reference: analytic. At ρ∞ = 1 free motion keeps its energy; below it loses, the more the
     smaller ρ∞ is.
@@ -143,6 +140,7 @@ def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
     assert 1.0e-6 < lost[0] < lost[1] < lost[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
 def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: float) -> None:
     """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
@@ -163,6 +161,7 @@ def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: floa
     assert motion.energy_residual < 1.0e-3
 
 
+@pytest.mark.slow
 def test_friction_below_its_limit_holds_exactly() -> None:
     """Reference: analytic. A tenth of the load is held: no row moves, to round-off, and nothing
     is lost. The whole load moves them.
@@ -182,6 +181,7 @@ def test_friction_below_its_limit_holds_exactly() -> None:
     assert (np.diff(moving.energies[:, 5]) > -1.0e-12).all()
 
 
+@pytest.mark.slow
 def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     """Reference: other code, the splitting of the reduced shell, through the first blow.
 
@@ -205,6 +205,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     assert motion.energy_residual < 1.0e-3
 
 
+@pytest.mark.slow
 def test_two_ranks_give_the_serial_motion(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
@@ -218,7 +219,6 @@ def test_two_ranks_give_the_serial_motion(
     assert residual == pytest.approx(serial.energy_residual, rel=1.0e-3)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("boom", "law", "message"),
     [
@@ -244,7 +244,6 @@ def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message
         assemble_boom(boom, [law] * len(boom.joints), ShellOptions(2.0), MPI.COMM_SELF)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("step", "radius", "message"),
     [

@@ -14,8 +14,6 @@ import xarray as xr
 from shell_model.pictures.field_series import write_field_series
 from shell_model.stress.stresses import ShellStress
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def fields() -> xr.Dataset:

@@ -13,6 +13,9 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
 
+pytestmark = pytest.mark.slow
+
+
 ROOT = Path(__file__).parents[2]
 COMPILE = """
 import os, signal

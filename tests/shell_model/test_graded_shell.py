@@ -16,6 +16,9 @@ from shell_model.cross_section import combine
 from tests.shell_model.booms import LAW, flat_boom
 from tests.shell_model.conftest import compliance
 
+pytestmark = pytest.mark.slow
+
+
 PADS = {"corners": None, "pads": PadSize(0.1, 0.06)}
 
 

@@ -33,6 +33,7 @@ def _system(boom: Boom, size: float = 0.5, line: ContactLine = "near webs") -> G
     return reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_WORLD).system
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> None:
     """Reference: analytic. Of webs to webs, one top and one bottom row; of points across, each
@@ -51,6 +52,7 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
         assert row == pytest.approx(mean, rel=1.0e-9, abs=1.0e-12)
 
 
+@pytest.mark.slow
 def test_friction_takes_energy_and_gives_none_back() -> None:
     """Reference: analytic. The loss never falls, and the ledger closes; the smooth boom loses
     nothing.
@@ -67,6 +69,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
     assert largest == pytest.approx([0.2 * 4500.0, 0.2 * 5000.0], rel=1.0e-3)
 
 
+@pytest.mark.slow
 def test_loads_act_where_and_when_they_say() -> None:
     """Reference: analytic. The middle of a free segment moves with force over mass, whatever
     the load; a uniform one is the step load's own vector.
@@ -92,7 +95,6 @@ def _area(boom: Boom, number: int) -> float:
     return section.area
 
 
-@pytest.mark.quick
 def test_a_stop_reads_the_flange_that_it_meets() -> None:
     """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
     stop = Stop(0, 8.0, 0.01, 0.0, 1.0e8, 1.0)
@@ -113,6 +115,7 @@ def _rest(system: GapSystem, stations: list[int], spring: float = 1.0e12) -> Arr
     return np.asarray(np.linalg.solve(np.diag(system.omega2) + spring * rows.T @ rows, system.load))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
 def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
     """Reference: other code, this project's Timoshenko elements with the segments tied.
@@ -135,6 +138,7 @@ def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
         )
 
 
+@pytest.mark.slow
 def test_a_tied_joint_has_no_play() -> None:
     """Reference: other code, the tied Timoshenko elements: no contact is left, the tip and the
     lowest frequency agree within 0.2 %, and no motion is free.

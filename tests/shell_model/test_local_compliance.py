@@ -17,6 +17,9 @@ from shell_model.contact.local_compliance import SLOW, compliance
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 
+pytestmark = pytest.mark.slow
+
+
 SIZES = (0.8, 0.4, 0.2)
 
 

@@ -50,7 +50,6 @@ def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
     return folding, folding.jobs(force, force)
 
 
-@pytest.mark.quick
 def test_rigid_motions_belong_to_their_families(box_shell: Shells) -> None:
     """Reference: analytic. Slides along x, y, z, then turns about them."""
     shell = box_shell(0.5)
@@ -66,7 +65,6 @@ def test_rigid_motions_belong_to_their_families(box_shell: Shells) -> None:
         assert expected @ combination == pytest.approx(found, abs=1.0e-12)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("kind", ["held", "laden"])
 def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
     """Reference: other code, the whole shell. The forces that it needs for a family's motion are
@@ -89,7 +87,6 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
             assert np.abs(off).max() < 1.0e-12 * np.abs(expected).max()
 
 
-@pytest.mark.quick
 def test_forces_do_the_same_work_on_the_quarters(box_shell: Shells) -> None:
     """Reference: analytic. The families make up every force."""
     shell = box_shell(0.5, supports=HELD)
@@ -105,7 +102,6 @@ def test_forces_do_the_same_work_on_the_quarters(box_shell: Shells) -> None:
     assert parts == pytest.approx(total, rel=1.0e-10)
 
 
-@pytest.mark.quick
 def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) -> None:
     """A load along z bends along z; a push at one flange breathes as well."""
     shell = box_shell(0.5, supports=HELD)
@@ -119,7 +115,6 @@ def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) 
         assert [job.family for job in jobs] == expected
 
 
-@pytest.mark.quick
 def test_what_a_family_does_not_do_is_held_in_the_mirrors() -> None:
     """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
     assert Family(1, -1).held(1) == [(0, 1), (1, 0), (1, 2)]
@@ -145,7 +140,6 @@ def _one_diagonal_turned(mesh: SegmentMesh) -> SegmentMesh:
     return replace(mesh, triangles=triangles)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("spoil", "what"), [(_shifted, "mesh"), (_one_diagonal_turned, "shell")])
 def test_refuses_a_mesh_that_is_no_mirror_image(
     spoil: Callable[[SegmentMesh], SegmentMesh], what: str

@@ -23,6 +23,9 @@ from shell_model.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom
 
+pytestmark = pytest.mark.slow
+
+
 OnRanks = Callable[..., subprocess.CompletedProcess[str]]
 TwoRanks = Callable[..., subprocess.CompletedProcess[str]]
 

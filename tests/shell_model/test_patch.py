@@ -58,7 +58,6 @@ def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, A
     )
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("state", constant_strains(), ids=lambda state: state.name)
 def test_constant_strains_are_exact(state: ConstantStrain) -> None:
     """Reference: analytic. Fields between edges that are held so, and the strains of every facet,
@@ -73,7 +72,6 @@ def test_constant_strains_are_exact(state: ConstantStrain) -> None:
         )
 
 
-@pytest.mark.quick
 def test_rigid_motions_have_no_strain() -> None:
     """Reference: analytic, no force on any node, against the forces when every other node alone
     moves. A folded shell, oblique in space."""
@@ -90,7 +88,6 @@ def test_rigid_motions_have_no_strain() -> None:
         assert force.max() < 1.0e-10 * np.abs(shell.forces(strained)).max()
 
 
-@pytest.mark.quick
 def test_a_loose_shell_is_refused() -> None:
     """Held at one node it still turns."""
     points, triangles = FOLDED.mesh(2, 2)
@@ -101,7 +98,6 @@ def test_a_loose_shell_is_refused() -> None:
         shell.solve(hold(shell.node_dofs[0]), load)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("turn", [[0.7, -1.1, 0.4], [2.0, 0.3, -1.0]])
 def test_a_turned_box_vibrates_alike(turn: list[float]) -> None:
     """Reference: analytic, the same frequencies wherever the box points; round-off is 1e-11."""

@@ -43,7 +43,6 @@ SUPPORTED = (
 )
 
 
-@pytest.mark.quick
 def test_boxes_have_the_same_frequencies_on_every_release(box_shell: Shells) -> None:
     """Reference: non-regression, with DOLFINx 0.5.2. Round-off is some 1e-11."""
     free = natural_frequencies(box_shell(0.5), 6 + len(FREE))
@@ -52,6 +51,7 @@ def test_boxes_have_the_same_frequencies_on_every_release(box_shell: Shells) -> 
     np.testing.assert_allclose(held[1:], SUPPORTED, rtol=1.0e-8)
 
 
+@pytest.mark.slow
 def test_a_thin_plate_vibrates_after_kirchhoff() -> None:
     """Reference: analytic, π² (m²/a² + n²/b²) √(D/ρt), t/a = 1e-3: shear is 2e-5 of it.
 
@@ -67,6 +67,7 @@ def test_a_thin_plate_vibrates_after_kirchhoff() -> None:
     assert (orders > 1.7).all()
 
 
+@pytest.mark.slow
 def test_a_thick_plate_vibrates_after_mindlin() -> None:
     """Reference: analytic, Mindlin (1951) with 5/6, t/a = 0.1, where shear and rotary inertia take
     4 to 14 % off Kirchhoff's frequencies."""
@@ -78,11 +79,13 @@ def test_a_thick_plate_vibrates_after_mindlin() -> None:
     assert (np.log2(errors[0] / errors[1]) > 1.5).all()
 
 
+@pytest.mark.slow
 def test_an_open_section_twists_after_saint_venant() -> None:
     """Reference: analytic, Σ b t³/3; the corner's and the edges' own share is 0.3 %."""
     assert ANGLE.torsion_constant(4, 80) == pytest.approx(ANGLE.thin_walled_constant, rel=3.0e-3)
 
 
+@pytest.mark.slow
 def test_a_closed_section_twists_after_bredt() -> None:
     """Reference: analytic, 4 A² t/Σ b + Σ b t³/3. The stiff tie of curved shells is off by 1 %."""
     exact = CLOSED.thin_walled_constant
@@ -90,6 +93,7 @@ def test_a_closed_section_twists_after_bredt() -> None:
     assert exact > 1.0e3 * sum(CLOSED.widths) * CLOSED.thickness**3 / 3.0
 
 
+@pytest.mark.slow
 def test_the_drilling_tie_does_not_matter_to_boxes() -> None:
     """Reference: non-regression, the default tie.
 

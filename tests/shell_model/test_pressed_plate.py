@@ -8,6 +8,8 @@ import pytest
 from shell_model.verification.plates import STEEL
 from shell_model.verification.pressed_plate import Edges, PressedPlate, flange
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(("edges", "factor"), [("simply supported", 0.0116), ("clamped", 0.0056)])
 def test_a_small_patch_is_a_point(edges: Edges, factor: float) -> None:

@@ -14,8 +14,6 @@ from mpi4py import MPI
 
 from shell_model.reduction.products import exact_product
 
-pytestmark = pytest.mark.quick
-
 
 def _terms() -> tuple[np.ndarray, np.ndarray]:
     generator = np.random.default_rng(3)

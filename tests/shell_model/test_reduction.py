@@ -33,6 +33,7 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
     return np.column_stack([row for row in rows if row.any()] + [80.0 * shell.unit_loads["z"]])
 
 
+@pytest.mark.slow
 def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
     """Reference: the full model. Statics, and frequencies the basis was not built at."""
     shell = box_shell(0.25, supports=HELD)
@@ -50,6 +51,7 @@ def test_compliance_is_that_of_full_solves_far_from_the_shifts(box_shell: Shells
     assert reduced.compliance_error < 1.0e-6
 
 
+@pytest.mark.slow
 def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
@@ -59,6 +61,7 @@ def test_a_poorer_basis_reports_a_larger_error(box_shell: Shells) -> None:
     assert poor.compliance_error > 1.0e3 * rich.compliance_error
 
 
+@pytest.mark.slow
 def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> None:
     """Reference: SLEPc on the full model. Each ω below the limit is a natural one to 1e-6."""
     shell = box_shell(0.25)
@@ -71,6 +74,7 @@ def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> 
         assert np.abs(full / frequency - 1.0).min() < 1.0e-6
 
 
+@pytest.mark.slow
 def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
     box_shell: Shells,
 ) -> None:
@@ -80,7 +84,6 @@ def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
     assert np.count_nonzero(reduced.omega2 == 0.0) == 2
 
 
-@pytest.mark.quick
 def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
     shell = box_shell(0.25)
     reduced = reduce_segment(shell, _inputs(shell), KrylovOptions(moments=2))
@@ -94,7 +97,6 @@ def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
     assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9
 
 
-@pytest.mark.quick
 def test_inputs_that_depend_on_others_cost_nothing(box_shell: Shells) -> None:
     """The same space, in any order, with sums, copies and zeros among the inputs."""
     shell = box_shell(0.5, supports=HELD)
@@ -105,7 +107,6 @@ def test_inputs_that_depend_on_others_cost_nothing(box_shell: Shells) -> None:
     assert again.omega2 == pytest.approx(once.omega2, rel=1.0e-9)
 
 
-@pytest.mark.quick
 def test_a_segment_that_nothing_acts_on_has_no_motion(box_shell: Shells) -> None:
     shell = box_shell(0.5)
     message = "^nothing acts on a segment, and it has no motion: give it a load$"
@@ -134,6 +135,7 @@ def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows:
     return float(worst)
 
 
+@pytest.mark.slow
 def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
     """Reference: full solves at frequencies that the reduction has not seen. The error there is
     below twice the tolerance, for contacts and for what the end of the segment gets of them.
@@ -150,7 +152,6 @@ def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
     assert sizes[0] < sizes[1] < sizes[2]
 
 
-@pytest.mark.quick
 def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
     """And what these leave is told: fewer err more."""
     shell = box_shell(0.5, supports=HELD)
@@ -160,7 +161,6 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
     assert few.compliance_error > 10.0 * more.compliance_error
 
 
-@pytest.mark.quick
 def test_a_tolerance_that_is_not_met_is_said(box_shell: Shells) -> None:
     shell = box_shell(0.5, supports=HELD)
     message = (

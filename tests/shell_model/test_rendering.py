@@ -120,7 +120,6 @@ def _opengl() -> None:
         pytest.skip(str(reason))
 
 
-@pytest.mark.quick
 def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     """Reference: analytic. The shapes of the fixture, evaluated point by point."""
     (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
@@ -135,14 +134,12 @@ def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: 
     assert not shell.displacement(0.0)[~is_inner].any()
 
 
-@pytest.mark.quick
 def test_supports_are_where_nothing_moves(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     held = MovingShell.views(fields, trajectories.sel(model="shell"))[0].supports()
     assert [float(outline[0, 0]) for outline in held] == [0.0, 2.0]
     assert all(np.ptp(outline[:, 2]) == pytest.approx(OUTER.height) for outline in held)
 
 
-@pytest.mark.quick
 def test_the_change_of_a_sections_shape_leaves_out_what_moves_it(
     fields: xr.Dataset, trajectories: xr.Dataset
 ) -> None:
@@ -159,7 +156,6 @@ def test_the_change_of_a_sections_shape_leaves_out_what_moves_it(
     assert np.abs(change[:, 1]).max() < 1e-9
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
 def test_what_touches_in_the_run_touches_in_the_picture(
     fields: xr.Dataset, trajectories: xr.Dataset, scale: float, section: float
@@ -203,7 +199,6 @@ def two_joints(fields: xr.Dataset, trajectories: xr.Dataset) -> list[MovingShell
     return MovingShell.views(longer, motion)
 
 
-@pytest.mark.quick
 def test_each_overlap_gets_its_stations(two_joints: list[MovingShell]) -> None:
     side, above = two_joints
     assert [tuple(overlap) for overlap in side.overlaps] == [
@@ -215,7 +210,6 @@ def test_each_overlap_gets_its_stations(two_joints: list[MovingShell]) -> None:
     assert not above.stops
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("station", "place"),
     [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1 sideways)"), (6, " (a stop)")],
@@ -231,12 +225,10 @@ def test_of_several_joints_the_pressed_one_is_named(
     assert where_pressed([side, above], float(TIME[200])) == place
 
 
-@pytest.mark.quick
 def test_the_only_joint_is_not_named(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     assert where_pressed(MovingShell.views(fields, trajectories.sel(model="shell")), 0.5) == ""
 
 
-@pytest.mark.quick
 def test_from_above_y_points_up(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     """Reference: analytic. A boom in space, turned so that its width is its height; what moves
     up comes towards the eye.
@@ -256,7 +248,6 @@ def test_from_above_y_points_up(fields: xr.Dataset, trajectories: xr.Dataset) ->
     assert above.motion["tip"].values == pytest.approx(-2.0 * side.motion["tip"].values)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("largest", "scale"), [(0.7, 0.5), (1.0, 1.0), (19.9, 10.0), (20.0, 20.0), (0.031, 0.02)]
 )
@@ -264,7 +255,6 @@ def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) ->
     assert round_scale(largest) == pytest.approx(scale)
 
 
-@pytest.mark.quick
 def test_telling_instants_are_those_of_the_motion(trajectories: xr.Dataset) -> None:
     """Reference: analytic. The tip's sin² has its first peak at 0.5 s."""
     instants = telling_instants(trajectories.sel(model="shell"))
@@ -272,7 +262,6 @@ def test_telling_instants_are_those_of_the_motion(trajectories: xr.Dataset) -> N
     assert instants == pytest.approx(expected)
 
 
-@pytest.mark.quick
 def test_motion_without_contact_or_peak_still_has_an_instant(trajectories: xr.Dataset) -> None:
     """Half a period has no peak inside, and a model without stations NaN for its forces."""
     motion = trajectories.sel(model="shell").where(trajectories["time"] < 0.0)
@@ -282,7 +271,6 @@ def test_motion_without_contact_or_peak_still_has_an_instant(trajectories: xr.Da
     }
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("probe", "seconds", "message"),
     [
@@ -322,7 +310,6 @@ def test_missing_opengl_is_said_and_leaves_nothing(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.quick
 def test_refuses_a_time_outside_the_run(
     fields: xr.Dataset, trajectories: xr.Dataset, tmp_path: Path
 ) -> None:
@@ -330,6 +317,7 @@ def test_refuses_a_time_outside_the_run(
         render_snapshots(fields, trajectories, "shell", tmp_path, [0.5, 2.5])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("place", [(4.0, 0.0, 1.0), (-6.0, 2.0, -0.5)])
 def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...]) -> None:
@@ -362,12 +350,14 @@ def picture_of(files: list[Path], name: str) -> Array:
     return np.asarray(Image.open(path).convert("RGB"), dtype=float)
 
 
+@pytest.mark.slow
 def test_pictures_have_the_names_of_what_they_show(pictures: list[Path]) -> None:
     when = ("first-peak", "largest-force", "first-contact")
     expected = [f"{what}-{w}.png" for what in ("boom", "overlap", "stress") for w in when]
     assert [path.name for path in pictures] == [*expected, "motion.gif"]
 
 
+@pytest.mark.slow
 def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
     """Reference: analytic. Columns and rows of coloured pixels against the camera's projection.
 
@@ -384,6 +374,7 @@ def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
     assert top["first-contact"] - top["first-peak"] > 100
 
 
+@pytest.mark.slow
 def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> None:
     """Three colours at the first peak, and red on both sides: up at 10 m, down at 9 m."""
     picture = picture_of(pictures, "overlap-first-peak.png")[190:800]
@@ -397,6 +388,7 @@ def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> Non
     assert rows[0] + 200.0 < rows[1]
 
 
+@pytest.mark.slow
 def test_the_scale_of_deflections_ends_with_what_there_is(
     fields: xr.Dataset, trajectories: xr.Dataset
 ) -> None:
@@ -408,6 +400,7 @@ def test_the_scale_of_deflections_ends_with_what_there_is(
     assert (low, high) == (min(0.0, deflection.min()), max(0.0, deflection.max()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("steep", [0.0, 1.0, 1.2345, 4.0])
 def test_the_scale_of_stresses_ends_with_what_there_is(
     fields: xr.Dataset, trajectories: xr.Dataset, steep: float
@@ -427,6 +420,7 @@ def test_the_scale_of_stresses_ends_with_what_there_is(
     assert (labels == ["0"]) == (steep == 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("steep", [1.0, 4.0])
 def test_arrows_and_their_numbers_stay_above_the_axis(
@@ -453,6 +447,7 @@ def test_arrows_and_their_numbers_stay_above_the_axis(
         assert tallest == pytest.approx([110.0, 104.0], abs=4.0)
 
 
+@pytest.mark.slow
 def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
     """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else; at
     the end of the light scale red is above blue, at its dark end below.
@@ -467,6 +462,7 @@ def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
     assert 0.25 * 1600 < columns.min() < columns.max() < 0.6 * 1600
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_mesh_and_sections_are_drawn(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
     """Both segments are seen in their colours: two walls of the outer one do not hide the inner."""
@@ -482,6 +478,7 @@ def test_mesh_and_sections_are_drawn(fields: xr.Dataset, trajectories: xr.Datase
         assert (red > blue + 100.0).mean() > share
 
 
+@pytest.mark.slow
 def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
     assert pictures[-1].stat().st_size < 4.0e6
     with Image.open(pictures[-1]) as animation:
@@ -493,6 +490,7 @@ def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
     assert (np.abs(stills[1] - stills[0]).max(axis=2) > 60.0).mean() > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_given_times_name_the_files(
     fields: xr.Dataset,

@@ -11,8 +11,6 @@ from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from shell_model.verification.resisting_rows import ResistingRows, resist
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:

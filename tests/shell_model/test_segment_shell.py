@@ -22,6 +22,7 @@ from tests.shell_model.conftest import BOX, compliance
 Shells = Callable[..., SegmentShell]
 
 
+@pytest.mark.slow
 def test_rigid_motions_cost_no_energy(box_shell: Shells) -> None:
     """Reference: analytic, zero, against the stiffness's own size."""
     shell = box_shell(0.25)
@@ -36,7 +37,6 @@ def test_rigid_motions_cost_no_energy(box_shell: Shells) -> None:
         assert abs(motion @ left.array) < 1.0e-10 * size
 
 
-@pytest.mark.quick
 def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
     """Reference: analytic, ρ A L for the translations, ρ (J_y + J_z) L for the roll.
 
@@ -55,6 +55,7 @@ def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
     assert masses[3] == pytest.approx(STEEL.density * polar * 10.0, rel=5.0e-4)
 
 
+@pytest.mark.slow
 def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength(box_shell: Shells) -> None:
     """Reference: other code, this project's Timoshenko elements, themselves tested against
     analytic frequencies. Six rigid modes at zero; the first bending frequency closes in on
@@ -88,6 +89,7 @@ def _overhang_compliance(box_shell: Shells, size: float) -> float:
     return compliance(shell, shell.outline(10.0).wall_deflection("z"))
 
 
+@pytest.mark.slow
 def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
     """Reference: analytic. Supports at 0 and 2 m, unit force at 10 m shared by the webs:
     a² (l + a) / 3EJ + (a + a²/l) / G A_web, with l = 2 m and a = 8 m.
@@ -103,7 +105,6 @@ def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
     assert fine > coarse  # refinement softens a conforming displacement model
 
 
-@pytest.mark.quick
 def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     """Reference: analytic. A lifted, pitched box in the plane of bending; a shifted, yawed and
     rolled one out of it, where a point (y, z) moves by φ (−z, y).
@@ -143,6 +144,7 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     assert readings == pytest.approx(expected, abs=1.0e-12)
 
 
+@pytest.mark.slow
 def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
     """Reference: analytic. With every halving of the mesh the compliance, less that of the same
     force spread over the webs, changes by less than a third of the change before; that of a force

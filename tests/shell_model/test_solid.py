@@ -61,7 +61,6 @@ def energy(solid: SolidFamily, field: Array) -> float:
     return quadratic_form(solid.stiffness, field.ravel())
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("family", "strain"),
     [
@@ -91,7 +90,6 @@ def test_patch_of_constant_strain(family: Family, strain: Array) -> None:
     assert np.abs(forces[within]).max() < 1.0e-9 * np.abs(forces).max()
 
 
-@pytest.mark.quick
 def test_pure_bending_is_exact() -> None:
     """Reference: analytic, Saint-Venant (1856): E J κ² L, with the corners' share of J."""
     solid = assemble_solid(segment(), coarse(), ALONG_Z)
@@ -102,7 +100,6 @@ def test_pure_bending_is_exact() -> None:
     assert energy(solid, field) == pytest.approx(stiffness * LENGTH, rel=1.0e-8)
 
 
-@pytest.mark.quick
 def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
     """Reference: analytic. ρ A L for the three slides, ρ (J_y + J_z) L for the roll."""
     mass = STEEL.density * BOX.area * LENGTH
@@ -126,7 +123,6 @@ def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
     assert counts == [1, 2, 2, 1]
 
 
-@pytest.mark.quick
 def test_means_read_rigid_motions_and_thickening() -> None:
     """Reference: analytic. A lift, a turn about the axis, and a section that swells."""
     fields = {
@@ -150,6 +146,7 @@ def test_means_read_rigid_motions_and_thickening() -> None:
     assert len(outline.places) == len(np.unique(outline.places.round(9), axis=0)) == 8 * to_corner
 
 
+@pytest.mark.slow
 def test_a_long_cantilever_vibrates_as_a_timoshenko_beam() -> None:
     """Reference: analytic, Timoshenko's cantilever with the webs as its shear area.
 
@@ -187,6 +184,7 @@ def _cantilever(length: float, shear: bool) -> float:
     return float(brentq(equation, 0.5 * guess, 1.2 * guess, xtol=1.0e-10))
 
 
+@pytest.mark.slow
 def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     """Reference: other code, this project's elasticity in space.
 
@@ -223,7 +221,6 @@ def _compliance(model: SolidFamily, row: Array) -> float:
     return moved
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("change", "message"),
     [

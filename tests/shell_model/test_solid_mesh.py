@@ -13,8 +13,6 @@ import pytest
 from geometry.section import BoxSection
 from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
 
-pytestmark = pytest.mark.quick
-
 BOX = BoxSection(height=0.40, width=0.30, flange=0.03, web=0.02)
 PLACES = (0.0, 0.5, 2.0)
 

@@ -60,7 +60,6 @@ def shell_of(
     return assemble_segment(MPI.COMM_WORLD, segment, meshed(segment, size))
 
 
-@pytest.mark.quick
 def test_rigid_motions_cost_no_energy() -> None:
     """Reference: analytic, zero, with three walls on an edge."""
     shell = shell_of(COLLARS, PLATES)
@@ -72,7 +71,6 @@ def test_rigid_motions_cost_no_energy() -> None:
     assert np.abs(energies).max() < 1.0e-10 * size
 
 
-@pytest.mark.quick
 def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
     """Reference: analytic, ρ times the volumes of box, collars and plates, and their moment
     about the middle, which the translation along z and the pitch share.
@@ -94,7 +92,6 @@ def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
     assert inertia[2, 4] == pytest.approx(-moment, rel=1.0e-11)
 
 
-@pytest.mark.quick
 def test_uniform_load_is_that_of_the_plain_box() -> None:
     """Reference: analytic. 1 N/m over 10 m without a moment, whatever stiffens the box."""
     shell = shell_of(COLLARS, PLATES)
@@ -103,7 +100,6 @@ def test_uniform_load_is_that_of_the_plain_box() -> None:
     assert shell.unit_loads["y"] @ motions == pytest.approx([0, 10.0, 0, 0, 0, 0], abs=1.0e-9)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("inertial", [True, False])
 def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
     """Reference: analytic. The momentum of 0.1 m/s moves all of a free segment at 0.1 m/s; that of
@@ -125,7 +121,6 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
         assert speeds[0] < 0.095
 
 
-@pytest.mark.quick
 def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None:
     """Reference: the plain box on the same mesh. Supports hold as much of it, too."""
     held = (Support(0.0), Support(2.0, "clamped"))
@@ -138,7 +133,6 @@ def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None
     assert shells[0].num_dofs < shells[1].num_dofs
 
 
-@pytest.mark.quick
 def test_a_stiffened_shell_mirrors_itself() -> None:
     """Reference: analytic. A force along z moves nothing along y and turns nothing about x, and on
     its side the box has the same natural frequencies.
@@ -158,6 +152,7 @@ def test_a_stiffened_shell_mirrors_itself() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_collar_all_along_is_a_thicker_box() -> None:
     """Reference: the box of thicker walls on the same mid-surfaces, to round-off."""
     thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.004, BOX.web + 0.004)
@@ -168,6 +163,7 @@ def test_a_collar_all_along_is_a_thicker_box() -> None:
     assert np.abs(plain / frequencies - 1.0).max() > 0.01  # the tolerance is below the effect
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("x", [0.0, 5.0])
 def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
     """Reference: analytic. Flanges pulled apart stretch the plate between them, and the webs,
@@ -200,7 +196,6 @@ def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
     return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
 
 
-@pytest.mark.quick
 def test_ranks_share_an_edge_of_three_walls(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
@@ -215,6 +210,7 @@ def test_ranks_share_an_edge_of_three_walls(
     assert answer["dofs"] == serial == [780, 2220]
 
 
+@pytest.mark.slow
 def test_pictures_know_walls_from_diaphragms() -> None:
     """Reference: the plain boom. Flanges, supports and heights are found in a stiffened one."""
     boom = flat_boom()

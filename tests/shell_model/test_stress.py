@@ -57,6 +57,7 @@ def still(places: Array) -> Array:
     return np.zeros_like(places)
 
 
+@pytest.mark.slow
 def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
     """Reference: analytic. ε along x with free contraction is σ_x = E ε; the diaphragm, which
     contracts with the walls, has -ν E ε / (1 - ν) in all directions of its plane.
@@ -71,6 +72,7 @@ def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
     assert np.abs(plate[:, 2:]).max() < 1e-5 * E * strain
 
 
+@pytest.mark.slow
 def test_shear_has_the_sign_of_the_way_around() -> None:
     """Reference: analytic. u_y = γ x is τ = G γ along y: with s on the top, against it on the
     bottom, none in the webs.
@@ -87,6 +89,7 @@ def test_shear_has_the_sign_of_the_way_around() -> None:
         assert np.abs(np.delete(mine, 2, axis=1)).max() < 1e-5 * full
 
 
+@pytest.mark.slow
 def test_bending_is_that_of_the_outer_face() -> None:
     """Reference: analytic. With u_x = κ x z the top has ε = κ h/2 in its middle and κ t/2 more
     on its outer face, the bottom the opposite, which is the same on its own outer face.
@@ -108,7 +111,6 @@ def test_bending_is_that_of_the_outer_face() -> None:
     assert np.abs(found[web, 3:]).max() < 1e-4 * plane * BOX.flange
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("membrane", "expected"),
     [((3.0, 0.0, 0.0), 3.0), ((0.0, 0.0, 1.0), 3.0**0.5), ((2.0, 2.0, 0.0), 2.0)],
@@ -120,7 +122,6 @@ def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float
     assert stress.largest() >= stress.von_mises("middle")
 
 
-@pytest.mark.quick
 def test_the_faces_differ_by_twice_the_bending() -> None:
     stress = Stress(np.float32([[5.0, 0.0, 0.0]]), np.float32([[-2.0, 0.0, 0.0]]))
     faces = [float(stress.von_mises(face)[0]) for face in ("outer", "middle", "inner")]
@@ -147,6 +148,7 @@ def cantilever() -> ShellStress:
     return at_rest(Boom((segment,), ()), 0.1)[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("x", [3.0, 5.0, 7.0])
 def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress, x: float) -> None:
     """Reference: analytic. σ = M z / J with M = q (L - x)² / 2, in the flanges' means and up
@@ -169,6 +171,7 @@ def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress
     assert np.abs(stress.membrane[webs, 0] - expected).max() < 0.01 * extreme
 
 
+@pytest.mark.slow
 def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
     """Reference: analytic. M = -q (L - x)² / 2, Q = q (L - x), N = 0; the webs carry the shear."""
     forces = wall_forces(cantilever, 0.0, 0, 4.01)
@@ -183,6 +186,7 @@ def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
     assert abs(forces["top"].shear) < 1e-2 * shear
 
 
+@pytest.mark.slow
 def test_a_tied_boom_keeps_each_segments_stresses() -> None:
     """Reference: analytic. Tied segments are one cantilever beyond the support at 2 m: what is
     beyond 5 m weighs on it with its moment, whatever the combination of coordinates.
@@ -212,6 +216,7 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
+@pytest.mark.slow
 def test_two_ranks_recover_the_serial_stresses(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:

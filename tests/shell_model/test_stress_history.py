@@ -11,8 +11,6 @@ from geometry.section import BoxSection
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
 
-pytestmark = pytest.mark.quick
-
 BOX = BoxSection(height=0.4, width=0.3, flange=0.005, web=0.005)
 TIME = np.linspace(0.0, 1.0, 1001)
 

@@ -24,6 +24,7 @@ Shells = Callable[..., SegmentShell]
 YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
 
 
+@pytest.mark.slow
 def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> None:
     """Reference: analytic, Timoshenko's L³/3EJ + L/GA along z and y and Bredt's L/GJ_t.
 
@@ -42,6 +43,7 @@ def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> No
     assert [compliance(shell, row) for row in rows] == pytest.approx(expected, rel=2.5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_elastic_supports_give_way_by_their_reactions(
     box_shell: Shells, direction: Direction
@@ -57,6 +59,7 @@ def test_elastic_supports_give_way_by_their_reactions(
     assert elastic - rigid == pytest.approx(41.0e-6, rel=1.0e-3)
 
 
+@pytest.mark.slow
 def test_every_support_holds_the_twist(box_shell: Shells) -> None:
     """Reference: analytic, Bredt, from the support at 2 m to the end."""
     springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
@@ -66,7 +69,6 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
         assert compliance(shell, shell.outline(10.0).twist()) == pytest.approx(expected, rel=2.0e-3)
 
 
-@pytest.mark.quick
 def test_supports_leave_the_rigid_motions_that_they_do_not_hold(box_shell: Shells) -> None:
     """Reference: analytic: slide along x always but for a clamp, and both tilts about one pin."""
     left = {
@@ -81,7 +83,6 @@ def test_supports_leave_the_rigid_motions_that_they_do_not_hold(box_shell: Shell
         assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
 
 
-@pytest.mark.quick
 def test_point_masses_weigh_what_they_weigh_and_do_not_turn(box_shell: Shells) -> None:
     """Reference: analytic. 70 kg at 2 m and 30 kg at 10 m add 100 kg to each translation,
     70·3² + 30·5² kg·m² to pitch and yaw about the middle, nothing to the roll.
@@ -99,6 +100,7 @@ def test_point_masses_weigh_what_they_weigh_and_do_not_turn(box_shell: Shells) -
     assert loaded - bare == pytest.approx(expected, rel=1.0e-9, abs=1.0e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", ["z", "y"])
 @pytest.mark.parametrize("masses", [(), (PointMass(10.0, 200.0),)], ids=["bare", "tip mass"])
 def test_lowest_frequency_is_the_beams_in_each_plane(
@@ -118,6 +120,7 @@ def test_lowest_frequency_is_the_beams_in_each_plane(
     assert found[1] == pytest.approx(expected[1], rel=2.0e-2)
 
 
+@pytest.mark.slow
 def test_twisting_frequency_is_bredts(box_shell: Shells) -> None:
     """Reference: analytic, √(G J_t / ρ I_p) / 4l for the 18 m beyond the supports. The wall is
     thick and the box long, so that the section hardly distorts; what is left is 0.3 %.

@@ -64,7 +64,6 @@ def _forces(system: GapSystem, state: Array) -> Array:
     return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("normal", ["y", "z"])
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
@@ -95,13 +94,13 @@ def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
             )
 
 
-@pytest.mark.quick
 def test_a_place_beside_a_wall_is_refused(box_shell: Callable[..., SegmentShell]) -> None:
     places = np.array([[5.0, 0.2]])
     with pytest.raises(ValueError, match=r"^no wall is at x = 5 m, 0\.2 m across$"):
         WallPoints(box_shell(0.5)).rows(Wall("z", 1), places, "z")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
     """Reference: analytic, (4) at both stations; the pressure's middle is that of the overlap."""
@@ -117,6 +116,7 @@ def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
     assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
 
 
+@pytest.mark.slow
 def test_a_tilted_approach_presses_as_its_integral() -> None:
     """Reference: analytic, ∫ k_A b (θ x)² dx = k_A b θ² L³/3 over the overlap, k_A given."""
     given = 3.0e14
@@ -129,6 +129,7 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
     assert _forces(system, state).sum() == pytest.approx(expected, rel=1.0e-6)
 
 
+@pytest.mark.slow
 def test_every_point_has_its_share_of_the_penalty() -> None:
     """Reference: analytic. The area's weights are positive and add up, on either side; points
     belong to the nearest station.
@@ -143,11 +144,13 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
     assert [int(n) for n in np.bincount(system.station_of_row)] == [8, 8]
 
 
+@pytest.mark.slow
 def test_a_law_that_never_touches_below_has_no_points_there() -> None:
     law = replace(LAW, stiffness_below=0.0)
     assert len(_system(flat_boom(), law=law).laws) == 8
 
 
+@pytest.mark.slow
 def test_friction_stays_at_the_stations() -> None:
     """Reference: this shell with contact at its stations: the same slides, in compliance, but for
     the part of 1e-4 that modes which are left out may have.
@@ -163,6 +166,7 @@ def test_friction_stays_at_the_stations() -> None:
     assert found == pytest.approx(expected, rel=2.0e-4)
 
 
+@pytest.mark.slow
 def test_in_space_each_point_presses_one_corner() -> None:
     """Reference: analytic. Webs touch too; every point adds to the normal force of one pad; a
     roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange.
@@ -185,6 +189,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
         assert above @ arms[walls] ** 2 == pytest.approx(2.0e13 * size**2 / 12.0, rel=1.0e-6)
 
 
+@pytest.mark.slow
 def test_contact_over_a_surface_keeps_energy() -> None:
     """Reference: analytic, the ledger; first contact where the stations' is, at the tail."""
     surface, lines = (
@@ -223,6 +228,7 @@ def compliances(comm: MPI.Comm) -> list[float]:
     return found
 
 
+@pytest.mark.slow
 def test_two_ranks_find_the_same_points(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
@@ -233,6 +239,7 @@ def test_two_ranks_find_the_same_points(
     assert found == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(0.2), boom_in_space(0.2)], ids=["flat", "space"])
 def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
     """Reference: analytic. As many rows with the same laws; a rigid motion is read at the middle
@@ -250,6 +257,7 @@ def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
     assert set(np.abs(arms[~along_z])) <= {0.0}
 
 
+@pytest.mark.slow
 def test_larger_pads_are_softer() -> None:
     """Reference: none but sense: further from the stiff corners the flanges give way more."""
     slow = (2.0 * np.pi * 10.0) ** 2
@@ -261,7 +269,6 @@ def test_larger_pads_are_softer() -> None:
     assert give(0.02) < give(0.06) < give(0.12)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("line", ["across", "surface"])
 def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
     message = (

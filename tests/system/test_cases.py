@@ -15,6 +15,9 @@ from runs.pipeline.run import run_case
 from runs.report.document import render
 from runs.report.figures import draw
 
+pytestmark = pytest.mark.slow
+
+
 NAMES = ["friction-walk", "paper", "paper-friction", "spatial", "three-segments"]
 
 

@@ -27,6 +27,9 @@ from tests.system.run_folder import (
     trajectories,
 )
 
+pytestmark = pytest.mark.slow
+
+
 BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
 
 

@@ -13,6 +13,9 @@ import pytest
 
 from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
 
+pytestmark = pytest.mark.slow
+
+
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
 # The command, with pictures left out for the sake of time.

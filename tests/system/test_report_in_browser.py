@@ -16,6 +16,9 @@ from runs.report import output
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE
 
+pytestmark = pytest.mark.slow
+
+
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
 WIDTH = 400
 

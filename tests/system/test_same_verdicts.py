@@ -6,12 +6,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.schema import Case
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
+
+pytestmark = pytest.mark.slow
+
 
 PAPER = CASES / "paper.toml"
 DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "reproduced"}

@@ -21,8 +21,6 @@ from tests.system.run_folder import (
     trajectories,
 )
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture(scope="module")
 def series(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -15,6 +15,9 @@ import pytest
 
 from tests.system.run_folder import COARSE, ROOT
 
+pytestmark = pytest.mark.slow
+
+
 RUN = "run", COARSE, "--models", "kantorovich-4,timoshenko", "--no-cache"
 SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0.014:8"
 

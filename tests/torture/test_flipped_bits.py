@@ -11,6 +11,8 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from tests.torture import flipped_bits
 
+pytestmark = pytest.mark.slow
+
 
 def test_no_flipped_bit_is_believed(tmp_path: Path) -> None:
     for name, tries, breaches, what in flipped_bits.rows(tmp_path, 3):

@@ -5,7 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.torture import full_disk
+
+pytestmark = pytest.mark.slow
 
 
 def test_no_write_that_is_refused_costs_what_was_there(tmp_path: Path) -> None:

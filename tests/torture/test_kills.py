@@ -5,7 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.torture import kills
+
+pytestmark = pytest.mark.slow
 
 
 def test_a_killed_run_costs_nothing(tmp_path: Path) -> None:

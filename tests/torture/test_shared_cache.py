@@ -5,7 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.torture.shared_cache import one_folder
+
+pytestmark = pytest.mark.slow
 
 
 def test_two_runs_in_one_folder_leave_what_one_does(tmp_path: Path) -> None:

@@ -11,6 +11,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.studies.benchmarks import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(
     roof=(2, 4, 8),
     cylinder=(4, 8, 16),

@@ -10,6 +10,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.studies.contact_size import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(
     meshes=(8.0, 4.0, 2.0),
     default=4.0,

@@ -10,6 +10,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.studies.direct import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(
     mesh=1.0,
     duration=0.37,

@@ -9,8 +9,6 @@ import pytest
 
 from runs.studies.grid_convergence import GridConvergence
 
-pytestmark = pytest.mark.quick
-
 
 def test_the_published_example() -> None:
     """Reference: external, NPARC Alliance's tutorial on spatial convergence: pressure recoveries

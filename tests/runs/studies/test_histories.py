@@ -10,8 +10,6 @@ from scipy.integrate import quad
 from dynamics.excitation import Table
 from runs.studies.histories import response, study
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.mark.parametrize("omega", [0.0, 3.0])
 def test_the_closed_form_is_duhamel_s_integral(omega: float) -> None:

@@ -7,6 +7,9 @@ import pytest
 
 from runs.studies.mesh import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(meshes=(8.0, 4.0, 2.0), default=2.0, duration=0.9, frequencies=2, peaks=1)
 
 

@@ -11,8 +11,6 @@ from runs.studies.model_ladder import WALK
 from runs.studies.motions import friction_case
 from runs.studies.refinement import Refinement, refine, table
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def case() -> Case:

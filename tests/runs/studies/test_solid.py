@@ -40,7 +40,6 @@ def comparison(wall: float, error: float) -> Comparison:
     )
 
 
-@pytest.mark.quick
 def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
     """Reference: analytic, errors of 3 (t/b)^1.5 of a box 0.3 m wide."""
     head = COMPLIANCES[0]
@@ -54,7 +53,6 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
     assert np.isnan(order([comparison(0.01, -0.01), comparison(0.02, 0.01)], head))
 
 
-@pytest.mark.quick
 def test_a_value_goes_on_to_its_limit_if_it_has_one() -> None:
     """Reference: analytic, 2 + 3 h² at h = 0.4, 0.2, 0.1; then values that do not settle."""
     settling = Values([2.0 + 3.0 * h**2 for h in (0.4, 0.2, 0.1)])
@@ -63,6 +61,7 @@ def test_a_value_goes_on_to_its_limit_if_it_has_one() -> None:
     assert Values([2.0, 1.9, 1.81]).limit == 1.81
 
 
+@pytest.mark.slow
 def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
     """Reference: other code, elasticity in space.
 
@@ -86,6 +85,7 @@ def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
     assert max(shell.reduction_error, solid.reduction_error) < 1.0e-6
 
 
+@pytest.mark.slow
 def test_the_solid_stands_by_itself() -> None:
     """Reference: analytic. The rod's lateral inertia is twice what its frequency may err by."""
     proofs = {proof.what: proof for proof in solid_proofs()}
@@ -95,7 +95,6 @@ def test_the_solid_stands_by_itself() -> None:
     assert rod.allowed < 0.5 * (without / rod.reference - 1.0)
 
 
-@pytest.mark.quick
 def test_tables_and_proofs_have_every_quantity() -> None:
     found = [comparison(0.005, 0.004), comparison(0.01, -0.02)]
     for table in (error_table(found), index_table(found)):

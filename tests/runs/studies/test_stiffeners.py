@@ -9,6 +9,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.studies.stiffeners import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(mesh=0.3, collars=(0.010,), diaphragms=(0.008,), frequencies=2, plate_mesh=0.05)
 
 

@@ -14,7 +14,6 @@ from runs.studies.stress import Sizes, contact_forces, study
 TINY = Sizes(meshes=(0.2, 0.1, 0.05), default=0.1, places=(14.0,))
 
 
-@pytest.mark.quick
 def test_contact_forces_hold_the_segment() -> None:
     """Reference: analytic. 550.7 N of lift at 14 m on levers of 4 and 5 m."""
     forces = contact_forces(build_boom(friction_case()))
@@ -23,6 +22,7 @@ def test_contact_forces_hold_the_segment() -> None:
     assert forces[9.0][1] == pytest.approx(4.0 * 550.7)
 
 
+@pytest.mark.slow
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     """Reference: analytic away from contacts; near them the refinement itself. Half the mesh
     would double the stress of the nearest triangle beside a force at a point; beside one along a

@@ -7,6 +7,9 @@ import pytest
 
 from runs.studies.surface_contact import Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(
     mesh=0.5,
     duration=0.3,

@@ -9,6 +9,9 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.studies.working_load import Point, Sizes, study
 
+pytestmark = pytest.mark.slow
+
+
 TINY = Sizes(
     meshes=(16.0, 8.0, 4.0),
     plays=(14.0e-3,),
