@@ -166,7 +166,10 @@ def _sampled(pen: Pen, place: str) -> str:
     if pen.ensembles is None or place not in pen.ensembles:
         if pen.rubs or pen.ensembles is not None:
             return ""
-        return " After the first presses a curve with play is one sample of a chaotic motion."
+        return (
+            " After the first presses a curve with play may be one sample of a chaotic motion; an "
+            "ensemble tells."
+        )
     low, high = BAND
     band = (
         f" Shaded: {low:g} to {high:g} % of the {pen.ensembles.sizes['member']} members of each "

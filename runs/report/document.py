@@ -106,11 +106,15 @@ def _costs(results: Results) -> Mapping[str, str]:
     costs = {}
     for name, model in results.summary["models"].items():
         parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model["seconds"].items()]
+        errors = dict(model.get("reduction_errors", {}))
+        right_to = errors.pop("frequency_limit_in_hz", None)
         parts += [
-            f"{what.replace('_', ' ')} of the reduction {number(error, 2)}"
-            for what, error in model.get("reduction_errors", {}).items()
+            f"{what.replace('_', ' ')} of the reduction within {number(error, 2)}"
+            for what, error in errors.items()
         ]
+        if right_to is not None:
+            parts.append(f"its modes right up to {number(right_to, 2)} Hz")
         if error := model.get("mesh_error"):
-            parts.append(f"local compliance of the mesh {number(error, 2)}")
+            parts.append(f"local compliance of the mesh within {number(error, 2)}")
         costs[name] = ", ".join(parts)
     return costs

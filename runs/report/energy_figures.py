@@ -28,19 +28,23 @@ def energies(pen: Pen) -> list[Figure]:
     tints = [theme.tint(color, strength) for strength in HELD.values()]
     tints += [theme.tint(theme.LOSS, strength) for strength in LOST[: len(lost)]]
     sheet, (axes,) = new_sheet(1, 3.9)
-    axes.stackplot(
+    areas = axes.stackplot(
         pen.time,
         *parts.values(),
         labels=[_named(energy) for energy in parts],
         colors=tints,
         linewidth=0,
     )
+    for area in areas[len(held) :]:
+        # Whatever the model's colour is.
+        area.set(hatch="///", edgecolor="white")
     axes.plot(pen.time, work, color=theme.INK, linewidth=1.3, label="work of the load")
     axes.set(xlabel="time (s)", ylabel="energy (J)", xlim=(0.0, pen.time[-1]))
-    losses = "".join(f", {_named(energy)}" for energy in lost)
+    losses = " and ".join(_named(energy) for energy in lost)
+    hatched = f"; hatched: {losses}" if lost else ""
     caption = (
-        f"Strain, kinetic and contact energy{losses} of {name} on top of one another. Their sum is "
-        "the work of the load, up to the residual of the next figure."
+        f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
+        "is the work of the load, up to the residual of the next figure."
     )
     title = f"{name}: the load's work, and where it is"
     return [pen.finish(sheet, axes, "energies", title, caption)]

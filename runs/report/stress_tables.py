@@ -39,7 +39,7 @@ def wall_table(results: Results) -> TextTable | None:
     )
     return TextTable(
         "What the walls carry at the instant of the largest stress",
-        ("shell, segment, x, wall", "axial (kN)", "shear (kN)", "moment (kN m)"),
+        ("shell, segment, x, wall", "axial (kN)", "shear (kN)", "moment (kN\N{NO-BREAK SPACE}m)"),
         rows,
         tuple(notes),
         name="walls",

@@ -51,8 +51,9 @@ RC: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "legend.frameon": False,
     "legend.fontsize": 11.0,
-    # Long trajectories overflow the renderer's path buffer unless cut into pieces.
-    "agg.path.chunksize": 10000,
+    # The longest trajectories overflow the renderer's path buffer unless cut into pieces; between
+    # two of these a bit is missing, which is to be too short to be seen.
+    "agg.path.chunksize": 1_000_000,
 }
 
 
@@ -119,4 +120,5 @@ def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
     """A number times a factor, with so many decimals; ``NONE`` for none."""
     if value is None or not math.isfinite(value):
         return NONE
-    return signed(f"{factor * value:.{decimals}f}")
+    # Adding zero takes the sign of what is rounded to nothing.
+    return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")

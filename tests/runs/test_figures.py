@@ -22,7 +22,7 @@ from runs.report import theme
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
 from runs.report.energy_figures import energies, residuals
-from runs.report.figure_context import Figure, Pen
+from runs.report.figure_context import Figure, Pen, new_sheet
 from runs.report.figures import draw
 from runs.report.horizon_figures import horizons
 
@@ -261,8 +261,25 @@ def test_friction_is_drawn_where_there_is_any(
     assert labels(axes) == WITH_PLAY[-1:]
     (line,) = axes.get_lines()
     np.testing.assert_allclose(np.asarray(line.get_ydata())[5:-5], 1.0)
-    draw_some(energies, with_friction(results), tmp_path)
-    assert "friction loss" in labels(sheets["energies"].axes[0])
+    (figure,) = draw_some(energies, with_friction(results), tmp_path)
+    axes = sheets["energies"].axes[0]
+    assert "friction loss" in labels(axes)
+    hatches = {str(area.get_label()): area.get_hatch() for area in axes.collections}
+    assert hatches == {"strain": None, "kinetic": None, "contact": None, "friction loss": "///"}
+    assert "; hatched: friction loss." in figure.caption
+
+
+def test_a_long_curve_has_no_gaps(tmp_path: Path) -> None:
+    """Reference: the same curve, 60 turns of a spiral, in one piece."""
+    angle = np.linspace(0.0, 120.0 * np.pi, 20_001)
+    pictures = []
+    for pieces in ({}, {"agg.path.chunksize": 0}):
+        with matplotlib.rc_context(theme.RC | pieces):
+            sheet, (axes,) = new_sheet(1, 4.0)
+            axes.plot(angle * np.cos(angle), angle * np.sin(angle))
+            sheet.savefig(tmp_path / "curve.png")
+        pictures.append(image.imread(tmp_path / "curve.png"))
+    np.testing.assert_array_equal(*pictures)
 
 
 def test_captions_of_a_case_with_friction(results: Results, tmp_path: Path) -> None:

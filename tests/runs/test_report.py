@@ -269,6 +269,20 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
         ]
 
 
+def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
+    name = str(results.trajectories["model"].values[0])
+    errors = {"contact_compliance": 2.4e-9, "readings": 0.013, "frequency_limit_in_hz": 84.6}
+    model = {**results.summary["models"][name], "reduction_errors": errors, "mesh_error": 0.26}
+    model["seconds"] = {"reduction": 1.204}
+    models = {**results.summary["models"], name: model}
+    page = render(replace(results, summary={**results.summary, "models": models}), [], [])
+    assert (
+        "reduction 1.20 s, contact compliance of the reduction within 2.4 × 10⁻⁹, readings of the "
+        "reduction within 0.013, its modes right up to 85 Hz, local compliance of the mesh within "
+        "0.26" in page
+    )
+
+
 def test_cautions_against_a_poor_mesh(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     for error, cautions in ((0.009, []), (0.34, [name]), (None, [])):

@@ -57,7 +57,8 @@ def test_numbers_have_so_many_digits(value: float | None, expected: str) -> None
 
 
 @pytest.mark.parametrize(
-    ("value", "expected"), [(None, "–"), (math.inf, "–"), (0.1684, "168.4"), (-0.002, "−2.0")]
+    ("value", "expected"),
+    [(None, "–"), (math.inf, "–"), (0.1684, "168.4"), (-0.002, "−2.0"), (-4e-5, "0.0")],
 )
 def test_numbers_have_so_many_decimals(value: float | None, expected: str) -> None:
     assert theme.fixed(value, 1, 1000.0) == expected
