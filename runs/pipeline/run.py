@@ -204,10 +204,14 @@ def _run_model(
             return None
         alone = case.model_copy(update={"models": (model,), "title": "", "demand": ()})
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
+        moving = Stages(model.name, progress)
         moved = finished(
-            kept, content, lambda: _move(system, num_dofs, model, case, cutoff, executor, stages)
+            kept, content, lambda: _move(system, num_dofs, model, case, cutoff, executor, moving)
         )
     summary = moved.summary
+    # Those of a motion that is kept are what it has taken.
+    stages.seconds |= summary["seconds"]
+    summary["seconds"] = stages.seconds
     if reduced is None:
         return Outcome(moved.trajectory, summary, moved.ensemble, None)
     summary["reduction_errors"] = {name: known(error) for name, error in reduced.errors.items()}
@@ -215,7 +219,6 @@ def _run_model(
     summary["mesh_error"] = known(reduced.mesh_error)
     with stages.stage("stress"):
         shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
-    summary["seconds"] |= stages.seconds
     summary["stress"] = shell.summary
     return Outcome(moved.trajectory, summary, moved.ensemble, shell)
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
+from runs.pipeline.models import beam_system
 from runs.pipeline.motion import Motion
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
@@ -115,6 +118,27 @@ def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch)
     assert Path("out/trajectories.nc").read_bytes() == undisturbed
     assert protractile(*RUN, "--no-cache") == 0
     assert moved == [4, 5, 4, 5, 4, 5]
+
+
+def test_wall_times_are_this_run_s_but_for_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    write_case("1e-4")
+
+    def seconds() -> dict[str, float]:
+        assert protractile(*RUN) == 0
+        models = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["models"]
+        found: dict[str, float] = models["kantorovich-4"]["seconds"]
+        return found
+
+    first = seconds()
+
+    def build(*arguments: Any) -> GapSystem:
+        sleep(1.0 + first["build"])
+        return beam_system(*arguments)
+
+    monkeypatch.setattr("runs.pipeline.run.beam_system", build)
+    second = seconds()
+    assert second["motion"] == first["motion"]
+    assert second["build"] > 1.0 + first["build"]
 
 
 def test_another_case_is_another_motion(moved: list[int]) -> None:
