@@ -23,12 +23,14 @@ CONDA := $(if $(CONDA_PREFIX),$(shell $(CONDA_PREFIX)/bin/python -c '$(FIND_DOLF
 ifeq ($(CONDA),yes)
 BIN := $(CONDA_PREFIX)/bin
 READY := $(BIN)/protractile
+SPHINX := $(READY)
 else
 BIN := .venv/bin
 READY := .venv/ready-$(RELEASE)
+SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence test fuzz torture quick lint matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -70,6 +72,10 @@ lint: $(READY) ## ruff and mypy
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
 
+docs: $(SPHINX) ## these texts, the formulas and the library's pages as a site, into build/docs
+	rm -rf docs/api build/docs
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs build/docs
+
 matrix: ## `make verify` and `make test` on a Debian 13, the quick tests on unstable (needs root)
 	@$(MAKE) --no-print-directory --keep-going -j1 matrix-trixie matrix-sid
 
@@ -77,7 +83,7 @@ matrix-%:
 	@.ci/matrix $*
 
 clean: ## remove outputs, root file systems and caches
-	rm -rf --one-file-system runs/out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf --one-file-system runs/out build docs/api *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find $(ROOMS) tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean ## remove .venv too
@@ -98,6 +104,10 @@ $(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
 	@echo "installing Python packages into .venv (a minute or two) ..."
 	@/usr/bin/python3 -m venv --system-site-packages .venv
 	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[test]'
+	@touch $@
+
+.venv/sphinx-$(RELEASE): $(READY)
+	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[docs]'
 	@touch $@
 
 $(CONDA_PREFIX)/bin/protractile: pyproject.toml

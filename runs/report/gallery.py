@@ -3,7 +3,7 @@
 
 ``python -m runs.report.gallery`` takes them from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and
-writes docs/gallery/*.png.
+writes the pictures in docs/gallery.
 """
 
 from __future__ import annotations
