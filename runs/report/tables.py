@@ -17,7 +17,7 @@ from rich.text import Text
 from runs.folder.files import whole
 
 # Letters that fit in a line of the report with its usual font, and in one of a file.
-ROOMY = 110
+ROOMY = 115
 WIDE = 180
 
 
@@ -55,9 +55,10 @@ class TextTable:
     @property
     def crowded(self) -> bool:
         """Whether it takes smaller letters to fit the report's page."""
+        # Headings are broken between words, cells where they say so.
         letters = [
-            max(len(line) for cell in column for line in cell.split("\n"))
-            for column in zip(*self.rows, strict=True)
+            max(len(part) for part in (*heading.split(), *"\n".join(column).split("\n")))
+            for heading, *column in zip(self.headings, *self.rows, strict=True)
         ]
         return sum(letters) + 2 * len(letters) > ROOMY
 

@@ -116,7 +116,7 @@ def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path
     remarks = [
         *([f"grey: no {quantity.title}"] if values[known].isnull().any() else []),
         *(["×: the numerics failed"] if failed[known].values.any() else []),
-        *([f"none at all: {', '.join(left_out)}"] if left_out else []),
+        *([f"without any: {', '.join(left_out)}"] if left_out else []),
     ]
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
@@ -140,11 +140,14 @@ def _edges(values: Array) -> Array:
 
 def _scale(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
     """Label an axis with its key and unit; logarithmic where values span decades."""
-    unit = values.attrs["units"]
+    unit, places = values.attrs["units"], values.values
     label = str(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
     axes.set(**{f"{which}label": label})
-    if _spans_decades(values.values):
+    if _spans_decades(places):
         axes.set(**{f"{which}scale": "log"})
+    elif places.size <= MOST_TICKS and np.ptp(np.diff(places)) <= 1.0e-9 * np.ptp(places):
+        # Nothing is known between them.
+        axes.set(**{f"{which}ticks": places})
     else:
         axes.locator_params(axis=which, nbins=MOST_TICKS)
 

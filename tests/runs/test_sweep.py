@@ -389,6 +389,20 @@ def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
     assert len(list(Path("out/points").iterdir())) == 1
 
 
+@pytest.fixture
+def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
+    """The matplotlib figures behind the files that are saved."""
+    saved: list[Sheet] = []
+    save = Sheet.savefig
+
+    def keep(sheet: Sheet, path: Path) -> None:
+        saved.append(sheet)
+        save(sheet, path)
+
+    monkeypatch.setattr(Sheet, "savefig", keep)
+    return saved
+
+
 def charts(sweeping: Plan) -> list[str]:
     """Draw invented numbers, with a gap; what has been drawn."""
     outcomes = [
@@ -437,18 +451,16 @@ def test_charts_fit_the_number_of_keys(
     assert charts(planned(*texts)) == names
 
 
-def test_lines_are_in_shown_units_with_gaps(
-    planned: Planned, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: list[Sheet]) -> None:
+    """Where many values are, or values here and there, others are labelled."""
+    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"))
+    axes = sheets[0].axes[0]
+    np.testing.assert_allclose(axes.get_xticks(), [0.006, 0.010, 0.014])
+    assert axes.get_yticks().tolist() != [20.0, 40.0, 45.0]
+
+
+def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet]) -> None:
     """Reference: the invented numbers, 1.0, 1.1, ... m and N, the third missing in one model."""
-    sheets: list[Sheet] = []
-    save = Sheet.savefig
-
-    def keep(sheet: Sheet, path: Path) -> None:
-        sheets.append(sheet)
-        save(sheet, path)
-
-    monkeypatch.setattr(Sheet, "savefig", keep)
     charts(planned("joint.play=0:0.009:4"))
     (sheet,) = sheets
     panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}

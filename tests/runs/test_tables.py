@@ -37,3 +37,9 @@ def test_a_table_that_needs_smaller_letters_is_known(letters: int, crowded: bool
     first, second = letters // 2, letters - letters // 2
     row = ("x" * first, "\n".join(["y", "y" * second]))
     assert TextTable("", ("a", "b"), [("x", "y"), row]).crowded is crowded
+
+
+def test_so_is_one_with_longer_words_above_its_columns() -> None:
+    heading = f"{'x' * (ROOMY - 5)} {'y' * (ROOMY - 5)}"
+    assert not TextTable("", ("a", heading), [("x", "y")]).crowded
+    assert TextTable("", ("a", f"x{heading}"), [("x", "y")]).crowded
