@@ -21,7 +21,7 @@ from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.case.schema import Case, ShellTable, case_schema
 from runs.case.user_files import check_left
-from runs.folder.cache import Cache, default_folder
+from runs.folder.cache import Cache
 from runs.folder.files import alone, beside, changed_folder, whole_folder
 from runs.paper import readings
 from runs.pipeline import estimates
@@ -91,7 +91,7 @@ def run(
     )
     if not large:
         estimates.refuse_large(estimates.of_run(effective), case)
-    cache = None if no_cache else Cache(default_folder())
+    cache = None if no_cache else Cache.of_user()
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
         comm = sweep_runs.launched_world(case)
@@ -194,7 +194,7 @@ def sweep(
             if pool is None:
                 return 0
             with beside(folder) as scratch, _progress_bars() as tell:
-                cache = None if no_cache else Cache(default_folder())
+                cache = None if no_cache else Cache.of_user()
                 outcomes = sweep_runs.run_points(plan.points, folder, pool, scratch, tell, cache)
         data = sweep_output.write(plan, outcomes, folder)
         print(printable(str(folder / sweep_output.CSV)))

@@ -38,15 +38,6 @@ VARIABLE = "PROTRACTILE_CACHE"
 SUMS = "SHA256SUMS"
 
 
-def default_folder() -> Path:
-    """``$PROTRACTILE_CACHE``, or ``protractile`` in the user's folder of caches."""
-    given = os.environ.get(VARIABLE)
-    if given:
-        return Path(given)
-    caches = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(caches) / "protractile"
-
-
 def key(*content: Any) -> str:
     """SHA-256 of content: numbers to the last bit, dataclasses with their names.
 
@@ -66,6 +57,25 @@ class Cache:
     """
 
     folder: Path
+
+    @classmethod
+    def of_user(cls) -> Cache | None:
+        """In ``$PROTRACTILE_CACHE``, or in ``protractile`` in the user's folder of caches.
+
+        None, and a notice, for one who has no home.
+        """
+        if given := os.environ.get(VARIABLE):
+            return cls(Path(given))
+        try:
+            caches = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        except RuntimeError:
+            NOTICES.warning(
+                "there is no home folder, and what is computed is not kept for later runs; give a "
+                "folder in %s, or --no-cache",
+                VARIABLE,
+            )
+            return None
+        return cls(Path(caches) / "protractile")
 
     def load(self, key: str, read: Callable[[Files], Kept]) -> Kept | None:
         """What an entry holds; None where there is none, or none that is as it was kept.

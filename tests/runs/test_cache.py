@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from geometry.boom import Boom
-from runs.folder.cache import Cache, default_folder, key
+from runs.folder.cache import Cache, key
 from runs.process.shown import shown
 
 TEXT = "text"
@@ -180,6 +180,20 @@ def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
 def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", "/caches")
     monkeypatch.delenv("PROTRACTILE_CACHE", raising=False)
-    assert default_folder() == Path("/caches/protractile")
+    assert Cache.of_user() == Cache(Path("/caches/protractile"))
     monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
-    assert default_folder() == tmp_path
+    assert Cache.of_user() == Cache(tmp_path)
+
+
+def test_who_has_no_home_has_no_cache(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As in a container whose user has a number alone."""
+    for name in ("PROTRACTILE_CACHE", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("os.getuid", lambda: 2**31 - 7)
+    assert Cache.of_user() is None
+    assert caplog.messages == [
+        "there is no home folder, and what is computed is not kept for later runs; give a folder "
+        "in PROTRACTILE_CACHE, or --no-cache"
+    ]
