@@ -24,6 +24,8 @@ from runs.case.user_files import check_left
 from runs.folder.cache import Cache
 from runs.folder.files import alone, beside, changed_folder, whole_folder
 from runs.paper import readings
+from runs.paper.rules import judge
+from runs.paper.verdict_table import print_verdicts
 from runs.pipeline import estimates
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import FIELDS, Results
@@ -33,7 +35,8 @@ from runs.process import notices, ranks, terminal
 from runs.process.shown import message, printable, shown
 from runs.process.terminal import Terminal, say
 from runs.report import output
-from runs.report.printed import print_models, print_verdicts
+from runs.report.printed import print_models
+from runs.report.verdict import Verdict
 from runs.sweep import output as sweep_output
 from runs.sweep import points
 from runs.sweep import run as sweep_runs
@@ -105,9 +108,10 @@ def run(
             with _progress_bars() as tell:
                 finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
-            output.write(finished, part, scratch)
+            verdicts = judge(finished.results)
+            output.write(finished, verdicts, part, scratch)
         print(printable(str(folder / output.REPORT)))
-        status = _show({case: finished.results})
+        status = _show({case: finished.results}, {case: verdicts})
         return _show_models_that_failed(case, finished.results) or status
 
 
@@ -116,15 +120,16 @@ def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
-    runs = {}
+    runs, verdicts = {}, {}
     for folder in folders:
         with alone(Path(folder)):
             runs[folder] = results = Results.load(Path(folder))
             check_left(Path(folder), folder, "folder")
+            verdicts[folder] = judge(results)
             surveyed = readings.load(Path(folder), results.case)
             with changed_folder(Path(folder)) as part:
-                output.write_report(results, part, surveyed)
-    return _show(runs)
+                output.write_report(results, verdicts[folder], part, surveyed)
+    return _show(runs, verdicts)
 
 
 @app.command()
@@ -150,7 +155,7 @@ def snapshot(
                 drawn = output.write_snapshots(results, part, sorted(set(time)) if time else None)
             except RenderingUnavailable as reason:
                 raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
-            output.write_report(results, part, surveyed)
+            output.write_report(results, judge(results), part, surveyed)
     for name in drawn:
         print(printable(str(Path(folder) / output.SNAPSHOTS / name)))
     return 0
@@ -316,7 +321,7 @@ def _silence(model: str, stage: str, part: float) -> None:
     """Progress is rank 0's to show."""
 
 
-def _show(runs: Mapping[str, Results]) -> int:
+def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]) -> int:
     """Print the tables of runs, by their file, and what is amiss; the exit status."""
     console = Terminal()
     for results in runs.values():
@@ -324,8 +329,8 @@ def _show(runs: Mapping[str, Results]) -> int:
         skipped = results.summary["snapshots"]["skipped"]
         if skipped is not None:
             print(f"no snapshots: {skipped}")
-    print_verdicts({Path(file).stem: results for file, results in runs.items()}, console)
-    broken = [(file, verdict) for file, run in runs.items() for verdict in run.broken_demands()]
+    print_verdicts({Path(file).stem: judged for file, judged in verdicts.items()}, console)
+    broken = [(file, v) for file, judged in verdicts.items() for v in judged if v.broken]
     for file, verdict in broken:
         say(
             message(

@@ -445,10 +445,18 @@ class ShellTable(ModelTable):
 Model = Annotated[KantorovichTable | FiniteElementTable | ShellTable, Field(discriminator="kind")]
 
 
+def tied(model: Model) -> bool:
+    """Whether a model's segments are joined without play."""
+    return isinstance(model, FiniteElementTable) and model.tied
+
+
 class Case(Table):
     """A boom, and the models to run on it."""
 
     title: Text = Field(description="the heading of the report")
+    statements: Annotated[tuple[StatementId, ...], Few] = Field(
+        (), description="the statements of the paper that are judged on the run"
+    )
     demand: Annotated[tuple[StatementId, ...], Few] = Field(
         (), description="the statements of the paper that the run must reproduce"
     )

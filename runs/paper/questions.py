@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable, tied
 
 Array = npt.NDArray[np.float64]
 
@@ -144,11 +144,6 @@ class Run:
         """Refuse a run that ends before ``end`` in s."""
         if self.time[-1] < end * (1.0 - 1e-9):
             raise Lacking(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
-
-
-def tied(model: Model) -> bool:
-    """Whether a model's segments are joined without play."""
-    return isinstance(model, FiniteElementTable) and model.tied
 
 
 def terms(model: Model) -> tuple[int, ...]:

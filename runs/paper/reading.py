@@ -16,10 +16,10 @@ from beam_model.kantorovich import Base
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import perturbations
 from runs.case.schema import Case, KantorovichTable
-from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER
-from runs.paper.statements import Judgement
+from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
+from runs.report.verdict import Judgement
 
 Array = npt.NDArray[np.float64]
 Stiffness = Literal["restored", "literal"]
@@ -114,6 +114,8 @@ class Reading:
         return paper.model_copy(
             update={
                 "time": time,
+                "statements": COMMON,
+                "demand": (),
                 "ensemble": None,
                 "segments": segments,
                 "joints": joints,
@@ -159,8 +161,7 @@ def judge_reading(reading: Reading, paper: Case, members: int = MEMBERS) -> Judg
         verdict.id: Finding(
             verdict.verdict, () if verdict.measured is None else (verdict.measured,)
         )
-        for verdict in first.verdicts
-        if verdict.id in COMMON
+        for verdict in judge(first)
     }
     peaks = {name: first.summary["models"][name]["first_peak"]["tip"][1] for name in MODELS}
     findings |= {

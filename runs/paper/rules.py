@@ -11,17 +11,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from itertools import combinations, pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from scipy.stats import t as student
 
-from runs.case.schema import Case, KantorovichTable, Model
+from runs.case.schema import Case, KantorovichTable, Model, tied
 from runs.paper.parting import apart_at_the_end, peaks_apart
-from runs.paper.questions import Lacking, Run, options, tied
-from runs.paper.statements import STATEMENTS, Finding, Judgement, Verdict
+from runs.paper.questions import Lacking, Run, options
+from runs.paper.statements import STATEMENTS, Finding
+from runs.pipeline.results import Results
+from runs.report.verdict import Judgement, Verdict
 
 Array = npt.NDArray[np.float64]
 # S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
@@ -55,24 +55,19 @@ ELEMENT_STEPS = 4000
 SEGMENTS = 3
 
 
-def judge(
-    trajectories: xr.Dataset,
-    summary: Mapping[str, Any],
-    case: Case,
-    ensembles: xr.Dataset | None = None,
-) -> list[Verdict]:
-    """Judge S1 … S11 on one run.
-
-    Args:
-        trajectories: dims ``model``, ``time``, ``station``; ``tip`` and ``head`` in m.
-        summary: per model ``first_peak``, ``first_contact``, ``steps``, ``contact_changes``.
-        case: which model is which.
-        ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
-    """
-    run = Run(trajectories, summary, case, ensembles)
+def judge(results: Results) -> list[Verdict]:
+    """The verdicts that a run's case asks for, or demands."""
+    case = results.case
+    run = Run(results.trajectories, results.summary, case, results.ensembles)
     return [
-        Verdict(id=key, statement=statement, **asdict(_find(RULES[key], run)))
+        Verdict(
+            id=key,
+            statement=statement,
+            **asdict(_find(RULES[key], run)),
+            demanded=key in case.demand,
+        )
         for key, statement in STATEMENTS.items()
+        if key in case.statements + case.demand
     ]
 
 

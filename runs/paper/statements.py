@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
-Judgement = Literal["reproduced", "contradicted", "undecided"]
+from runs.report.verdict import Judgement
 
 STATEMENTS = {
     "S1": "Four and five terms of the series coincide until the first collision.",
@@ -28,31 +27,8 @@ STATEMENTS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
-    """One statement, judged.
-
-    Args:
-        id: S1 … S11.
-        statement: what the paper says.
-        measured: the number that the rule looks at, None where there is none.
-        threshold: what it is held against.
-        unit: of both; empty where there is none.
-        verdict: what the rule says.
-        why: what was compared, and what the number can and cannot decide.
-    """
-
-    id: str
-    statement: str
-    measured: float | None
-    threshold: float | None
-    unit: str
-    verdict: Judgement
-    why: str
-
-
-@dataclass(frozen=True, slots=True)
 class Finding:
-    """What a rule leaves; the fields are those of :class:`Verdict`."""
+    """What a rule leaves; the fields are those of a verdict."""
 
     verdict: Judgement
     why: str

@@ -19,8 +19,7 @@ from dynamics.predictability.comparison import (
     Pointwise,
     compare,
 )
-from runs.case.schema import Case, Model, ShellTable
-from runs.paper.questions import tied
+from runs.case.schema import Case, Model, ShellTable, tied
 from runs.pipeline.known import known
 
 # Differences over a whole run are told until here, too, in s.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run leaves: labelled trajectories of all models, a summary, and verdicts."""
+"""What a run leaves: labelled trajectories of all models, and a summary."""
 
 from __future__ import annotations
 
@@ -17,12 +17,10 @@ from geometry.boom import Boom
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput
-from runs.case.schema import Case, KantorovichTable, Model
-from runs.paper.statements import Verdict
+from runs.case.schema import Case, Model
 
 TRAJECTORIES = "trajectories.nc"
 SUMMARY = "summary.json"
-VERDICTS = "verdicts.json"
 CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
@@ -43,7 +41,6 @@ class Results:
             ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m, energies in J; NaN
             where a model has none.
         summary: what ``summary.json`` holds.
-        verdicts: on the statements of the paper.
         ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
             ``time``; ``tip``, ``head`` in m; None where the case asks for none.
     """
@@ -51,7 +48,6 @@ class Results:
     case: Case
     trajectories: xr.Dataset
     summary: dict[str, Any]
-    verdicts: list[Verdict]
     ensembles: xr.Dataset | None = None
 
     @classmethod
@@ -78,7 +74,6 @@ class Results:
         if "station" not in trajectories.dims:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
         summary = read(SUMMARY, _read_json)
-        verdicts = read(VERDICTS, lambda path: [Verdict(**entry) for entry in _read_json(path)])
         ensembles = read(ENSEMBLES, read_netcdf) if summary.get("ensemble") else None
         if not (folder / CASE).is_file():
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
@@ -92,12 +87,7 @@ class Results:
                 raise BadInput(
                     str(folder), name, f"is not of the case in {CASE}; run the case again"
                 )
-        return cls(case, trajectories, summary, verdicts, ensembles)
-
-    @property
-    def judges_the_paper(self) -> bool:
-        """Whether the statements of the paper, which are about its series, are worth a table."""
-        return any(isinstance(model, KantorovichTable) for model in self.case.models)
+        return cls(case, trajectories, summary, ensembles)
 
     @property
     def ran(self) -> list[Model]:
@@ -137,14 +127,6 @@ class Results:
             if (refused := model.get("refused_steps"))
         ]
         return failed + far + poor + coarse + halved
-
-    def broken_demands(self) -> list[Verdict]:
-        """The verdicts that the case demands and that are not ``reproduced``."""
-        return [
-            verdict
-            for verdict in self.verdicts
-            if verdict.id in self.case.demand and verdict.verdict != "reproduced"
-        ]
 
 
 def read_netcdf(path: Path) -> xr.Dataset:

@@ -25,7 +25,6 @@ from runs.case.schema import Case, Model, ShellTable
 from runs.folder.cache import Cache
 from runs.folder.finished import Finished, finished
 from runs.folder.versions import versions
-from runs.paper.rules import judge
 from runs.pipeline import members
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
@@ -147,9 +146,8 @@ def run_case(
     trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary["case_hash"])
     summary["comparisons"] = compare_models(case, data, ensembles, summary)
-    verdicts = judge(data, summary, case, ensembles)
     shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
-    return Run(Results(case, data, summary, verdicts, ensembles), shells)
+    return Run(Results(case, data, summary, ensembles), shells)
 
 
 # What a model's numbers may lead to.
@@ -202,7 +200,9 @@ def _run_model(
     with members.workers(comm if case.ensemble else None) as executor:
         if not first_rank:
             return None
-        alone = case.model_copy(update={"models": (model,), "title": "", "demand": ()})
+        alone = case.model_copy(
+            update={"models": (model,), "title": "", "statements": (), "demand": ()}
+        )
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
         moving = Stages(model.name, progress)
         moved = finished(

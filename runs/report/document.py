@@ -7,8 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 
 from runs.case import toml
-from runs.paper.questions import tied
-from runs.paper.statements import Verdict
+from runs.case.schema import tied
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Figure
@@ -18,12 +17,14 @@ from runs.report.pages import MARKS, page
 from runs.report.stress_tables import wall_table
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, number
+from runs.report.verdict import Verdict
 
 _STYLES = {"reproduced": "green", "contradicted": "bold red", "undecided": "yellow"}
 
 
 def render(
     results: Results,
+    verdicts: Sequence[Verdict],
     figures: Sequence[Figure],
     snapshots: Sequence[Figure],
     readings: Sequence[TextTable] = (),
@@ -32,6 +33,7 @@ def render(
 
     Args:
         results: one run.
+        verdicts: those that its case asks for.
         figures: on disk.
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
@@ -47,7 +49,7 @@ def render(
         *_numbered("Table", chain(models, known, compared, readings)),
         *_numbered("Figure", chain(motion, knowledge, snapshots)),
     ]
-    judged: list[str] = [verdict.verdict for verdict in results.verdicts]
+    judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary["models"])
     strokes = theme.strokes(names, [m.name for m in results.case.models if tied(m)])
     return page(
@@ -55,13 +57,11 @@ def render(
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
         cautions=results.cautions(),
-        judges=results.judges_the_paper,
         counts={kind: judged.count(kind) for kind in MARKS},
         verdicts=[
             (v, _measured(v.measured, v), _measured(v.threshold, v), _evidence(v, shown))
-            for v in results.verdicts
+            for v in verdicts
         ],
-        demanded=results.case.demand,
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         models=models,

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
-from runs.paper.questions import tied
+from runs.case.schema import tied
 from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.report import theme
@@ -57,7 +57,7 @@ class Pen:
         self.data = results.trajectories
         self.ensembles = results.ensembles
         self.summary = results.summary["models"]
-        self.of_the_paper = results.judges_the_paper
+        self.of_the_paper = bool(results.case.statements)
         self.rubs = rubs(results.case)
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dynamics.predictability.horizon import SHARES
-from runs.paper.questions import tied
+from runs.case.schema import tied
 from runs.pipeline.comparisons import reference_of, rubs
 from runs.pipeline.results import Results
 from runs.report.tables import TextTable
@@ -131,7 +131,7 @@ def step_table(results: Results) -> TextTable:
     if any("step_halving" in model for model in models.values()):
         headings.append("change by half the step\n% of the tip's range")
         columns.append([_in_percent(model.get("step_halving")) for model in models.values()])
-    if results.judges_the_paper:
+    if results.case.statements:
         notes.append(
             "The paper names at most 2000 steps for the series and more than 4000 for beam "
             "elements, and 4375 for these with friction."

@@ -25,7 +25,6 @@ from runs.pipeline.results import (
     FIELDS,
     SUMMARY,
     TRAJECTORIES,
-    VERDICTS,
     Results,
     read_netcdf,
 )
@@ -34,10 +33,12 @@ from runs.report import snapshots
 from runs.report.document import render
 from runs.report.figures import draw
 from runs.report.tables import TextTable
+from runs.report.verdict import Verdict
 from shell_model.pictures.field_series import write_field_series
 from shell_model.pictures.rendering import RenderingUnavailable, render_snapshots
 
 REPORT = "report.html"
+VERDICTS = "verdicts.json"
 SNAPSHOTS = "snapshots"
 STRESSES = "stress.nc"
 SERIES = "fields"
@@ -81,11 +82,12 @@ def prepare(out: str, file: str) -> Path:
     return folder
 
 
-def write(run: Run, folder: Path, mesh_folder: Path) -> None:
+def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path) -> None:
     """Write everything that a run leaves.
 
     Args:
         run: a finished one.
+        verdicts: those that its case asks for.
         folder: an empty one.
         mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
     """
@@ -115,7 +117,7 @@ def write(run: Run, folder: Path, mesh_folder: Path) -> None:
         write_snapshots(results, folder)
     except RenderingUnavailable as reason:
         results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
-    write_report(results, folder)
+    write_report(results, verdicts, folder)
 
 
 def _series_times(fields: xr.Dataset) -> list[float]:
@@ -159,16 +161,23 @@ def write_snapshots(
     return written
 
 
-def write_report(results: Results, folder: Path, surveyed: Sequence[TextTable] = ()) -> None:
+def write_report(
+    results: Results,
+    verdicts: Sequence[Verdict],
+    folder: Path,
+    surveyed: Sequence[TextTable] = (),
+) -> None:
     """Write what is derived from the trajectories: summary, verdicts, figures, report.
 
     Args:
         results: of the folder.
+        verdicts: those that its case asks for.
         folder: gets them.
         surveyed: what a survey of the case's readings has found.
     """
     _write_text(folder / SUMMARY, _json(results.summary))
-    _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in results.verdicts]))
+    if verdicts:
+        _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in verdicts]))
     shutil.rmtree(folder / FIGURES, ignore_errors=True)
     (folder / FIGURES).mkdir()
     figures = draw(results, folder / FIGURES)
@@ -176,7 +185,7 @@ def write_report(results: Results, folder: Path, surveyed: Sequence[TextTable] =
         snapshots.describe(results, folder / SNAPSHOTS / name)
         for name in results.summary["snapshots"]["written"]
     ]
-    _write_text(folder / REPORT, render(results, figures, pictures, surveyed))
+    _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed))
 
 
 def _write_text(path: Path, text: str) -> None:

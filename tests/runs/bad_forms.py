@@ -188,7 +188,7 @@ FORMS = {
     "not TOML": (
         "[time]",
         "[time",
-        "line 7: not TOML: Expected ']' at the end of a table declaration (column 6); see "
+        "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
         "https://toml.io",
     ),
 }

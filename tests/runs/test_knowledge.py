@@ -45,7 +45,7 @@ def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> R
         "comparisons": comparisons,
     }
     case = case.model_copy(update={"time": time, "joints": joints})
-    return Results(case, xr.Dataset(), summary, [])
+    return Results(case, xr.Dataset(), summary)
 
 
 ENSEMBLE = {
@@ -175,4 +175,4 @@ def test_contact_laws_are_those_of_the_models() -> None:
     assert statements(table) == ("S9",)
     free = results()
     tied = free.case.model_copy(update={"joints": ()})
-    assert law_table(Results(tied, free.trajectories, free.summary, [])) is None
+    assert law_table(Results(tied, free.trajectories, free.summary)) is None

@@ -16,6 +16,7 @@ from runs.case import toml
 from runs.case.messages import BadInput
 from runs.paper import readings
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
+from runs.paper.rules import judge
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
@@ -37,7 +38,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def folder(run: Run, tmp_path: Path) -> Path:
     out = tmp_path / "out"
     out.mkdir()
-    write(run, out, out)
+    write(run, judge(run.results), out, out)
     return out
 
 
@@ -54,7 +55,7 @@ def test_a_survey_in_the_folder_is_in_the_report(run: Run, folder: Path) -> None
     assert "7, restored, as printed, 2" not in (folder / "report.html").read_text(encoding="utf-8")
     leave_survey(folder, toml.digest(run.results.case))
     results = Results.load(folder)
-    write_report(results, folder, readings.load(folder, results.case))
+    write_report(results, [], folder, readings.load(folder, results.case))
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert page.count("7, restored, as printed, 2") == 2
     assert "0 of 1 readings are excluded." in page
@@ -81,7 +82,7 @@ def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
     in_space = replace(run, results=replace(run.results, trajectories=data))
     out = tmp_path / "out"
     out.mkdir()
-    write(in_space, out, out)
+    write(in_space, [], out, out)
     gaps = [name for name in header(out) if name.startswith("gap@")]
     assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
 

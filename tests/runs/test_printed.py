@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from io import StringIO
 
 import pytest
@@ -12,23 +11,24 @@ from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
-from runs.paper.statements import STATEMENTS, Judgement, Verdict
+from runs.paper.statements import STATEMENTS
+from runs.paper.verdict_table import decisive, print_verdicts
 from runs.pipeline.results import Results
-from runs.report.printed import decisive, print_models, print_verdicts
+from runs.report.printed import print_models
+from runs.report.verdict import Judgement, Verdict
 
 
-def run(case: str, **judgements: Judgement) -> Results:
-    """A run that leaves open what is not given."""
-    verdicts = [
+def judged(case: str, **judgements: Judgement) -> list[Verdict]:
+    """Verdicts that leave open what is not given."""
+    return [
         Verdict(key, statement, None, None, "", judgements.get(key, "undecided"), case)
         for key, statement in STATEMENTS.items()
     ]
-    return Results(case_file.load(str(CASES / f"{case}.toml")), xr.Dataset(), {}, verdicts)
 
 
 RUNS = {
-    "paper": run("paper", S1="reproduced", S3="contradicted"),
-    "paper-friction": run("paper-friction", S3="reproduced", S7="contradicted"),
+    "paper": judged("paper", S1="reproduced", S3="contradicted"),
+    "paper-friction": judged("paper-friction", S3="reproduced", S7="contradicted"),
 }
 
 
@@ -42,11 +42,11 @@ RUNS = {
     ],
 )
 def test_the_first_run_that_decides_is_heard(statement: str, name: str, verdict: Judgement) -> None:
-    found, heard = decisive(RUNS, statement)
-    assert (found, heard.id, heard.verdict) == (name, statement, verdict)
+    (found,) = [entry for entry in decisive(RUNS) if entry[1].id == statement]
+    assert (found[0], found[1].verdict) == (name, verdict)
 
 
-def printed(runs: dict[str, Results]) -> str:
+def printed(runs: dict[str, list[Verdict]]) -> str:
     console = Console(file=StringIO(), width=160)
     print_verdicts(runs, console)
     assert isinstance(console.file, StringIO)
@@ -65,16 +65,16 @@ def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
     assert "in paper" not in printed({"paper": RUNS["paper"]})
 
 
-def test_runs_without_a_series_judge_nothing() -> None:
-    beams = case_file.select(RUNS["paper"].case, "", ["beam-fe"])
-    assert printed({"beams": replace(RUNS["paper"], case=beams)}) == ""
+def test_runs_that_are_not_judged_show_no_table() -> None:
+    assert printed({"boom": []}) == ""
 
 
 def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPatch) -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
     shell = {"modes": 110, "reduction_errors": errors, "mesh_error": 0.0083}
     summary = {"models": {"shell": shell}}
-    results = replace(RUNS["paper"], summary=summary)
+    case = case_file.load(str(CASES / "paper.toml"))
+    results = Results(case, xr.Dataset(), summary)
     monkeypatch.setattr("runs.report.printed.model_rows", lambda results: [])
     monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)

@@ -18,7 +18,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case, KantorovichTable
 from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
 from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
-from runs.paper.statements import Judgement
+from runs.report.verdict import Judgement
 
 LITERAL = Reading(0.007, "literal", "as printed", 2.0)
 RESTORED = Reading(0.007, "restored", "as printed", 2.0)

@@ -17,12 +17,14 @@ from rich.console import Console
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
+from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
+from runs.paper.verdict_table import print_verdicts
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.report.document import render
 from runs.report.figure_context import Figure
-from runs.report.printed import print_models, print_verdicts
+from runs.report.printed import print_models
 from runs.report.tables import TextTable
 
 COARSE = CASES / "coarse.toml"
@@ -70,14 +72,14 @@ class Page(HTMLParser):
 def printed(results: Results, width: int = 100) -> str:
     console = Console(file=StringIO(), width=width)
     print_models(results, console)
-    print_verdicts({"coarse": results}, console)
+    print_verdicts({"coarse": judge(results)}, console)
     assert isinstance(console.file, StringIO)
     return console.file.getvalue()
 
 
 def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, figures, []))
-    for verdict in results.verdicts:
+    page = Page(render(results, judge(results), figures, []))
+    for verdict in judge(results):
         assert verdict.statement in page.text
         assert verdict.why in page.text
     order = [
@@ -87,7 +89,7 @@ def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> N
 
 
 def test_shows_every_model_and_where_it_comes_from(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, figures, []))
+    page = Page(render(results, judge(results), figures, []))
     cells = re.sub(r"\s+", " ", page.text)
     for name, model in results.summary["models"].items():
         assert f"{name} {model['kind']}" in cells
@@ -101,7 +103,7 @@ def test_shows_every_model_and_where_it_comes_from(results: Results, figures: li
 def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: Path) -> None:
     motion = tmp_path / "motion.gif"
     motion.write_bytes(GIF)
-    page = Page(render(results, figures, [Figure(motion, "Motion", "It moves.")]))
+    page = Page(render(results, judge(results), figures, [Figure(motion, "Motion", "It moves.")]))
     assert not page.all("script") + page.all("link") + page.all("iframe")
     assert all(str(link["href"]).startswith("#") for link in page.all("a"))
     assert "url(" not in page.style
@@ -114,7 +116,7 @@ def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: P
 
 
 def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
-    text = render(results, figures, [])
+    text = render(results, judge(results), figures, [])
     closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
     root = ElementTree.fromstring(closed.strip())
     assert root.tag == "html"
@@ -126,7 +128,7 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
 
 def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) -> None:
     """Reference: the ids of the page itself; no id twice, no link into nothing."""
-    page = Page(render(results, figures, []))
+    page = Page(render(results, judge(results), figures, []))
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
     links = [str(link["href"]).removeprefix("#") for link in page.all("a")]
@@ -136,7 +138,7 @@ def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) ->
 
 def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]) -> None:
     """Reference: what the figure says of itself; S10 is about steps, S9 about contact laws."""
-    text = render(results, figures, [])
+    text = render(results, judge(results), figures, [])
     rows = {key: text[text.index(f'<tr id="{key}">') :].split("</tr>")[0] for key in STATEMENTS}
     found = {key: re.findall(r'href="#([^"]+)">([^<]+)<', row) for key, row in rows.items()}
     figure = ("figure-tip", "Figure\N{NO-BREAK SPACE}1")
@@ -156,7 +158,7 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
         None,
         pytest.approx(0.0193, rel=0.01),
     )
-    text = render(results, figures, [])
+    text = render(results, judge(results), figures, [])
     (row,) = re.findall(r"<tr>\s*<td>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL)[
         :1
     ]
@@ -168,43 +170,42 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
 
 def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
     table = TextTable("A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",), "readings")
-    page = Page(render(results, figures, [], [table]))
+    page = Page(render(results, judge(results), figures, [], [table]))
     assert "A <survey>" in page.text
     assert {"class": "contradicted"} in page.all("td")
     assert {"href": "#readings"} in page.all("a")
-    assert {"href": "#readings"} not in Page(render(results, figures, [])).all("a")
+    assert {"href": "#readings"} not in Page(render(results, judge(results), figures, [])).all("a")
 
 
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0
     far = replace(results, trajectories=wild)
-    text = Page(render(far, figures, [])).text
+    text = Page(render(far, judge(far), figures, [])).text
     assert text.index(far.cautions()[0]) < text.index("Verdicts")
 
 
 def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     attack = "<script>alert('x')</script> & \"so\""
     case = results.case.model_copy(update={"title": attack})
-    verdicts = [replace(verdict, why=attack) for verdict in results.verdicts]
+    verdicts = [replace(verdict, why=attack) for verdict in judge(results)]
     summary = results.summary | {"snapshots": {"written": [], "skipped": attack}}
-    page = Page(
-        render(replace(results, case=case, verdicts=verdicts, summary=summary), figures, [])
-    )
+    page = Page(render(replace(results, case=case, summary=summary), verdicts, figures, []))
     assert not page.all("script")
     assert page.text.count(attack) == 2 + len(verdicts) + 1  # title, heading; whys; snapshots
     assert page.all("img")[0]["alt"] == "Tip <of> the boom"
 
 
 def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]) -> None:
-    assert "Snapshots" not in Page(render(results, figures, [])).text
+    assert "Snapshots" not in Page(render(results, judge(results), figures, [])).text
     reason = "no GL here"
     summary = results.summary | {"snapshots": {"written": [], "skipped": reason}}
-    assert f"Skipped: {reason}" in Page(render(replace(results, summary=summary), figures, [])).text
+    page = Page(render(replace(results, summary=summary), judge(results), figures, []))
+    assert f"Skipped: {reason}" in page.text
 
 
 def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, figures, []))
+    page = Page(render(results, judge(results), figures, []))
     viewport = [meta for meta in page.all("meta") if meta.get("name") == "viewport"]
     assert viewport == [{"name": "viewport", "content": "width=device-width, initial-scale=1"}]
     assert "@media (max-width:" in page.style
@@ -215,7 +216,7 @@ def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> 
 def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> None:
     case = results.case.model_copy(update={"demand": ("S1",)})
     demanding = replace(results, case=case)
-    assert Page(render(demanding, figures, [])).text.count("(demanded)") == 1
+    assert Page(render(demanding, judge(demanding), figures, [])).text.count("(demanded)") == 1
     assert printed(demanding).count("(demanded)") == 1
 
 
@@ -224,7 +225,7 @@ def test_terminal_shows_both_tables(results: Results) -> None:
     for name, model in results.summary["models"].items():
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [name]]
         assert line.split()[1] == str(model["degrees_of_freedom"])
-    for verdict in results.verdicts:
+    for verdict in judge(results):
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [verdict.id]]
         assert line.split()[1] == verdict.verdict
 
@@ -296,12 +297,13 @@ def test_cautions_against_a_poor_mesh(results: Results) -> None:
         ]
 
 
-def test_judges_no_statements_of_the_paper_without_its_series(
+def test_judges_the_statements_that_the_case_asks_for_alone(
     results: Results, figures: list[Figure]
 ) -> None:
-    beams = tuple(model for model in results.case.models if model.kind != "kantorovich")
-    other = replace(results, case=results.case.model_copy(update={"models": beams}))
+    other = replace(results, case=results.case.model_copy(update={"statements": ()}))
+    one = results.case.model_copy(update={"statements": ("S9",), "demand": ("S1",)})
+    assert [verdict.id for verdict in judge(replace(results, case=one))] == ["S1", "S9"]
     assert "Statements of the paper" in printed(results)
     assert "Statements of the paper" not in printed(other)
-    assert "Verdicts" in Page(render(results, figures, [])).text
-    assert "Verdicts" not in Page(render(other, figures, [])).text
+    assert "Verdicts" in Page(render(results, judge(results), figures, [])).text
+    assert "Verdicts" not in Page(render(other, judge(other), figures, [])).text

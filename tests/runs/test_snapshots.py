@@ -33,7 +33,7 @@ def results(*shells: str) -> Results:
         },
         coords={"model": list(shells), "time": TIME, "station": [9.0]},
     )
-    return Results(case.model_copy(update={"models": models}), trajectories, {}, [])
+    return Results(case.model_copy(update={"models": models}), trajectories, {})
 
 
 @pytest.mark.parametrize(

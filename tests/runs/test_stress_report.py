@@ -56,7 +56,7 @@ def results(stress: dict[str, Any] | None) -> Results:
         coords={"model": ["shell"], "time": np.arange(601) / 1000},
     )
     summary = {"models": {"shell": {} if stress is None else {"stress": stress}}}
-    return Results(case, data, summary, [])
+    return Results(case, data, summary)
 
 
 def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:

@@ -20,8 +20,10 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case, ContactTable
 from runs.paper.rules import PEAK_SCATTER, judge
-from runs.paper.statements import STATEMENTS, Verdict
+from runs.paper.statements import STATEMENTS
+from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
+from runs.report.verdict import Verdict
 
 PAPER = CASES / "paper.toml"
 FIRST_CONTACT = 0.12
@@ -38,7 +40,8 @@ PEAKS = {
 
 @pytest.fixture
 def case() -> Case:
-    return case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
+    paper = case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
+    return paper.model_copy(update={"statements": tuple(STATEMENTS)})
 
 
 def swing(height: float, duration: float = 10.0) -> np.ndarray:
@@ -93,7 +96,7 @@ def verdicts(
             **(summary or {}).get(name, {}),
         }
     whole = {"models": models, "ensemble": {"slow_below": 1.67}}
-    return {verdict.id: verdict for verdict in judge(data, whole, case, ensembles)}
+    return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
 
 
 def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
@@ -135,7 +138,7 @@ def test_s1_holds_for_the_series_themselves(case: Case, tmp_path: Path) -> None:
     short = case_file.select(short, "", ["kantorovich-4", "kantorovich-5"])
     run = run_case(short, "", None, tmp_path, lambda *_: None)
     assert run is not None
-    verdict = run.results.verdicts[0]
+    verdict = judge(run.results)[0]
     assert verdict.verdict == "reproduced"
     assert verdict.measured is not None
     assert verdict.measured < 1.0e-12

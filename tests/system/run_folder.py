@@ -79,8 +79,9 @@ def check_common_files(folder: Path, models: list[str]) -> None:
     assert float(rows[-1]["tip"]) == pytest.approx(float(last["tip"]), rel=1e-8)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert list(summary["models"]) == models
-    verdicts = json.loads((folder / "verdicts.json").read_text(encoding="utf-8"))
-    assert [verdict["id"] for verdict in verdicts] == [f"S{number}" for number in range(1, 12)]
+    judged = folder / "verdicts.json"
+    verdicts = json.loads(judged.read_text(encoding="utf-8")) if judged.exists() else []
+    assert [verdict["id"] for verdict in verdicts] == list(case.statements)
     for picture in (folder / "figures").iterdir():
         with Image.open(picture) as image:
             image.verify()

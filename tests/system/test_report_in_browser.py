@@ -11,6 +11,7 @@ import pytest
 
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
+from runs.paper.rules import judge
 from runs.pipeline.run import run_case
 from runs.report import output
 from tests.system.browser import Page, blank_page, find_browser
@@ -52,7 +53,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "limits": ["step", "physics"],
     }
     out = output.prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
-    output.write(finished, out, out)
+    output.write(finished, judge(finished.results), out, out)
     return out
 
 

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 from runs.case.reading import load
+from runs.paper.rules import judge
 from runs.pipeline.results import Results
 from tests.system.run_folder import (
     COARSE,
@@ -47,7 +48,7 @@ def test_a_run_reads_back(series: Path) -> None:
     results = Results.load(series)
     chosen = tuple(model for model in load(COARSE).models if model.name in SERIES)
     assert results.case == load(COARSE).model_copy(update={"models": chosen})
-    assert [verdict.id for verdict in results.verdicts][:2] == ["S1", "S2"]
+    assert [verdict.id for verdict in judge(results)][:2] == ["S1", "S2"]
     xr.testing.assert_identical(results.trajectories, trajectories(series))
 
 
@@ -89,7 +90,7 @@ def test_files_of_two_runs_are_not_mixed(
     )
 
 
-@pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "verdicts.json", "case.toml"])
+@pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "case.toml"])
 def test_a_damaged_folder_is_one_line(
     series: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
