@@ -13,5 +13,8 @@ pytestmark = pytest.mark.slow
 
 
 def test_no_write_that_is_refused_costs_what_was_there(tmp_path: Path) -> None:
-    for name, _, breaches, what in full_disk.rows(tmp_path, 2):
+    found = list(full_disk.rows(tmp_path, 2))
+    assert len(found) == 6
+    for name, tries, breaches, what in found:
+        assert tries >= 2
         assert breaches == 0, f"{name}: {what}"
