@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,9 @@ class Results:
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
         case = case_file.load(str(folder / CASE))
         expected = toml.digest(case)
+        if expected != summary.get("case_hash") == sha256((folder / CASE).read_bytes()).hexdigest():
+            what = "is another version's, which had other keys; run the case again"
+            raise BadInput(str(folder), CASE, what)
         marks = {TRAJECTORIES: trajectories.attrs, SUMMARY: summary}
         if ensembles is not None:
             marks[ENSEMBLES] = ensembles.attrs

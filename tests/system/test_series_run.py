@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import shutil
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,25 @@ def test_files_of_two_runs_are_not_mixed(
     assert capsys.readouterr().err == (
         f"protractile: {again}: trajectories.nc: is not of the case in case.toml; run the case "
         "again\n"
+    )
+
+
+def test_a_run_of_another_version_is_told_from_a_mixed_one(
+    series: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: a folder as a version has written it that did not know one of today's keys."""
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    case, summary = again / "case.toml", again / "summary.json"
+    now = case.read_bytes()
+    assert b"\ndemand = []\n" in now
+    case.write_bytes(now.replace(b"demand = []\n", b"", 1))
+    marks = [sha256(text).hexdigest() for text in (now, case.read_bytes())]
+    summary.write_text(summary.read_text(encoding="utf-8").replace(*marks), encoding="utf-8")
+    assert protractile("report", again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: case.toml: is another version's, which had other keys; run the "
+        "case again\n"
     )
 
 
