@@ -64,7 +64,7 @@ def residuals(pen: Pen) -> list[Figure]:
         "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
         "the largest work: the largest so far. Without contact the motion is exact to round-off."
     )
-    title = f"Unaccounted energy: at most {theme.scientific(highest(worst))} of the work"
+    title = f"Unaccounted energy: up to {theme.scientific(highest(worst), 2)} of the work"
     statements = ("S8",) if pen.rubs else ()
     return [pen.finish(sheet, axes, "energy-residual", title, caption, statements)]
 
