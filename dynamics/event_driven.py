@@ -10,6 +10,8 @@ way.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit
@@ -28,7 +30,8 @@ from dynamics.kernels.contact_series import (
     reach,
 )
 from dynamics.kernels.flight import jump, pulls, safe_time, tabulate
-from dynamics.step import closing_speeds, initial_speeds
+from dynamics.motion import Motion
+from dynamics.step import closing_speeds
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -217,31 +220,20 @@ def what_hinders(system: GapSystem) -> str | None:
     return None
 
 
-def _way(system: GapSystem, a: Array, v: Array, time: float) -> Array:
-    """(num_rows,) about how far each gap may move within a time, in m."""
-    speeds = closing_speeds(system, initial_speeds(system, a, v))
+def _way(motion: Motion) -> Array:
+    """(num_rows,) about how far each gap may move within an output step, in m."""
+    system, time = motion.system, motion.output_step
     fall = 0.5 * time**2 * np.abs(system.rows) @ np.abs(system.load)
-    return np.asarray(time * speeds + fall)
+    return np.asarray(time * closing_speeds(system, motion.initial_speeds) + fall)
 
 
-def integrate_events(
-    system: GapSystem,
-    duration: float,
-    output_step: float = 1.0e-3,
-    tolerance: float = TOLERANCE,
-    position: Array | None = None,
-    velocity: Array | None = None,
-) -> Trajectory:
+def integrate_events(motion: Motion, tolerance: float = TOLERANCE) -> Trajectory:
     """Move an undamped gap system from contact to contact.
 
     Args:
-        system: what moves; the cost of a jump grows with its modes, and jumps shorten with its
-            highest frequencies.
-        duration: in s; a whole number of output steps is made, at least one.
-        output_step: in s.
+        motion: the cost of a jump grows with its modes, and jumps shorten with its highest
+            frequencies.
         tolerance: of a series while rows press, as a part of the motion.
-        position: (num_modes,) initial a in √kg·m, zero unless given.
-        velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
 
     Raises:
         ValueError: :func:`what_hinders` names something.
@@ -249,14 +241,13 @@ def integrate_events(
 
     The trajectory's ``step`` is the mean of its jumps and series.
     """
-    hindrance = what_hinders(system)
+    hindrance = what_hinders(motion.system)
     if hindrance is not None:
         raise ValueError(f"{hindrance}; integrate by splitting")
-    system = system.gathered()
+    motion = replace(motion, system=motion.system.gathered())
+    system, outputs, output_step = motion.system, motion.outputs, motion.output_step
     n, m = system.num_modes, len(system.laws)
-    a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
-    v = np.zeros(n) if velocity is None else np.array(velocity, dtype=np.float64)
-    outputs = max(1, round(duration / output_step))
+    a, v = motion.position.copy(), motion.velocity.copy()
     terms, limits = contact_terms(system.laws), contact_limits(system.laws)
     clearance = np.array([law.clearance for law in system.laws])
     states, velocities = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, n))
@@ -269,7 +260,7 @@ def integrate_events(
     touch = (
         limits["low"].copy(),
         limits["high"].copy(),
-        _SHUT * np.where(clearance > 0.0, clearance, _way(system, a, v, output_step)),
+        _SHUT * np.where(clearance > 0.0, clearance, _way(motion)),
     )
     gaps = system.rows @ a
     peaks[0] = [w.force(gap) for w, gap in zip(system.laws, gaps, strict=True)]

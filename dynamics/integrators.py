@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from dynamics.event_driven import TOLERANCE, integrate_events, what_hinders
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
-from dynamics.step import contact_step, initial_speeds
+from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -24,17 +25,13 @@ FEW_MODES = 20
 
 
 class Integrator(Protocol):
-    """Moves a system for ``duration`` in s from its initial state, see :func:`integrate`."""
+    """A way to compute a motion; one of one's own needs these two methods."""
 
     def __call__(
-        self,
-        system: GapSystem,
-        duration: float,
-        output_step: float,
-        position: Array | None = None,
-        velocity: Array | None = None,
-        progress: Callable[[float], None] | None = None,
-    ) -> Trajectory: ...
+        self, motion: Motion, progress: Callable[[float], None] | None = None
+    ) -> Trajectory:
+        """Move the system; ``progress`` is called with the part done, 0 to 1."""
+        ...
 
     def finer(self) -> Integrator:
         """The same way with smaller errors, to see what they change."""
@@ -48,17 +45,9 @@ class Splitting:
     step: float
 
     def __call__(
-        self,
-        system: GapSystem,
-        duration: float,
-        output_step: float,
-        position: Array | None = None,
-        velocity: Array | None = None,
-        progress: Callable[[float], None] | None = None,
+        self, motion: Motion, progress: Callable[[float], None] | None = None
     ) -> Trajectory:
-        return integrate(
-            system, duration, output_step, self.step, position, velocity, progress=progress
-        )
+        return integrate(motion, self.step, progress=progress)
 
     def finer(self) -> Splitting:
         """Half the step, a quarter of the error."""
@@ -72,15 +61,9 @@ class Events:
     tolerance: float = TOLERANCE
 
     def __call__(
-        self,
-        system: GapSystem,
-        duration: float,
-        output_step: float,
-        position: Array | None = None,
-        velocity: Array | None = None,
-        progress: Callable[[float], None] | None = None,
+        self, motion: Motion, progress: Callable[[float], None] | None = None
     ) -> Trajectory:
-        run = integrate_events(system, duration, output_step, self.tolerance, position, velocity)
+        run = integrate_events(motion, self.tolerance)
         if progress is not None:
             progress(1.0)
         return run
@@ -90,32 +73,39 @@ class Events:
         return Events(0.01 * self.tolerance)
 
 
-def by_splitting(
+def by_splitting(motion: Motion) -> Splitting:
+    """At the step that :func:`dynamics.step.contact_step` finds for the initial state."""
+    return Splitting(contact_step(motion.system, motion.output_step, motion.initial_speeds))
+
+
+def suited(motion: Motion) -> Splitting | Events:
+    """From contact to contact where that is possible and modes are few, else by steps."""
+    system = motion.system
+    # What is bent at the start may press for long, which series do not make shorter.
+    bent = bool(motion.position.any())
+    if bent or system.num_modes > FEW_MODES or what_hinders(system) is not None:
+        return by_splitting(motion)
+    return Events()
+
+
+def simulate(
     system: GapSystem,
-    output_step: float,
-    step: float | None = None,
-    position: Array | None = None,
-    velocity: Array | None = None,
-) -> Splitting:
-    """At ``step``, or at the one that :func:`contact_step` finds for the initial state."""
-    if step is None:
-        at_rest = np.zeros(system.num_modes)
-        speeds = initial_speeds(
-            system,
-            at_rest if position is None else position,
-            at_rest if velocity is None else velocity,
-        )
-        step = contact_step(system, output_step, speeds)
-    return Splitting(step)
-
-
-def suited(system: GapSystem, step: float) -> Splitting | Events:
-    """From contact to contact where that is possible and modes are few, else by steps.
+    duration: float,
+    output_step: float = 1.0e-3,
+    position: npt.ArrayLike = (),
+    velocity: npt.ArrayLike = (),
+    integrator: Integrator | None = None,
+) -> Trajectory:
+    """Move a system from its initial state, by default in the way that suits it.
 
     Args:
-        system: to be moved.
-        step: of the splitting in s, as :func:`dynamics.step.contact_step` gives it.
+        system, duration, output_step, position, velocity: of the :class:`Motion`.
+        integrator: :func:`suited` unless given.
+
+    Raises:
+        ValueError: the motion lacks something.
+        NumericsError: it cannot be computed as finely as it should be.
     """
-    if what_hinders(system) is None and system.num_modes <= FEW_MODES:
-        return Events()
-    return Splitting(step)
+    a, v = (np.asarray(state, dtype=np.float64) for state in (position, velocity))
+    motion = Motion(system, duration, output_step, a, v)
+    return (integrator or suited(motion))(motion)

@@ -24,7 +24,6 @@ from numba import njit
 
 from dynamics.contact import Limits
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
-from dynamics.gap_system import GapSystem
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces, elastic_kick
 from dynamics.kernels.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.kernels.integrator_state import (
@@ -47,7 +46,8 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
 from dynamics.kernels.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
-from dynamics.step import DRAGGED, contact_step, initial_speeds
+from dynamics.motion import Motion
+from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -224,37 +224,27 @@ def _march(
 
 
 def integrate(
-    system: GapSystem,
-    duration: float,
-    output_step: float = 1.0e-3,
+    motion: Motion,
     step: float | None = None,
-    position: Array | None = None,
-    velocity: Array | None = None,
     energy_bound: float = ENERGY_BOUND,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
     """Move a gap system from its initial state.
 
     Args:
-        system: what moves.
-        duration: in s; a whole number of output steps is made, at least one.
-        output_step: in s.
+        motion: of any system.
         step: in s, made smaller to fit the output step; from :func:`contact_step` unless given.
-        position: (num_modes,) initial a in √kg·m, zero unless given.
-        velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
         energy_bound: largest energy residual that passes, see :class:`Trajectory`.
         progress: called with the part done, 0 to 1.
 
     Raises:
         NumericsError: the state is not finite, or the energy residual passes its bound.
     """
-    system = system.gathered()
-    outputs = max(1, round(duration / output_step))
+    system, outputs, output_step = motion.system.gathered(), motion.outputs, motion.output_step
     n, m = system.num_modes, len(system.laws)
-    a = np.zeros(n) if position is None else np.array(position, dtype=np.float64)
-    v = np.zeros(n) if velocity is None else np.array(velocity, dtype=np.float64)
+    a, v = motion.position.copy(), motion.velocity.copy()
     if step is None:
-        step = contact_step(system, output_step, initial_speeds(system, a, v))
+        step = contact_step(system, output_step, motion.initial_speeds)
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     h = output_step / substeps
     state = initial_state(system, a, v)

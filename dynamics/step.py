@@ -24,11 +24,6 @@ PHASE = 0.03
 DRAGGED = 0.2
 
 
-def initial_speeds(system: GapSystem, position: Array, velocity: Array) -> Array:
-    """(num_modes,) √(v² + ω² a²), the speed that each mode reaches from its initial state."""
-    return np.asarray(np.sqrt(velocity**2 + system.omega2 * position**2))
-
-
 def modal_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
     """(num_modes,) estimate in m/s·√kg of how fast each elastic mode swings, |Q_i|/ω_i and more.
 
@@ -47,7 +42,7 @@ def closing_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
 
     Args:
         system: with contact rows.
-        initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
+        initial: (num_modes,) ``Motion.initial_speeds``; at rest unless given.
     """
     rigid = system.omega2 == 0.0
     loads = [(system.load, 1.0), *((x.load, x.history.peak) for x in system.excitations)]
@@ -91,7 +86,7 @@ def contact_step(
     Args:
         system: without any of these the motion is exact, and the output step itself serves.
         output_step: in s.
-        initial: (num_modes,) of :func:`initial_speeds`; at rest unless given.
+        initial: (num_modes,) ``Motion.initial_speeds``; at rest unless given.
         phase: step times the highest frequency.
     """
     frequencies = [x.history.fastest for x in system.excitations]

@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from dynamics.gap_system import GapSystem
 from dynamics.integrators import Integrator, by_splitting
+from dynamics.motion import Motion
 
 Array = npt.NDArray[np.float64]
 
@@ -34,23 +34,17 @@ class Member:
     """One run, as it is sent to where it is made.
 
     Args:
-        system: unchanged.
+        motion: unchanged.
         vary: what is changed.
         change: relative change.
         integrator: how it moves.
-        duration, output_step: in s.
-        position, velocity: (num_modes,) initial a and ȧ, unchanged; zero unless given.
         kept: outputs that come back.
     """
 
-    system: GapSystem
+    motion: Motion
     vary: Vary
     change: float
     integrator: Integrator
-    duration: float
-    output_step: float
-    position: Array | None = None
-    velocity: Array | None = None
     kept: Sequence[str] = KEPT
 
 
@@ -61,30 +55,31 @@ def perturbations(members: int, relative: float, seed: int) -> Array:
     return changes
 
 
-def changed(
-    system: GapSystem, velocity: Array | None, vary: Vary, factor: float
-) -> tuple[GapSystem, Array | None]:
-    """System and initial velocity, all of what is varied times ``factor``."""
+def changed(motion: Motion, vary: Vary, factor: float) -> Motion:
+    """The motion with all of what is varied times ``factor``."""
+    system = motion.system
     if vary == "load":
         excitations = [replace(x, load=factor * x.load) for x in system.excitations]
-        return replace(system, load=factor * system.load, excitations=excitations), velocity
+        load = factor * system.load
+        return replace(motion, system=replace(system, load=load, excitations=excitations))
     if vary == "clearance":
         laws = [law.behind(factor * law.clearance) for law in system.laws]
-        return replace(system, laws=laws), velocity
-    return system, None if velocity is None else factor * velocity
+        return replace(motion, system=replace(system, laws=laws))
+    return replace(motion, velocity=factor * motion.velocity)
 
 
-def check_varied(system: GapSystem, velocity: Array | None, vary: Vary) -> None:
+def check_varied(motion: Motion, vary: Vary) -> None:
     """Stop where no relative change moves anything.
 
     Raises:
         ValueError: what is to vary is zero.
     """
+    system = motion.system
     loads = [system.load, *(x.load for x in system.excitations)]
     varied: dict[Vary, bool] = {
         "load": any(load.any() for load in loads),
         "clearance": any(law.clearance > 0.0 for law in system.laws),
-        "velocity": velocity is not None and bool(velocity.any()),
+        "velocity": bool(motion.velocity.any()),
     }
     if not varied[vary]:
         raise ValueError(f"the {vary} is zero, so that no relative change moves it")
@@ -124,45 +119,33 @@ def run_members(
 
 
 def _run(member: Member) -> xr.Dataset:
-    system, velocity = changed(member.system, member.velocity, member.vary, 1.0 + member.change)
-    run = member.integrator(system, member.duration, member.output_step, member.position, velocity)
+    run = member.integrator(changed(member.motion, member.vary, 1.0 + member.change))
     kept = run.data[[name for name in member.kept if name in run.data]]
     return kept.assign(energy_residual=((), run.energy_residual, {"units": "1"}))
 
 
 def integrate_ensemble(
-    system: GapSystem,
+    motion: Motion,
     members: int,
     relative: float,
     seed: int,
     vary: Vary,
-    duration: float,
-    output_step: float = 1.0e-3,
-    step: float | None = None,
-    velocity: Array | None = None,
-    progress: Callable[[float], None] | None = None,
-    position: Array | None = None,
     integrator: Integrator | None = None,
     executor: Executor | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """Move all members of an ensemble, as many at a time as there are cores.
 
     Args:
-        system: of member 0, which is not changed.
+        motion: of member 0, which is not changed.
         members: how many, at least two.
         relative: largest relative change, positive.
         seed: of the changes; the same one gives the same members wherever they are run.
         vary: what is changed, all of it by one factor: the loads, all clearances, or the initial
             velocity.
-        duration: in s.
-        output_step: in s.
-        step: of the splitting in s, the same for all members; from
-            :func:`dynamics.step.contact_step` unless given.
-        velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
-        progress: called with the part done, 0 to 1.
-        position: (num_modes,) initial a in √kg·m, zero unless given.
-        integrator: how members move; by splitting at ``step`` unless given.
+        integrator: how all members move; by splitting at the step of member 0 unless given.
         executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
+        progress: called with the part done, 0 to 1.
 
     Returns:
         Dims ``member``, ``time``, ``station``: of ``KEPT`` what the system observes, and
@@ -177,12 +160,11 @@ def integrate_ensemble(
         raise ValueError(f"an ensemble must have at least 2 members, got {members}")
     if not 0.0 < relative < 1.0:
         raise ValueError(f"relative must be between 0 and 1, got {relative:g}")
-    check_varied(system, velocity, vary)
-    if integrator is None:
-        integrator = by_splitting(system, output_step, step, position, velocity)
+    check_varied(motion, vary)
+    integrator = integrator or by_splitting(motion)
     changes = perturbations(members, relative, seed)
-    one = Member(system, vary, 0.0, integrator, duration, output_step, position, velocity)
-    runs = run_members([replace(one, change=change) for change in changes], executor, progress)
+    ensemble_members = [Member(motion, vary, change, integrator) for change in changes]
+    runs = run_members(ensemble_members, executor, progress)
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {
         "vary": vary,

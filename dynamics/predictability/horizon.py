@@ -23,8 +23,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from dynamics.gap_system import GapSystem
 from dynamics.integrators import Integrator, by_splitting
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
 
 Array = npt.NDArray[np.float64]
@@ -146,32 +146,26 @@ class Horizons:
 
 
 def measure_horizons(
-    system: GapSystem,
+    motion: Motion,
     relatives: Sequence[float],
     vary: Vary,
-    duration: float,
-    output_step: float = 1.0e-3,
     partners: int = 3,
-    position: Array | None = None,
-    velocity: Array | None = None,
     integrator: Integrator | None = None,
     executor: Executor | None = None,
     shares: Sequence[float] = (EARLY, SHARES[0]),
     observer: str = "tip",
     progress: Callable[[float], None] | None = None,
 ) -> Horizons:
-    """Run the system as it is, with a finer step, and changed by each size; all at once.
+    """Run the motion as it is, with a finer step, and changed by each size; all at once.
 
     Few partners are enough for the growth at a small share; its scatter tells how well it is known.
     Horizons at large shares are chance, and come sooner the more partners there are.
 
     Args:
-        system: unchanged.
+        motion: unchanged.
         relatives: ε, each between 0 and 1.
         vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        duration, output_step: in s.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
-        position, velocity: (num_modes,) initial a and ȧ, zero unless given.
         integrator: how the runs move; by splitting at :func:`contact_step` unless given.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
@@ -182,13 +176,10 @@ def measure_horizons(
         ValueError: what is to vary is zero.
         NumericsError: a run cannot be computed.
     """
-    check_varied(system, velocity, vary)
-    if integrator is None:
-        integrator = by_splitting(system, output_step, None, position, velocity)
+    check_varied(motion, vary)
+    integrator = integrator or by_splitting(motion)
     sizes = np.sort(np.asarray(relatives, dtype=float))
-    one = Member(
-        system, vary, 0.0, integrator, duration, output_step, position, velocity, (observer,)
-    )
+    one = Member(motion, vary, 0.0, integrator, (observer,))
     number = np.arange(partners)
     parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
     members = [

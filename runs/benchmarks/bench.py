@@ -27,6 +27,7 @@ from dynamics.contact import PowerContact
 from dynamics.event_driven import TOLERANCE
 from dynamics.gap_system import GapSystem
 from dynamics.integrators import Events, Integrator, by_splitting
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.splitting import integrate
 from runs import CASES
@@ -143,7 +144,7 @@ def compare(
         for duration in sorted(set(stretch.values()), reverse=True)
     ]
     own = {method.duration: number for number, method in enumerate(methods)}
-    fixed = by_splitting(system, OUTPUT_STEP)
+    fixed = by_splitting(Motion(system, sizes.duration, OUTPUT_STEP))
     methods.append(_own("splitting", f"step {fixed.step:.1e} s", fixed, system, sizes.duration))
     failed = []
     for name, duration in stretch.items():
@@ -206,7 +207,7 @@ def compare(
 def _own(
     solver: str, tolerance: str, integrator: Integrator, system: GapSystem, duration: float
 ) -> Method:
-    run = partial(integrator, system, duration, OUTPUT_STEP)
+    run = partial(integrator, Motion(system, duration, OUTPUT_STEP))
     return Method(solver, "", tolerance, duration, run().energy_residual, run)
 
 
@@ -251,7 +252,11 @@ def steps(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
     kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
     made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
     runs = [
-        partial(integrate, pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0, STEP)
+        partial(
+            integrate,
+            Motion(pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0),
+            STEP,
+        )
         for n, m in kinds
     ]
     seconds = by_turns(runs, sizes.most, sizes.budget)
@@ -279,9 +284,14 @@ def ensembles(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
     def run(whole: GapSystem, count: int, integrator: Integrator | None, threads: int) -> None:
         with ThreadPoolExecutor(threads) as pool:
             integrate_ensemble(
-                whole, count, CHANGE, 0, "load", sizes.duration, OUTPUT_STEP,
-                integrator=integrator, executor=pool,
-            )  # fmt: skip
+                Motion(whole, sizes.duration, OUTPUT_STEP),
+                count,
+                CHANGE,
+                0,
+                "load",
+                integrator=integrator,
+                executor=pool,
+            )
 
     series = f"{sizes.members} five-term series"
     what = [

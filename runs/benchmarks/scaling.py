@@ -23,6 +23,7 @@ from rich.console import Console
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
@@ -269,10 +270,10 @@ def _motion(system: GapSystem, duration: float, step: float) -> dict[str, Any]:
     told: dict[str, Any] = {"step": step, "contact_changes": "", "energy_residual": None}
     for kind, moving in (("seconds", system), ("flight", flying)):
         # The first output compiles.
-        integrate(moving, 1.0e-3, step=step, energy_bound=math.inf)
+        integrate(Motion(moving, 1.0e-3), step=step, energy_bound=math.inf)
         start = perf_counter()
         try:
-            motion = integrate(moving, duration, step=step, energy_bound=math.inf)
+            motion = integrate(Motion(moving, duration), step=step, energy_bound=math.inf)
         except NumericsError:
             told[kind] = None
             continue

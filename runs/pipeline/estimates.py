@@ -17,13 +17,13 @@ import numpy as np
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.step import contact_step, initial_speeds
+from dynamics.step import contact_step
 from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
 from runs.pipeline.models import beam_system
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0
@@ -132,15 +132,14 @@ def refuse_large(cost: Cost, file: str) -> None:
 def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
     stand_in = _stand_in(model, boom)
     try:
-        motion = Motion.of(beam_system(case, boom, stand_in.beam), case, stand_in.beam)
+        motion = Plan.of(beam_system(case, boom, stand_in.beam), case, stand_in.beam).motion
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         # The run ends with it, and says so.
         return stand_in.before
     system, time = motion.system, case.time
     step = model.step or time.step
     if step is None:
-        speeds = initial_speeds(system, motion.position, motion.velocity)
-        step = contact_step(system, time.output_step, speeds) / stand_in.shorter
+        step = contact_step(system, time.output_step, motion.initial_speeds) / stand_in.shorter
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     prescribed = any(not friction.pressed_by for friction in system.frictions)
     motions = 1 + 2 * prescribed + members + (_HORIZONS if members else 0)

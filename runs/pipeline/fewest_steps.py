@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from dynamics.event_driven import TOLERANCE, integrate_events, what_hinders
 from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
 from dynamics.integrators import FEW_MODES
+from dynamics.motion import Motion
 from dynamics.predictability.low_pass import slow_peaks
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
@@ -26,7 +27,7 @@ WITHIN = 0.01
 
 
 def steps_for_peaks(
-    system: GapSystem, peaks: Mapping[str, Any], cutoff: float, output_step: float
+    motion: Motion, peaks: Mapping[str, Any], cutoff: float
 ) -> dict[str, Any] | None:
     """Longer and longer steps, until the energy is lost, and which keep the first slow peaks.
 
@@ -34,10 +35,9 @@ def steps_for_peaks(
     touch, or one jump from contact to contact.
 
     Args:
-        system: from rest.
+        motion: from rest, of whose duration as much is taken as the peaks need.
         peaks: the ensemble's, as :func:`runs.pipeline.members.sum_up` gives them.
         cutoff: of the slow motion in Hz.
-        output_step: in s.
 
     Returns:
         ``peaks``, ``within``, ``duration`` in s, ``fewest`` steps (None where no trial holds) and
@@ -46,8 +46,10 @@ def steps_for_peaks(
     """
     if len(peaks["time"]) < PEAKS:
         return None
+    system, output_step = motion.system, motion.output_step
     # The filter leans on what follows the last peak by half a period of its own.
     duration = output_step * round((peaks["time"][PEAKS - 1] + 1.0 / cutoff) / output_step)
+    motion = replace(motion, duration=duration)
     trials: list[dict[str, Any]] = []
 
     def note(integrator: str, trajectory: Trajectory) -> None:
@@ -64,11 +66,11 @@ def steps_for_peaks(
     # One trial that misses is chance, as a member of the ensemble may; the energy ends them.
     with suppress(NumericsError):
         for step in _coarser(contact_step(system, output_step), 2.0, output_step):
-            note("splitting", integrate(system, duration, output_step, step))
+            note("splitting", integrate(motion, step))
     if system.num_modes <= FEW_MODES and what_hinders(system) is None:
         with suppress(NumericsError):
             for tolerance in _coarser(TOLERANCE, 10.0, 1.0):
-                note("events", integrate_events(system, duration, output_step, tolerance))
+                note("events", integrate_events(motion, tolerance))
     return {
         "peaks": PEAKS,
         "within": WITHIN,

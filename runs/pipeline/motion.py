@@ -14,13 +14,13 @@ import xarray as xr
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, Splitting, suited
+from dynamics.integrators import Events, Splitting, by_splitting, suited
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.predictability.horizon import measure_horizons
-from dynamics.step import contact_step, initial_speeds
 from dynamics.trajectory import Trajectory
 from runs.case import actions
-from runs.case.schema import Case, EnsembleTable, Model, TimeTable
+from runs.case.schema import Case, EnsembleTable, Model
 from runs.pipeline.known import known
 from runs.pipeline.models import damped
 
@@ -35,64 +35,51 @@ CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
-    """What moves, from where, for how long, and how it is integrated.
+class Plan:
+    """The motion that a case asks of one of its models, and how it is integrated.
 
     Args:
-        system: under the loads from t = 0 on.
-        position, velocity: (num_modes,) initial a in √kg·m and ȧ in √kg·m/s.
-        time: duration and output step.
+        motion: of the system under the loads from t = 0 on.
         integrator: by steps, or from contact to contact.
     """
 
-    system: GapSystem
-    position: Array
-    velocity: Array
-    time: TimeTable
+    motion: Motion
     integrator: Splitting | Events
 
     @classmethod
-    def of(cls, system: GapSystem, case: Case, model: Model) -> Motion:
-        """The motion that a case asks of one of its models.
+    def of(cls, system: GapSystem, case: Case, model: Model) -> Plan:
+        """Of a model of a case.
 
         Raises:
             NumericsError: there is no equilibrium to start from, or it would take days.
         """
         system, position, velocity = actions.start(system, case)
-        system = damped(system, case)
         time = case.time
+        motion = Motion(damped(system, case), time.duration, time.output_step, position, velocity)
         given = model.step or time.step
-        speeds = initial_speeds(system, position, velocity)
-        step = given or contact_step(system, time.output_step, speeds)
+        step = given or by_splitting(motion).step
         if time.duration / step > MOST_STEPS:
             raise NumericsError(
                 f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make the contact "
                 "softer or the step longer"
             )
-        by_steps = given is not None or bool(position.any())
-        integrator = Splitting(step) if by_steps else suited(system, step)
-        return cls(system, position, velocity, time, integrator)
+        return cls(motion, suited(motion) if given is None else Splitting(given))
 
-    @property
-    def from_rest(self) -> bool:
-        """Whether nothing moves or is bent at t = 0."""
-        return not (self.position.any() or self.velocity.any())
-
-    def finer(self) -> Motion:
+    def finer(self) -> Plan:
         """The same in half the step."""
         return replace(self, integrator=self.integrator.finer())
 
     def warm(self) -> None:
         """One output compiles the time loop, so that a wall time is the motion's own."""
-        self._integrate(self.integrator, self.time.output_step, lambda part: None)
+        self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Progress) -> Trajectory:
         """The motion itself."""
-        return self._integrate(self.integrator, self.time.duration, progress)
+        return self.integrator(self.motion, progress)
 
     def change_by_finer_steps(self, trajectory: Trajectory, progress: Progress) -> float:
         """What half the step changes at the tip, as a part of its range."""
-        finer = self._integrate(self.integrator.finer(), self.time.duration, progress)
+        finer = self.finer().trajectory(progress)
         tips = [np.asarray(run.data["tip"].values) for run in (trajectory, finer)]
         span = float(np.ptp(tips[0]))
         return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0
@@ -102,18 +89,14 @@ class Motion:
     ) -> xr.Dataset:
         """All members, see :func:`dynamics.predictability.ensemble.integrate_ensemble`."""
         return integrate_ensemble(
-            self.system,
+            self.motion,
             table.members,
             table.relative,
             table.seed,
             table.vary,
-            self.time.duration,
-            self.time.output_step,
-            velocity=self.velocity,
-            position=self.position,
-            integrator=self.integrator,
-            executor=executor,
-            progress=progress,
+            self.integrator,
+            executor,
+            progress,
         )
 
     def horizons(
@@ -124,13 +107,9 @@ class Motion:
         None stands for what does not happen within the run.
         """
         found = measure_horizons(
-            self.system,
+            self.motion,
             CHANGES,
             table.vary,
-            self.time.duration,
-            self.time.output_step,
-            position=self.position,
-            velocity=self.velocity,
             integrator=self.integrator,
             executor=executor,
             progress=progress,
@@ -144,10 +123,3 @@ class Motion:
             "step_change": known(found.step_change),
             "limits": list(found.limits),
         }
-
-    def _integrate(
-        self, integrator: Splitting | Events, duration: float, progress: Progress
-    ) -> Trajectory:
-        return integrator(
-            self.system, duration, self.time.output_step, self.position, self.velocity, progress
-        )

@@ -30,7 +30,7 @@ from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.known import known
 from runs.pipeline.models import beam_system, reduce_shell
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results, label
 from runs.pipeline.shell_output import ShellOutput
 
@@ -233,23 +233,23 @@ def _move(
     stages: Stages,
 ) -> Finished:
     """The motion of a model; where its energy leaves its bound, in half the step, and a quarter."""
-    motion = Motion.of(system, case, model)
+    plan = Plan.of(system, case, model)
     refused: list[str] = []
     while True:
         try:
-            moved = _move_at(motion, num_dofs, model, case, cutoff, executor, stages)
+            moved = _move_at(plan, num_dofs, model, case, cutoff, executor, stages)
         except StepTooLong as error:
             if len(refused) == HALVINGS:
                 raise
             refused.append(str(error))
-            motion = motion.finer()
+            plan = plan.finer()
         else:
             moved.summary["refused_steps"] = refused
             return moved
 
 
 def _move_at(
-    motion: Motion,
+    plan: Plan,
     num_dofs: int,
     model: Model,
     case: Case,
@@ -258,28 +258,26 @@ def _move_at(
     stages: Stages,
 ) -> Finished:
     """The motion as it is, and what is to be known of it."""
-    system = motion.system
-    motion.warm()
+    motion, system = plan.motion, plan.motion.system
+    plan.warm()
     with stages.stage("motion") as told:
-        trajectory = motion.trajectory(told)
+        trajectory = plan.trajectory(told)
     summary = _summary(model, system, trajectory, num_dofs, stages.seconds)
     # Under prescribed forces friction makes the motion regular; what contacts press does not.
     if system.frictions and not any(friction.pressed_by for friction in system.frictions):
         with stages.stage("half the step") as told:
-            summary["step_halving"] = motion.change_by_finer_steps(trajectory, told)
+            summary["step_halving"] = plan.change_by_finer_steps(trajectory, told)
     if case.ensemble is None or not system.laws:
         return Finished(trajectory, summary, None)
     with stages.stage("ensemble") as told:
-        ensemble = motion.ensemble(case.ensemble, executor, told)
+        ensemble = plan.ensemble(case.ensemble, executor, told)
     summary["ensemble"] = members.sum_up(ensemble, cutoff)
     with stages.stage("horizons") as told:
-        summary["horizons"] = motion.horizons(case.ensemble, executor, told)
+        summary["horizons"] = plan.horizons(case.ensemble, executor, told)
     if cutoff is not None and motion.from_rest:
         peaks = summary["ensemble"]["slow_peaks"]
         with stages.stage("step counts"):
-            summary["steps_for_peaks"] = steps_for_peaks(
-                system, peaks, cutoff, case.time.output_step
-            )
+            summary["steps_for_peaks"] = steps_for_peaks(motion, peaks, cutoff)
     return Finished(trajectory, summary, ensemble)
 
 

@@ -19,6 +19,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Material, Segment, Support
 from geometry.mesh import mesh_segment
@@ -283,7 +284,7 @@ def blow(outer: Part, inner: Part, wall: float) -> Blow:
         stations=[HEAD],
         observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},
     )
-    motion = integrate(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity)
+    motion = integrate(Motion(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity))
     return Blow(
         motion.time,
         np.asarray(motion.data["contact_force"].values[:, 0]),

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.case.build import build_boom, contact_laws
@@ -108,7 +109,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     system = gap_system(contact.case, build_boom(contact.case), model)
     step = contact_step(system, OUTPUT_STEP, phase=PHASE)
     return [
-        integrate(replace(system, load=load * system.load), sizes.peak, OUTPUT_STEP, step)
+        integrate(Motion(replace(system, load=load * system.load), sizes.peak, OUTPUT_STEP), step)
         .first_peak()[1]
         for load in sizes.loads
     ]  # fmt: skip

@@ -14,6 +14,7 @@ from scipy.signal import find_peaks
 from dynamics.damping import pressed_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
@@ -101,11 +102,13 @@ class PressedBoom:
         shape, period = self.shapes[:, mode], 2.0 * np.pi / self.omega[mode]
         reach = np.abs(self.system.rows @ shape)
         run = integrate(
-            with_ratio(self.system, ratio, self.joint_stations),
-            PERIODS * period,
-            period / 200.0,
+            Motion(
+                with_ratio(self.system, ratio, self.joint_stations),
+                PERIODS * period,
+                period / 200.0,
+                position=self.rest + shape * SWING * (deep / reach)[pressed].min(),
+            ),
             self.step,
-            position=self.rest + shape * SWING * (deep / reach)[pressed].min(),
         )
         swing = (run.states - self.rest) @ shape
         peaks, _ = find_peaks(swing)

@@ -20,7 +20,7 @@ from mpi4py import MPI
 from dynamics.energy import ENERGY_BOUND
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case, ShellTable
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
 from runs.studies.motions import friction_case, gap_system, loaded, model_of
@@ -147,10 +147,10 @@ def compare(
         ("reduced", own, model.step),
         ("reduced, more coordinates", more, sizes.fine_step),
     ):
-        motion = Motion.of(system, case, model.model_copy(update={"step": step}))
-        motion.warm()
+        plan = Plan.of(system, case, model.model_copy(update={"step": step}))
+        plan.warm()
         start = perf_counter()
-        trajectory = motion.trajectory(lambda part: None)
+        trajectory = plan.trajectory(lambda part: None)
         seconds = perf_counter() - start
         tip, taken = np.asarray(trajectory.data["tip"].values), trajectory.data.attrs["step"]
         impulse = _impulse(trajectory.data["contact_force"].values, case)

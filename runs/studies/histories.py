@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from dynamics.excitation import Excitation, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from runs.studies.study import Proof, Study
 
@@ -81,7 +82,7 @@ def study(tell: Callable[[str], None]) -> Study:
     proofs = []
     for what, history in KINKED.items():
         tell(what)
-        run = integrate(masses(history), DURATION, OUTPUT_STEP)
+        run = integrate(Motion(masses(history), DURATION, OUTPUT_STEP))
         found = {omega: run.data[f"{omega:g}"].values for omega in OMEGAS}
         asked = {omega: response(omega, history, run.time) for omega in OMEGAS}
         after = run.time > history.kinks[-1]

@@ -14,7 +14,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.case.schema import Case, ShellTable
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
@@ -86,7 +86,7 @@ def measure(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> list[Quant
         tell(f"edges x {part:g}")
         model = finer(shell, part)
         system = gap_system(case, boom, model)
-        motion = Motion.of(system, case, model).trajectory(lambda part: None)
+        motion = Plan.of(system, case, model).trajectory(lambda part: None)
         results.append(_quantities(system, motion, sizes))
     return [
         Quantity(what, unit, [result[what, unit] for result in results])

@@ -23,7 +23,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, Model, ShellTable
 from runs.pipeline.models import beam_system, reduce_shell
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 
 Array = npt.NDArray[np.float64]
 
@@ -72,9 +72,9 @@ def finer(shell: ShellTable, part: float) -> ShellTable:
 def trajectories(case: Case) -> list[Trajectory]:
     """The motions of all models of a case, in their order, side by side on the cores."""
     boom = build_boom(case)
-    motions = [Motion.of(gap_system(case, boom, m), case, m) for m in case.models]
+    plans = [Plan.of(gap_system(case, boom, m), case, m) for m in case.models]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(lambda motion: motion.trajectory(lambda part: None), motions))
+        return list(pool.map(lambda plan: plan.trajectory(lambda part: None), plans))
 
 
 def compliance(system: GapSystem, rows: Array) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
@@ -163,7 +164,9 @@ def _shell(case: Case, sizes: Sizes) -> ShellTable:
 
 
 def _move(system: GapSystem, duration: float) -> Trajectory:
-    return integrate(system, duration, OUTPUT_STEP, contact_step(system, OUTPUT_STEP, phase=PHASE))
+    return integrate(
+        Motion(system, duration, OUTPUT_STEP), contact_step(system, OUTPUT_STEP, phase=PHASE)
+    )
 
 
 def _first_peaks(system: GapSystem, sizes: Sizes) -> tuple[float, float]:

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.case.build import build_boom
@@ -160,7 +161,7 @@ def _systems(case: Case, sizes: Sizes) -> list[GapSystem]:
 
 def _move(system: GapSystem, duration: float, peaks: int) -> Moved:
     step = contact_step(system, OUTPUT_STEP, phase=PHASE)
-    motion = integrate(system, duration, OUTPUT_STEP, step)
+    motion = integrate(Motion(system, duration, OUTPUT_STEP), step)
     forces = motion.data["contact_force"].values
     held = np.cumsum(np.pad(forces, ((1, 0), (0, 0))), axis=0)
     means = (held[HELD:] - held[:-HELD]) / HELD

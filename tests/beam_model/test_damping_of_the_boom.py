@@ -16,6 +16,7 @@ from dynamics.contact import PowerContact
 from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom
 
@@ -61,10 +62,12 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
     omega, shapes = pressed_modes(heavy, STATIONS)
     rest = equilibrium(heavy, heavy.load)
     run = integrate(
-        with_ratio(heavy, ratio, STATIONS),
-        3.2 * 2.0 * np.pi / omega[mode],
-        2.0 * np.pi / omega[mode] / 200.0,
-        position=rest + 1e-3 * shapes[:, mode],
+        Motion(
+            with_ratio(heavy, ratio, STATIONS),
+            3.2 * 2.0 * np.pi / omega[mode],
+            2.0 * np.pi / omega[mode] / 200.0,
+            position=rest + 1e-3 * shapes[:, mode],
+        )
     )
     swing = (run.states - rest) @ shapes[:, mode]
     peaks, _ = find_peaks(swing)
@@ -79,7 +82,7 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
     damped = with_ratio(wide, 0.05, STATIONS)
     tied = pressed_modes(wide, STATIONS)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
-    run = integrate(damped, 1.0, 0.1, velocity=thrown)
+    run = integrate(Motion(damped, 1.0, 0.1, velocity=thrown))
     way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
     np.testing.assert_allclose(run.states @ thrown, way, rtol=1e-9, atol=1e-12)
     assert run.energy_residual < 1e-12
@@ -88,7 +91,7 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
 def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
     """Reference: analytic. Nothing moves, however much the modes are damped."""
     damped = replace(heavy, damping=3e-4 * heavy.omega2)
-    run = integrate(damped, 0.5, 0.01, position=equilibrium(heavy, heavy.load))
+    run = integrate(Motion(damped, 0.5, 0.01, position=equilibrium(heavy, heavy.load)))
     strain = float(run.data["strain_energy"][0])
     assert float(run.data["damping_loss"][-1]) < 1e-6 * strain
 
@@ -101,7 +104,7 @@ def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
 
     def states(step: float) -> np.ndarray:
-        return integrate(damped, 0.05, 0.01, step=step, position=start).states
+        return integrate(Motion(damped, 0.05, 0.01, position=start), step=step).states
 
     exact = states(5e-6 / 16.0)
     errors = [np.abs(states(step) - exact).max() for step in (2e-5, 1e-5, 5e-6)]

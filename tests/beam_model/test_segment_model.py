@@ -15,6 +15,7 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
@@ -209,8 +210,8 @@ def test_tied_halves_move_as_the_whole(
     """Reference: analytic, until the rounding of the first presses has grown."""
     law = PowerContact(1e9, 1.0, 7e-3)
     step = 2.0e-5
-    whole = integrate(gap_system(paper_boom, elements(1.0), [law]), 0.2, step=step)
-    halves = integrate(gap_system(*leaves, [law, law]), 0.2, step=step)
+    whole = integrate(Motion(gap_system(paper_boom, elements(1.0), [law]), 0.2), step=step)
+    halves = integrate(Motion(gap_system(*leaves, [law, law]), 0.2), step=step)
     assert 0.1 < whole.first_contact < 0.15
     assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)
     assert halves.data.attrs["contact_changes"] == whole.data.attrs["contact_changes"] > 1

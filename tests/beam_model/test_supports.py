@@ -18,6 +18,7 @@ from beam_model.kantorovich import Base, kantorovich_bending
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Step
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies
@@ -218,7 +219,7 @@ def test_a_stop_holds_the_tip_up(
     assert law.force(np.array([-6.0e-3, -4.0e-3, 6.0e-3])) == pytest.approx([-2.0e5, 0.0, 0.0])
     # The tip falls onto it and is thrown back: 55 kg/m by 1 m/s² in reverse.
     falling = replace(system, load=-system.load)
-    run = integrate(falling, 0.3, energy_bound=1e-3)
+    run = integrate(Motion(falling, 0.3), energy_bound=1e-3)
     assert run.data["tip"].min() < -5.0e-3
     assert run.data["tip"].min() > -6.0e-3
     assert run.data["contact_force"].sel(station=19.0).min() < -1.0e3

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from scipy.stats import norm
 
+from dynamics.motion import Motion
 from dynamics.predictability.comparison import (
     Comparison,
     Distributions,
@@ -88,7 +89,7 @@ def test_a_chaotic_system_is_like_itself() -> None:
     """Reference: the system itself under other changes. Pointwise within 1 % up to the horizon,
     and of one distribution after it."""
     one, other = (
-        integrate_ensemble(CHAOTIC, 16, 1e-6, seed, "load", 60.0, 1e-2) for seed in (1, 2)
+        integrate_ensemble(Motion(CHAOTIC, 60.0, 1e-2), 16, 1e-6, seed, "load") for seed in (1, 2)
     )
     found = compare(one, other, 2.0)
     assert found.pointwise.largest == 0.0  # of the unchanged members

@@ -11,6 +11,7 @@ from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.event_driven import what_hinders
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
@@ -66,7 +67,10 @@ def test_a_mass_on_a_table_keeps_its_energy() -> None:
         stations=[0.0],
         observers={"tip": Observer(np.array([0.1]))},
     )
-    runs = [integrate(system, 0.5, 1e-2, step, velocity=np.array([4.0])) for step in (4e-5, 1e-5)]
+    runs = [
+        integrate(Motion(system, 0.5, 1e-2, velocity=np.array([4.0])), step)
+        for step in (4e-5, 1e-5)
+    ]
     deepest = float(runs[1].data["contact_force_peak"].max())
     assert 3.0e3 < deepest < 9.0e3  # on the stiff line
     assert runs[1].energy_residual < 1.0e-4

@@ -19,6 +19,7 @@ from dynamics.event_driven import integrate_events
 from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
 from dynamics.integrators import Events, Integrator, Splitting
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Vary, integrate_ensemble, perturbations
 from dynamics.splitting import integrate
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
@@ -29,7 +30,9 @@ THROWN = np.array([0.5, -1.0])
 @pytest.mark.parametrize("vary", ["load", "clearance", "velocity"])
 def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
     """Reference: other code path, single runs of systems changed by hand."""
-    ensemble = integrate_ensemble(CHAOTIC, 3, 1e-3, 7, vary, 5.0, 1e-2, step=1e-3, velocity=THROWN)
+    ensemble = integrate_ensemble(
+        Motion(CHAOTIC, 5.0, 1e-2, velocity=THROWN), 3, 1e-3, 7, vary, integrator=Splitting(1e-3)
+    )
     for member, change in enumerate(ensemble["change"].values):
         factor = {"load": 1.0, "clearance": 1.0, "velocity": 1.0, vary: 1.0 + change}
         (law,) = CHAOTIC.laws
@@ -38,7 +41,7 @@ def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
             load=factor["load"] * CHAOTIC.load,
             laws=[replace(law, clearance=factor["clearance"] * law.clearance)],
         )
-        run = integrate(system, 5.0, 1e-2, step=1e-3, velocity=factor["velocity"] * THROWN)
+        run = integrate(Motion(system, 5.0, 1e-2, velocity=factor["velocity"] * THROWN), step=1e-3)
         one = ensemble.isel(member=member)
         for name in ("tip", "contact_force"):
             np.testing.assert_array_equal(one[name], run.data[name])
@@ -52,22 +55,26 @@ def test_all_loads_vary_and_nothing_else() -> None:
     pushed = Excitation(np.array([1.0, -2.0]), Sine(0.7))
     system = replace(CHAOTIC, excitations=[pushed])
     start = {"position": np.array([0.01, 0.0]), "velocity": THROWN}
-    ensemble = integrate_ensemble(system, 2, 1e-3, 7, "load", 2.0, 1e-2, step=1e-3, **start)
+    ensemble = integrate_ensemble(
+        Motion(system, 2.0, 1e-2, **start), 2, 1e-3, 7, "load", integrator=Splitting(1e-3)
+    )
     factor = 1.0 + float(ensemble["change"][1])
     louder = replace(pushed, load=factor * pushed.load)
     alone = replace(system, load=factor * system.load, excitations=[louder])
-    run = integrate(alone, 2.0, 1e-2, step=1e-3, **start)
+    run = integrate(Motion(alone, 2.0, 1e-2, **start), step=1e-3)
     np.testing.assert_array_equal(ensemble["tip"][1], run.data["tip"])
     unloaded = replace(system, load=0.0 * system.load)
-    spread = integrate_ensemble(unloaded, 2, 1e-3, 7, "load", 2.0, 1e-2)["tip"]
+    spread = integrate_ensemble(Motion(unloaded, 2.0, 1e-2), 2, 1e-3, 7, "load")["tip"]
     assert np.ptp(spread.values, axis=0).max() > 1e-6
 
 
 def test_members_move_from_contact_to_contact() -> None:
     """Reference: other code path, a single run of the changed system."""
-    ensemble = integrate_ensemble(CHAOTIC, 2, 1e-3, 7, "load", 5.0, 1e-2, integrator=Events())
+    ensemble = integrate_ensemble(
+        Motion(CHAOTIC, 5.0, 1e-2), 2, 1e-3, 7, "load", integrator=Events()
+    )
     factor = 1.0 + float(ensemble["change"][1])
-    run = integrate_events(replace(CHAOTIC, load=factor * CHAOTIC.load), 5.0, 1e-2)
+    run = integrate_events(Motion(replace(CHAOTIC, load=factor * CHAOTIC.load), 5.0, 1e-2))
     np.testing.assert_array_equal(ensemble["tip"][1], run.data["tip"])
     assert ensemble.attrs["integrator"] == "Events(tolerance=1e-10)"
 
@@ -81,8 +88,8 @@ def test_other_processes_give_the_same(integrator: Integrator) -> None:
         for executor in (None, processes):
             found.append(
                 integrate_ensemble(
-                    CHAOTIC, 5, 1e-6, 3, "load", 20.0, 1e-2,
-                    velocity=THROWN, integrator=integrator, executor=executor,
+                    Motion(CHAOTIC, 20.0, 1e-2, velocity=THROWN),
+                    5, 1e-6, 3, "load", integrator, executor,
                 )
             )  # fmt: skip
     xr.testing.assert_identical(*found)
@@ -92,6 +99,7 @@ OTHER_RANK = """
 import os
 from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 
@@ -99,7 +107,7 @@ with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
     if ranks is not None:
         assert ranks.submit(os.getpid).result() != os.getpid()
         one, two = (
-            integrate_ensemble(CHAOTIC, 5, 1e-6, 3, "load", 20.0, 1e-2, executor=executor)
+            integrate_ensemble(Motion(CHAOTIC, 20.0, 1e-2), 5, 1e-6, 3, "load", executor=executor)
             for executor in (None, ranks)
         )
         print("identical" if one.identical(two) else "different")
@@ -116,7 +124,7 @@ def test_another_rank_gives_the_same(
 
 
 def test_keeps_labels_and_nothing_more() -> None:
-    ensemble = integrate_ensemble(CHAOTIC, 4, 1e-6, 1, "load", 1.0, 1e-2)
+    ensemble = integrate_ensemble(Motion(CHAOTIC, 1.0, 1e-2), 4, 1e-6, 1, "load")
     assert dict(ensemble.sizes) == {"member": 4, "time": 101, "station": 1}
     assert set(ensemble.data_vars) == {"tip", "contact_force", "energy_residual"}
     assert ensemble["contact_force"].dims == ("member", "time", "station")
@@ -142,21 +150,23 @@ def test_the_same_seed_gives_the_same_on_any_number_of_cores(
     found = []
     for cores in ({0}, {0, 1, 2, 3, 4}):
         monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: cores)
-        found.append(integrate_ensemble(CHAOTIC, 9, 1e-6, 3, "load", 20.0, 1e-2))
+        found.append(integrate_ensemble(Motion(CHAOTIC, 20.0, 1e-2), 9, 1e-6, 3, "load"))
     xr.testing.assert_identical(*found)
-    other = integrate_ensemble(CHAOTIC, 9, 1e-6, 4, "load", 20.0, 1e-2)
+    other = integrate_ensemble(Motion(CHAOTIC, 20.0, 1e-2), 9, 1e-6, 4, "load")
     assert not np.array_equal(other["tip"], found[0]["tip"])
 
 
 def test_tells_its_progress() -> None:
     parts: list[float] = []
-    integrate_ensemble(LINEAR, 4, 1e-6, 1, "load", 1.0, 1e-2, progress=parts.append)
+    integrate_ensemble(Motion(LINEAR, 1.0, 1e-2), 4, 1e-6, 1, "load", progress=parts.append)
     assert parts == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_a_member_that_cannot_be_computed_ends_the_ensemble() -> None:
     with pytest.raises(NumericsError, match="halve the step"):
-        integrate_ensemble(CHAOTIC, 4, 1e-6, 1, "load", 20.0, 0.1, step=0.1)
+        integrate_ensemble(
+            Motion(CHAOTIC, 20.0, 0.1), 4, 1e-6, 1, "load", integrator=Splitting(0.1)
+        )
 
 
 @pytest.mark.parametrize(
@@ -173,4 +183,4 @@ def test_refuses_what_is_no_ensemble(
     members: int, relative: float, vary: Vary, message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        integrate_ensemble(LINEAR, members, relative, 1, vary, 1.0)
+        integrate_ensemble(Motion(LINEAR, 1.0), members, relative, 1, vary)

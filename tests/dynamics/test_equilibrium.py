@@ -12,6 +12,7 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom
 
@@ -64,5 +65,5 @@ def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: flo
     at_rest = equilibrium(system, system.load)
     forces = [law.force(y) for law, y in zip(system.laws, system.rows @ at_rest, strict=True)]
     assert forces == pytest.approx([-4.0 * 550.7, 5.0 * 550.7], rel=1e-5)
-    stays = integrate(system, 0.2, position=at_rest)
+    stays = integrate(Motion(system, 0.2, position=at_rest))
     assert np.ptp(stays.data["tip"].values) < 1e-6 * abs(stays.data["tip"].values[0])

@@ -21,6 +21,8 @@ from dynamics.excitation import Excitation, Ramp
 from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrators import Events, Splitting
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
@@ -79,7 +81,7 @@ def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
     system = one_mass(100.0, stop, spring=1.0e4)
     omega = np.sqrt(1.01e4)
     half = np.pi / omega
-    run = integrate_events(system, half, output_step=half / 2.0, velocity=np.array([10.0]))
+    run = integrate_events(Motion(system, half, output_step=half / 2.0, velocity=np.array([10.0])))
     assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 / omega, rel=1e-9)
     assert float(run.data["tip"][1]) == pytest.approx(1.0 / omega, rel=1e-9)
     assert float(run.data["tip"][2]) == pytest.approx(0.0, abs=1e-12)
@@ -97,7 +99,9 @@ def test_falling_mass(one_mass: OneMass) -> None:
     assert (fall, fall + press) == pytest.approx((0.5403124, 0.8854562), abs=1e-7)
     cycle = 2.0 * fall + press
     run = integrate_events(
-        one_mass(1.0, stop, force=-10.0), cycle, output_step=cycle, velocity=np.array([-1.0])
+        Motion(
+            one_mass(1.0, stop, force=-10.0), cycle, output_step=cycle, velocity=np.array([-1.0])
+        )
     )
     assert run.first_contact == pytest.approx(fall, rel=1e-11)
     assert float(run.data["tip"][-1]) == pytest.approx(0.0, abs=1e-10)
@@ -116,8 +120,8 @@ def test_peak_force_is_that_of_the_interval(
     system, start = one_mass(1.0, stop, force=1.0), np.array([1.0])
     press = np.pi * 1.0e-2 if exponent == 1.0 else 0.14
     events, steps = (
-        run(system, 0.4, output_step=part * press, velocity=start, **fine)
-        for run, fine in ((integrate_events, {}), (integrate, {"step": 1.0e-5}))
+        move(Motion(system, 0.4, part * press, velocity=start))
+        for move in (Events(), Splitting(1.0e-5))
     )
     expected = steps.data["contact_force_peak"].values
     assert expected.max() > 5.0
@@ -138,7 +142,7 @@ def test_a_blow_from_velocity_alone_is_resolved(
 ) -> None:
     """Reference: analytic. No load gives the step a scale here, only the initial velocity."""
     stop = PowerContact(stiffness=1.0e9, exponent=exponent, clearance=0.1)
-    run = integrator(one_mass(1.0, stop), 1.0, output_step=0.01, velocity=np.array([5.0]))
+    run = integrator(Motion(one_mass(1.0, stop), 1.0, 0.01, velocity=np.array([5.0])))
     assert run.data.attrs["contact_changes"] >= 40
     assert run.energy_residual < 1e-3
 
@@ -149,7 +153,7 @@ def test_a_thousand_hard_blows_between_two_stops(one_mass: OneMass) -> None:
     law = PowerContact(4.0e12, exponent=1.0, clearance=0.1, stiffness_below=9.0e12)
     period = 2.0 * 0.2 / 20.0 + np.pi / 2.0e6 + np.pi / 3.0e6
     run = integrate_events(
-        one_mass(1.0, law), 500.0 * period, output_step=period, velocity=np.array([20.0])
+        Motion(one_mass(1.0, law), 500.0 * period, output_step=period, velocity=np.array([20.0]))
     )
     assert run.data.attrs["contact_changes"] == 2000
     np.testing.assert_allclose(run.data["tip"], 0.0, atol=1e-7)
@@ -159,7 +163,7 @@ def test_a_thousand_hard_blows_between_two_stops(one_mass: OneMass) -> None:
 def test_linear_stops_are_exact() -> None:
     """Reference: other code, scipy's DOP853, through some ten contacts at once."""
     system = two_modes(1.0)
-    run = integrate_events(system, 3.0, output_step=0.1)
+    run = integrate_events(Motion(system, 3.0, output_step=0.1))
     expected = reference_states(system, run.time)
     assert run.data.attrs["contact_changes"] >= 9
     np.testing.assert_allclose(run.states, expected, atol=1e-7 * np.abs(expected).max())
@@ -173,7 +177,7 @@ def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
     depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
     half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
     run = integrate_events(
-        one_mass(100.0, stop), 2.0 * half, output_step=half, velocity=np.array([20.0])
+        Motion(one_mass(100.0, stop), 2.0 * half, output_step=half, velocity=np.array([20.0]))
     )
     assert float(run.data["tip"][1]) == pytest.approx(depth, rel=1e-9)
     assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 * depth**2, rel=1e-8)
@@ -189,7 +193,7 @@ def test_errors_follow_the_tolerance(exponent: float) -> None:
     errors = []
     tolerances = (1e-2, 1e-5, 1e-8)
     for tolerance in tolerances:
-        run = integrate_events(system, 0.6, output_step=0.02, tolerance=tolerance)
+        run = integrate_events(Motion(system, 0.6, output_step=0.02), tolerance=tolerance)
         expected = reference_states(system, run.time)
         errors.append(np.abs(run.states - expected).max() / np.abs(expected).max())
     assert run.data.attrs["contact_changes"] == 2
@@ -201,8 +205,8 @@ def test_errors_follow_the_tolerance(exponent: float) -> None:
 def test_agrees_with_the_splitting(exponent: float) -> None:
     """Reference: other code, the step-by-step integrator at a fine step."""
     system = two_modes(exponent)
-    events = integrate_events(system, 1.5, output_step=0.01)
-    steps = integrate(system, 1.5, output_step=0.01, step=1.0e-5)
+    events = integrate_events(Motion(system, 1.5, output_step=0.01))
+    steps = integrate(Motion(system, 1.5, output_step=0.01), step=1.0e-5)
     assert events.data.attrs["contact_changes"] == steps.data.attrs["contact_changes"] >= 5
     assert events.first_contact == pytest.approx(steps.first_contact, rel=1e-8)
     names = ("kinetic_energy", "strain_energy", "contact_energy", "work", "gap", "contact_force")
@@ -214,7 +218,9 @@ def test_agrees_with_the_splitting(exponent: float) -> None:
 def test_outputs_change_nothing() -> None:
     """Reference: the run with outputs a hundred times as far apart; its series are as long, and
     what they leave out is the same."""
-    fine, coarse = (integrate_events(two_modes(2.0), 1.5, output_step=s) for s in (0.005, 0.5))
+    fine, coarse = (
+        integrate_events(Motion(two_modes(2.0), 1.5, output_step=s)) for s in (0.005, 0.5)
+    )
     np.testing.assert_allclose(fine.states[::100], coarse.states, atol=1e-11)
     sums = [float(run.data["contact_force"].sum()) * s for run, s in ((fine, 0.005), (coarse, 0.5))]
     assert sums[0] == pytest.approx(sums[1], rel=1e-10)
@@ -228,7 +234,12 @@ def test_starts_pressed(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
     quarter = 0.5 * np.pi / 10.0
     run = integrate_events(
-        one_mass(1.0, stop), 2.0 * quarter, output_step=2.0 * quarter, position=np.array([-0.105])
+        Motion(
+            one_mass(1.0, stop),
+            2.0 * quarter,
+            output_step=2.0 * quarter,
+            position=np.array([-0.105]),
+        )
     )
     assert run.first_contact == 0.0
     assert run.data.attrs["contact_changes"] == 1
@@ -239,7 +250,7 @@ def test_starts_pressed(one_mass: OneMass) -> None:
 
 def test_without_contact_it_is_the_flow(one_mass: OneMass) -> None:
     """Reference: analytic."""
-    run = integrate_events(one_mass(4.0, spring=100.0, force=30.0), 2.0, output_step=0.1)
+    run = integrate_events(Motion(one_mass(4.0, spring=100.0, force=30.0), 2.0, output_step=0.1))
     np.testing.assert_allclose(run.data["tip"], 0.3 * (1.0 - np.cos(5.0 * run.time)), atol=1e-13)
     assert np.isnan(run.first_contact)
 
@@ -277,15 +288,15 @@ def test_refuses_what_has_no_closed_form(change: dict[str, Any], what: str) -> N
     system = replace(two_modes(2.0), **change)
     assert what_hinders(system) == what
     with pytest.raises(ValueError, match=f"^{re.escape(what)}; integrate by splitting$"):
-        integrate_events(system, 1.0)
+        integrate_events(Motion(system, 1.0))
 
 
 def test_a_tolerance_that_loses_energy_ends_the_run(one_mass: OneMass) -> None:
     """The load keeps the mass at the stop, where it swings a hundred times."""
     system = one_mass(1.0, PowerContact(1.0e4, 2.0, clearance=0.0), force=100.0)
-    assert integrate_events(system, 5.0).energy_residual < 1e-8
+    assert integrate_events(Motion(system, 5.0)).energy_residual < 1e-8
     with pytest.raises(NumericsError, match=r"at a tolerance of 10; make it smaller$"):
-        integrate_events(system, 5.0, tolerance=10.0)
+        integrate_events(Motion(system, 5.0), tolerance=10.0)
 
 
 def test_endless_rattling_ends(one_mass: OneMass) -> None:
@@ -293,7 +304,7 @@ def test_endless_rattling_ends(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e24, exponent=1.0, clearance=0.0)
     message = "more than 1000000 contacts follow within 0.001 s; make the contact softer"
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
-        integrate_events(one_mass(1.0, stop, force=1.0), 1.0)
+        integrate_events(Motion(one_mass(1.0, stop, force=1.0), 1.0))
 
 
 def test_nothing_hinders_the_rest() -> None:

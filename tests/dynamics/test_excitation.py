@@ -16,6 +16,7 @@ from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.integrators import Events, suited
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.studies.histories import KINKED, OMEGAS, masses, response
@@ -48,13 +49,13 @@ def test_a_step_is_a_load(one_mass: OneMass) -> None:
     """Reference: other code path, the same load as a constant."""
     plain = one_mass(3.0, PowerContact(1.0e4, 2.0, 0.02), spring=40.0, force=7.0, dashpot=0.8)
     stepped = driven(replace(plain, load=np.zeros(1)), 7.0, Step())
-    one, two = (integrate(s, 2.0, output_step=0.01, step=2e-4) for s in (plain, stepped))
+    one, two = (integrate(Motion(s, 2.0, output_step=0.01), step=2e-4) for s in (plain, stepped))
     assert one.data.attrs["contact_changes"] >= 4
     assert two.data.identical(one.data)
     undamped = replace(stepped, damping=np.zeros(1))
-    assert isinstance(suited(undamped, 2e-4), Events)
-    moved = Events()(undamped, 2.0, 0.01)
-    again = Events()(replace(plain, damping=np.zeros(1)), 2.0, 0.01)
+    assert isinstance(suited(Motion(undamped, 2.0, 0.01)), Events)
+    moved = Events()(Motion(undamped, 2.0, 0.01))
+    again = Events()(Motion(replace(plain, damping=np.zeros(1)), 2.0, 0.01))
     assert moved.data.identical(again.data)
 
 
@@ -69,7 +70,7 @@ def test_kinks_are_followed_wherever_they_are(where: str, step: float, frictions
         friction_rows=np.ones((frictions, len(OMEGAS))),
         frictions=[DryFriction(0.2, 0, 1.0e-30)] * frictions,
     )
-    run = integrate(system, 4.0, output_step=0.02, step=step)
+    run = integrate(Motion(system, 4.0, output_step=0.02), step=step)
     for omega in OMEGAS:
         expected = response(omega, KINKED[where], run.time)
         error = np.abs(run.data[f"{omega:g}"].values - expected).max()
@@ -79,7 +80,9 @@ def test_kinks_are_followed_wherever_they_are(where: str, step: float, frictions
 
 def test_a_jump_within_a_step() -> None:
     """Reference: analytic, the load let on 0.507 s later, as a table that rises within 1 ns."""
-    run = integrate(masses(Table((0.507, 0.507 + 1.0e-9), (0.0, 1.0))), 2.0, output_step=0.02)
+    run = integrate(
+        Motion(masses(Table((0.507, 0.507 + 1.0e-9), (0.0, 1.0))), 2.0, output_step=0.02)
+    )
     since = np.maximum(run.time - 0.507 - 0.5e-9, 0.0)
     for omega in OMEGAS:
         expected = 0.5 * since**2 * np.sinc(0.5 * omega * since / np.pi) ** 2
@@ -93,13 +96,13 @@ def test_a_table_that_knocks_takes_long_strides(one_mass: OneMass) -> None:
     table = Table((0.0, 0.403, 0.9, 2.2), (0.0, 1.0, -0.4, 0.8))
     system = driven(one_mass(2.0, stop, spring=50.0), 5.0, table)
     step = contact_step(system, 0.01) / 20.0
-    run = integrate(system, 4.0, output_step=0.01, step=step)
+    run = integrate(Motion(system, 4.0, output_step=0.01), step=step)
     rubbed = replace(
         system,
         friction_rows=system.rows,
         frictions=[DryFriction(1.0, 0, 1.0e-30)],
     )
-    single = integrate(rubbed, 4.0, output_step=0.01, step=step)
+    single = integrate(Motion(rubbed, 4.0, output_step=0.01), step=step)
     assert run.data.attrs["contact_changes"] == single.data.attrs["contact_changes"] > 4
     assert run.data.attrs["steps"] < 0.1 * single.data.attrs["steps"]
     size = np.ptp(run.data["tip"].values)
@@ -113,8 +116,8 @@ def test_a_ramp_is_followed_exactly(one_mass: OneMass, spring: float, damping: f
     """Reference: analytic. t³/6 per unit of mass and slope for ω = c = 0; else the particular
     solution (t − c/k)/k and a free motion. The shortest and the longest step agree."""
     system = driven(one_mass(1.0, spring=spring, dashpot=damping), 6.0, Ramp(2.0))
-    coarse = integrate(system, 2.0, output_step=0.25, step=0.25)
-    fine = integrate(system, 2.0, output_step=0.25, step=1e-4)
+    coarse = integrate(Motion(system, 2.0, output_step=0.25), step=0.25)
+    fine = integrate(Motion(system, 2.0, output_step=0.25), step=1e-4)
     if spring == damping == 0.0:
         np.testing.assert_allclose(coarse.data["tip"], coarse.time**3 / 2.0, rtol=1e-13)
     elif spring == 40.0:
@@ -148,7 +151,7 @@ def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> No
     system = driven(one_mass(1.0, spring=30.0, dashpot=dashpot), 1.0, Sine(0.6, 0.4))
     errors, residuals = [], []
     for step in (0.04, 0.02, 0.01):
-        run = integrate(system, 8.0, output_step=0.04, step=step)
+        run = integrate(Motion(system, 8.0, output_step=0.04), step=step)
         expected = forced(run.time, 30.0, dashpot, 0.6, 0.4)
         errors.append(np.abs(run.data["tip"].values - expected).max() / np.abs(expected).max())
         residuals.append(run.energy_residual)
@@ -165,7 +168,7 @@ def test_work_and_damping_loss_of_a_steady_swing(one_mass: OneMass) -> None:
     spring, dashpot, frequency = 30.0, 2.0, 0.8
     system = driven(one_mass(1.0, spring=spring, dashpot=dashpot), 1.0, Sine(frequency))
     period = 1.0 / frequency
-    run = integrate(system, 30.0 * period, output_step=period / 100.0)
+    run = integrate(Motion(system, 30.0 * period, output_step=period / 100.0))
     omega = 2.0 * np.pi * frequency
     square = 1.0 / ((spring - omega**2) ** 2 + (dashpot * omega) ** 2)
     power = 0.5 * dashpot * omega**2 * square
@@ -193,19 +196,21 @@ def test_excitations_add_up() -> None:
         Excitation(np.array([-0.5, 4.0]), Table((0.0, 0.7, 0.9), (0.0, 1.0, -0.4))),
     ]
     dead = replace(system, load=np.zeros(n))
-    together = integrate(replace(system, excitations=parts), 3.0, 0.1, step=0.01)
-    alone = [integrate(replace(dead, excitations=[part]), 3.0, 0.1, step=0.01) for part in parts]
-    alone.append(integrate(system, 3.0, 0.1, step=0.01))
+    together = integrate(Motion(replace(system, excitations=parts), 3.0, 0.1), step=0.01)
+    alone = [
+        integrate(Motion(replace(dead, excitations=[part]), 3.0, 0.1), step=0.01) for part in parts
+    ]
+    alone.append(integrate(Motion(system, 3.0, 0.1), step=0.01))
     np.testing.assert_allclose(together.states, sum(run.states for run in alone), atol=1e-13)
 
 
 def test_a_shaken_mass_knocks_with_a_closed_ledger(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e5, exponent=1.0, clearance=0.02)
     system = driven(one_mass(2.0, stop, spring=50.0), 5.0, Sine(1.3))
-    run = integrate(system, 4.0, output_step=0.01)
+    run = integrate(Motion(system, 4.0, output_step=0.01))
     assert run.data.attrs["contact_changes"] > 10
     assert run.energy_residual < 1e-3
-    finer = integrate(system, 4.0, output_step=0.01, step=run.data.attrs["step"] / 4.0)
+    finer = integrate(Motion(system, 4.0, output_step=0.01), step=run.data.attrs["step"] / 4.0)
     assert finer.energy_residual < run.energy_residual / 8.0
 
 
@@ -225,7 +230,7 @@ def test_a_history_of_one_s_own() -> None:
     """Reference: the same as a table."""
     system = masses(Table((0.0, 1.0, 3.0), (1.0, 1.0, -1.0)))
     own = replace(system, excitations=[Excitation(np.ones(len(OMEGAS)), Own())])
-    runs = [integrate(one, 2.0, 0.03) for one in (own, system)]
+    runs = [integrate(Motion(one, 2.0, 0.03)) for one in (own, system)]
     np.testing.assert_allclose(runs[0].states, runs[1].states, rtol=1e-12, atol=1e-14)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics.integrators import Events, Integrator, Splitting
+from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.predictability.horizon import (
     Growth,
@@ -25,7 +26,7 @@ from tests.dynamics.two_stops import CHAOTIC, LINEAR
 def test_spread_of_a_linear_system_is_in_proportion_to_the_change() -> None:
     """Reference: analytic. All outputs of a linear system from rest scale with the load."""
     for relative in (1e-9, 1e-6, 1e-3):
-        ensemble = integrate_ensemble(LINEAR, 8, relative, 2, "load", 30.0, 1e-2)
+        ensemble = integrate_ensemble(Motion(LINEAR, 30.0, 1e-2), 8, relative, 2, "load")
         tip, changes = ensemble["tip"].values, ensemble["change"].values
         expected = 0.5 * np.ptp(changes) * np.abs(tip[0])
         np.testing.assert_allclose(
@@ -35,7 +36,7 @@ def test_spread_of_a_linear_system_is_in_proportion_to_the_change() -> None:
 
 
 def test_a_linear_system_has_no_horizon() -> None:
-    found = measure_horizons(LINEAR, [1e-12, 1e-6], "load", 30.0, 1e-2)
+    found = measure_horizons(Motion(LINEAR, 30.0, 1e-2), [1e-12, 1e-6], "load")
     assert np.isnan(found.times).all()
     assert np.isnan([found.growth[0].rate, found.step_change]).all()
     assert found.limits == ["nothing", "nothing"]
@@ -83,7 +84,7 @@ def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
     rates = []
     for partners in (1, 7):
         found = measure_horizons(
-            CHAOTIC, [1e-6, 1e-12, 1e-8, 1e-10], "load", 40.0, 1e-2, partners=partners
+            Motion(CHAOTIC, 40.0, 1e-2), [1e-6, 1e-12, 1e-8, 1e-10], "load", partners=partners
         )
         assert found.relatives.tolist() == [1e-12, 1e-10, 1e-8, 1e-6]
         times = found.times[:, 0]
@@ -100,11 +101,11 @@ def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
     """Reference: other code path. Data changed by as much part from the run at the time at which
     the finer one does, within a tenth of it."""
     found = measure_horizons(
-        CHAOTIC, [1e-10, 1e-8, 1e-6], "load", 40.0, 1e-2, integrator=integrator
+        Motion(CHAOTIC, 40.0, 1e-2), [1e-10, 1e-8, 1e-6], "load", integrator=integrator
     )
     assert 1e-10 < found.step_change < 1e-2
     alike = measure_horizons(
-        CHAOTIC, [found.step_change], "load", 40.0, 1e-2, integrator=integrator
+        Motion(CHAOTIC, 40.0, 1e-2), [found.step_change], "load", integrator=integrator
     )
     assert alike.times[0, 0] == pytest.approx(found.of_step[0], rel=0.1)
 
@@ -112,7 +113,7 @@ def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
 def test_says_whether_step_or_physics_limits() -> None:
     """The step's error changes a run more than 1e-12 of the load does, and less than 1e-2."""
     for relative, expected in ((1e-12, "step"), (1e-2, "physics")):
-        found = measure_horizons(CHAOTIC, [relative], "load", 20.0, 1e-2, partners=1)
+        found = measure_horizons(Motion(CHAOTIC, 20.0, 1e-2), [relative], "load", partners=1)
         assert found.limits[0] == expected
         assert (found.of_step[0] < found.times[0, 0]) == (expected == "step")
 
@@ -137,11 +138,13 @@ def test_growth_decides_where_chance_would() -> None:
 
 def test_tells_its_progress() -> None:
     parts: list[float] = []
-    measure_horizons(LINEAR, [1e-9, 1e-6], "load", 1.0, 1e-2, partners=1, progress=parts.append)
+    measure_horizons(
+        Motion(LINEAR, 1.0, 1e-2), [1e-9, 1e-6], "load", partners=1, progress=parts.append
+    )
     assert parts == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_refuses_what_no_change_moves() -> None:
     message = "the velocity is zero, so that no relative change moves it"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        measure_horizons(LINEAR, [1e-9], "velocity", 1.0)
+        measure_horizons(Motion(LINEAR, 1.0), [1e-9], "velocity")

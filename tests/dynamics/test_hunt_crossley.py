@@ -12,6 +12,7 @@ import pytest
 
 from dynamics.contact import PowerContact, restitution_damping
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 
 OneMass = Callable[..., GapSystem]
@@ -49,9 +50,14 @@ def test_a_mass_rebounds_as_it_should(
     errors = []
     for step in (4.0e-5, 1.0e-5):
         run = integrate(
-            one_mass(mass, stop), 0.05, output_step=1.0e-3, step=step,
-            velocity=np.array([speed * np.sqrt(mass)]),
-        )  # fmt: skip
+            Motion(
+                one_mass(mass, stop),
+                0.05,
+                output_step=1.0e-3,
+                velocity=np.array([speed * np.sqrt(mass)]),
+            ),
+            step=step,
+        )
         assert run.data.attrs["contact_changes"] == 2
         after = float(np.diff(run.data["tip"].values)[-1]) / -1.0e-3
         errors.append(abs(after / speed - restitution))
@@ -69,7 +75,7 @@ def test_contact_never_pulls(one_mass: OneMass) -> None:
     stored is lost."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.0, damping=5.0).upper()
     system = one_mass(1.0, stop, force=-2.0e3)
-    run = integrate(system, 0.05, output_step=1e-4, position=np.array([0.1]))
+    run = integrate(Motion(system, 0.05, output_step=1e-4, position=np.array([0.1])))
     force = run.data["contact_force"].values
     assert force.min() >= 0.0
     tip = run.data["tip"].values
@@ -89,7 +95,7 @@ def test_no_damping_is_no_damping(one_mass: OneMass) -> None:
         laws=[stop, PowerContact(1.0, 1.0, 1.0e3, damping=1.0)],
         station_of_row=np.zeros(2, dtype=np.int64),
     )
-    one, two = (integrate(s, 1.0, output_step=0.01, step=2e-5) for s in (plain, other))
+    one, two = (integrate(Motion(s, 1.0, output_step=0.01), step=2e-5) for s in (plain, other))
     assert one.data.attrs["contact_changes"] == two.data.attrs["contact_changes"] >= 2
     np.testing.assert_allclose(two.data["tip"], one.data["tip"], atol=1e-11)
     assert not two.data["contact_loss"].values.any()
@@ -109,7 +115,7 @@ def test_rows_that_press_together_lose_energy_together() -> None:
     )
     residuals = []
     for step in (4.0e-5, 2.0e-5, 1.0e-5):
-        run = integrate(system, 1.0, output_step=2e-3, step=step)
+        run = integrate(Motion(system, 1.0, output_step=2e-3), step=step)
         assert np.diff(run.data["contact_loss"].values).min() >= -1e-15
         residuals.append(run.energy_residual)
     assert run.data.attrs["contact_changes"] >= 8

@@ -10,23 +10,32 @@ import numpy as np
 import pytest
 
 from dynamics.event_driven import integrate_events
-from dynamics.integrators import FEW_MODES, Events, Integrator, Splitting, by_splitting, suited
+from dynamics.integrators import (
+    FEW_MODES,
+    Events,
+    Integrator,
+    Splitting,
+    by_splitting,
+    simulate,
+    suited,
+)
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
-from dynamics.step import contact_step, initial_speeds
+from dynamics.step import contact_step
 from tests.dynamics.two_stops import CHAOTIC
 
-START = {"position": np.array([0.01, 0.0]), "velocity": np.array([0.5, -1.0])}
+MOTION = Motion(CHAOTIC, 2.0, 1e-2, np.array([0.01, 0.0]), np.array([0.5, -1.0]))
 
 
 @pytest.mark.parametrize("integrator", [Splitting(1e-3), Events(1e-6)])
 def test_values_move_as_their_functions(integrator: Integrator) -> None:
     """Reference: other code path."""
     parts: list[float] = []
-    run = pickle.loads(pickle.dumps(integrator))(CHAOTIC, 2.0, 1e-2, **START, progress=parts.append)
+    run = pickle.loads(pickle.dumps(integrator))(MOTION, parts.append)
     if isinstance(integrator, Splitting):
-        expected = integrate(CHAOTIC, 2.0, 1e-2, step=1e-3, **START)
+        expected = integrate(MOTION, step=1e-3)
     else:
-        expected = integrate_events(CHAOTIC, 2.0, 1e-2, tolerance=1e-6, **START)
+        expected = integrate_events(MOTION, tolerance=1e-6)
     np.testing.assert_array_equal(run.states, expected.states)
     assert parts[-1] == 1.0
 
@@ -34,13 +43,17 @@ def test_values_move_as_their_functions(integrator: Integrator) -> None:
 @pytest.mark.parametrize("integrator", [Splitting(2e-3), Events(1e-4)])
 def test_finer_ones_lose_less(integrator: Integrator) -> None:
     """Reference: the coarser one's energy residual; half a step of order two leaves a quarter."""
-    coarse = integrator(CHAOTIC, 5.0, 1e-2).energy_residual
-    assert integrator.finer()(CHAOTIC, 5.0, 1e-2).energy_residual < 0.6 * coarse
+    motion = Motion(CHAOTIC, 5.0, 1e-2)
+    coarse = integrator(motion).energy_residual
+    assert integrator.finer()(motion).energy_residual < 0.6 * coarse
 
 
 def test_few_modes_go_from_contact_to_contact() -> None:
-    assert suited(CHAOTIC, 1e-3) == Events()
-    assert suited(replace(CHAOTIC, damping=np.ones(2)), 1e-3) == Splitting(1e-3)
+    motion = Motion(CHAOTIC, 5.0, 1e-2)
+    assert suited(motion) == Events()
+    assert suited(MOTION) == by_splitting(MOTION)
+    hindered = replace(motion, system=replace(CHAOTIC, damping=np.ones(2)))
+    assert suited(hindered) == by_splitting(hindered)
     many = FEW_MODES + 1
     system = replace(
         CHAOTIC,
@@ -51,12 +64,21 @@ def test_few_modes_go_from_contact_to_contact() -> None:
         friction_rows=np.zeros((0, 0)),
         observers={},
     )
-    assert suited(system, 1e-3) == Splitting(1e-3)
+    crowded = Motion(system, 5.0, 1e-2)
+    assert suited(crowded) == by_splitting(crowded)
 
 
 def test_the_step_fits_the_initial_state() -> None:
+    """Reference: by hand, √(v² + ω² a²) of each mode."""
+    speeds = np.sqrt(MOTION.velocity**2 + CHAOTIC.omega2 * MOTION.position**2)
+    assert by_splitting(MOTION).step == contact_step(CHAOTIC, 1e-2, speeds)
+    assert by_splitting(Motion(CHAOTIC, 2.0, 1e-2)).step == contact_step(CHAOTIC, 1e-2)
+
+
+def test_what_is_simulated_is_the_motion() -> None:
     """Reference: other code path."""
-    speeds = initial_speeds(CHAOTIC, *START.values())
-    assert by_splitting(CHAOTIC, 1e-2, None, **START).step == contact_step(CHAOTIC, 1e-2, speeds)
-    assert by_splitting(CHAOTIC, 1e-2).step == contact_step(CHAOTIC, 1e-2)
-    assert by_splitting(CHAOTIC, 1e-2, 3e-4, **START) == Splitting(3e-4)
+    start = {"position": [0.01, 0.0], "velocity": [0.5, -1.0]}
+    run = simulate(CHAOTIC, 2.0, 1e-2, **start)
+    np.testing.assert_array_equal(run.states, by_splitting(MOTION)(MOTION).states)
+    run = simulate(CHAOTIC, 2.0, 1e-2, **start, integrator=Splitting(1e-3))
+    np.testing.assert_array_equal(run.states, Splitting(1e-3)(MOTION).states)

@@ -11,6 +11,7 @@ from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.modal_flow import ModalFlow, tabulate
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 
 # ω² in rad²/s², c in 1/s, load in N/√kg
@@ -114,8 +115,8 @@ def test_load_response_of_the_shortest_steps(
 
 def test_steps_add_up() -> None:
     """Reference: analytic, (flow over h)ⁿ = flow over n h; here by the integrator itself."""
-    one = integrate(modes(), 2.0, output_step=0.5)
-    many = integrate(modes(), 2.0, output_step=0.5, step=1.0e-4)
+    one = integrate(Motion(modes(), 2.0, output_step=0.5))
+    many = integrate(Motion(modes(), 2.0, output_step=0.5), step=1.0e-4)
     assert one.data.attrs["steps"] == 4
     # 5000 steps an output, nothing to touch: 9 times 512, 6 times 64 and once 8 at once.
     assert many.data.attrs["steps"] == 4 * (9 + 6 + 1)

@@ -16,6 +16,7 @@ from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.kernels.modal_flow import ModalFlow
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import PHASE
 from dynamics.trajectory import Trajectory
@@ -38,7 +39,7 @@ def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
     """
     stop = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=0.0).upper()
     system = one_mass(100.0, stop, spring=1.0e4)
-    run = integrate(system, 0.04, output_step=1.0e-6, velocity=np.array([10.0]))
+    run = integrate(Motion(system, 0.04, output_step=1.0e-6, velocity=np.array([10.0])))
     peak = run.data["contact_force_peak"].isel(station=0)
     assert float(peak.max()) == pytest.approx(9950.372, rel=1e-4)
     assert float(run.time[peak.values.argmax()]) == pytest.approx(0.0156300, rel=1e-4)
@@ -56,7 +57,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
     """
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
     system = one_mass(1.0, stop, force=-10.0)
-    run = integrate(system, 1.2, output_step=1.0e-3, step=1.0e-4, velocity=np.array([-1.0]))
+    run = integrate(Motion(system, 1.2, output_step=1.0e-3, velocity=np.array([-1.0])), step=1.0e-4)
     assert run.first_contact == pytest.approx(0.5403124, rel=1e-4)
     touch, release = crossings(run.time, run.data["tip"].values, -2.0)
     assert touch == pytest.approx(0.5403124, rel=1e-4)
@@ -71,7 +72,8 @@ def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     system = one_mass(1.0, law)
     period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
     run = integrate(
-        system, 3.0 * period, output_step=period / 1000.0, step=2.0e-6, velocity=np.array([2.0])
+        Motion(system, 3.0 * period, output_step=period / 1000.0, velocity=np.array([2.0])),
+        step=2.0e-6,
     )
     tip = run.data["tip"].values
     np.testing.assert_allclose(tip[::1000], 0.0, atol=1e-6)
@@ -90,9 +92,11 @@ def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: floa
     """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
     run = integrate(
-        one_mass(1.0, stop, force=-10.0), 1.0, output_step=2.0e-2, step=step,
-        velocity=np.array([-1.0]),
-    )  # fmt: skip
+        Motion(
+            one_mass(1.0, stop, force=-10.0), 1.0, output_step=2.0e-2, velocity=np.array([-1.0])
+        ),
+        step=step,
+    )
     exact = (np.sqrt(41.0) - 1.0) / 10.0
     assert abs(run.first_contact - exact) < 10.0 * step**2 / 8.0 / np.sqrt(41.0) + 1e-13
 
@@ -109,7 +113,7 @@ def test_first_contact_is_that_of_the_first_row() -> None:
         stations=[9.0, 10.0],
         observers={},
     )
-    run = integrate(system, 0.1, output_step=0.01, step=0.01, velocity=np.ones(1))
+    run = integrate(Motion(system, 0.1, output_step=0.01, velocity=np.ones(1)), step=0.01)
     assert run.first_contact == pytest.approx(0.0102, rel=1e-9)
 
 
@@ -118,9 +122,15 @@ def test_first_contact_with_a_stop_without_gap(one_mass: OneMass, step: float) -
     """Reference: analytic. A mass comes from below at 1 m/s to a one-sided stop at 0."""
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.0).upper()
     run = integrate(
-        one_mass(1.0, stop), 0.5, output_step=0.01, step=step,
-        position=np.array([-0.1003]), velocity=np.ones(1),
-    )  # fmt: skip
+        Motion(
+            one_mass(1.0, stop),
+            0.5,
+            output_step=0.01,
+            position=np.array([-0.1003]),
+            velocity=np.ones(1),
+        ),
+        step=step,
+    )
     assert run.first_contact == pytest.approx(0.1003, rel=1e-6)
     assert run.data.attrs["contact_changes"] == 2
 
@@ -128,15 +138,16 @@ def test_first_contact_with_a_stop_without_gap(one_mass: OneMass, step: float) -
 def test_letting_go_is_no_first_contact(one_mass: OneMass) -> None:
     """A mass that starts pressed is in contact from the start."""
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=0.1)
-    run = integrate(one_mass(1.0, stop), 0.18, output_step=0.01, step=1.0e-3,
-                    position=np.array([0.11]))  # fmt: skip
+    run = integrate(
+        Motion(one_mass(1.0, stop), 0.18, output_step=0.01, position=np.array([0.11])), step=1.0e-3
+    )
     assert float(run.data["gap"][-1, 0]) < 0.1
     assert run.first_contact == 0.0
 
 
 def test_no_contact_is_not_a_number(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0)
-    run = integrate(one_mass(1.0, stop, spring=4.0, force=1.0), 1.0)
+    run = integrate(Motion(one_mass(1.0, stop, spring=4.0, force=1.0), 1.0))
     assert np.isnan(run.first_contact)
     assert run.data.attrs["contact_changes"] == 0
     assert not run.data["contact_force"].values.any()
@@ -179,7 +190,7 @@ def test_order_and_error_through_one_contact() -> None:
     steps = 2.0e-3 / 2.0 ** np.arange(5)
     errors = []
     for step in steps:
-        run = integrate(system, duration, output_step=0.02, step=step)
+        run = integrate(Motion(system, duration, output_step=0.02), step=step)
         errors.append(np.abs(run.states[-1] - expected).max() / np.abs(run.states).max())
     assert run.data.attrs["contact_changes"] == 2
     slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
@@ -201,12 +212,12 @@ def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
     """Reference: analytic, time reversibility; the load is the same both ways."""
     system = two_modes(exponent)
     start = np.array([0.02, -0.01])
-    there = integrate(system, 1.8, output_step=0.02, step=1.0e-3, position=start)
+    there = integrate(Motion(system, 1.8, output_step=0.02, position=start), step=1.0e-3)
     turned = end_velocity(system, there)
     back = integrate(
-        system, 1.8, output_step=0.02, step=1.0e-3,
-        position=there.states[-1], velocity=-turned,
-    )  # fmt: skip
+        Motion(system, 1.8, output_step=0.02, position=there.states[-1], velocity=-turned),
+        step=1.0e-3,
+    )
     assert there.data.attrs["contact_changes"] == back.data.attrs["contact_changes"] >= 6
     assert np.abs(back.states[-1] - start).max() < 1e-9 * np.abs(there.states).max()
     speed = np.abs(end_velocity(system, back)).max()
@@ -230,7 +241,7 @@ def test_units_do_not_matter() -> None:
         stations=[0.0],
         observers={"first": Observer(np.array([scale, 0.0]))},
     )
-    metres, millimetres = (integrate(s, 1.5, output_step=0.01) for s in (si, small))
+    metres, millimetres = (integrate(Motion(s, 1.5, output_step=0.01)) for s in (si, small))
     assert metres.data.attrs["contact_changes"] >= 5
     assert millimetres.data.attrs["steps"] == metres.data.attrs["steps"]
     assert millimetres.first_contact == pytest.approx(metres.first_contact, rel=1e-9)
@@ -250,7 +261,7 @@ def test_bouncing_ball_keeps_its_energy(
     bounce nothing adds up.
     """
     floor = PowerContact(stiffness, exponent, clearance=1.0e-3).lower()
-    run = integrate(one_mass(1.0, floor, force=-10.0), 9.0)
+    run = integrate(Motion(one_mass(1.0, floor, force=-10.0), 9.0))
     assert run.data.attrs["contact_changes"] > 600
     assert run.energy_residual < 0.5 * PHASE**2
     tip = run.data["tip"].values
@@ -266,9 +277,9 @@ def test_a_hard_blow_gives_back_its_speed(one_mass: OneMass, speed: float) -> No
     step = PHASE / np.sqrt(2.0e13 * depth)
     period = 2.0 * (2.0e-3 + 2.8 * depth) / speed
     run = integrate(
-        one_mass(1.0, stop), 500.0 * period, output_step=period, step=step,
-        velocity=np.array([speed]),
-    )  # fmt: skip
+        Motion(one_mass(1.0, stop), 500.0 * period, output_step=period, velocity=np.array([speed])),
+        step=step,
+    )
     assert run.data.attrs["contact_changes"] > 900
     assert run.energy_residual < 0.5 * PHASE**2
     kinetic = run.data["kinetic_energy"].where(run.data["contact_energy"] == 0.0, drop=True)
@@ -280,7 +291,7 @@ def test_damping_takes_what_the_ledger_says(one_mass: OneMass) -> None:
     mass, spring, dashpot, force = 4.0, 100.0, 2.0, 30.0
     decay, omega = dashpot / (2.0 * mass), np.sqrt(spring / mass - 0.0625)
     system = one_mass(mass, spring=spring, dashpot=dashpot, force=force)
-    run = integrate(system, 5.0, output_step=0.01)
+    run = integrate(Motion(system, 5.0, output_step=0.01))
     t, rest = run.time, force / spring
     swing = np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
     speed = rest * np.exp(-decay * t) * np.sin(omega * t) * (omega + decay**2 / omega)
@@ -299,7 +310,7 @@ def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
     """Reference: analytic. In the end all of the work not held at rest is dissipated."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.1)
     system = one_mass(4.0, stop, spring=100.0, dashpot=20.0, force=30.0)
-    run = integrate(system, 20.0, output_step=0.01)
+    run = integrate(Motion(system, 20.0, output_step=0.01))
     depth = (30.0 - 10.0) / 1.01e4
     end = run.data.isel(time=-1)
     assert run.data.attrs["contact_changes"] >= 3
@@ -313,13 +324,13 @@ def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
 def test_step_fits_the_output_and_progress_is_told(one_mass: OneMass) -> None:
     told: list[float] = []
     system = one_mass(1.0, spring=1.0)
-    run = integrate(system, 1.04, output_step=0.1, step=0.03, progress=told.append)
+    run = integrate(Motion(system, 1.04, output_step=0.1), step=0.03, progress=told.append)
     assert run.time[-1] == pytest.approx(1.0, rel=1e-15)
     assert run.data.attrs["step"] == pytest.approx(0.025, rel=1e-12)
     assert run.data.attrs["steps"] == 40
     assert told == sorted(told)
     assert told[-1] == 1.0
-    assert integrate(system, 0.01, output_step=0.1).time.size == 2
+    assert integrate(Motion(system, 0.01, output_step=0.1)).time.size == 2
 
 
 def test_complains_of_energy_from_a_coarse_step(one_mass: OneMass) -> None:
@@ -329,7 +340,7 @@ def test_complains_of_energy_from_a_coarse_step(one_mass: OneMass) -> None:
         r"0\.0003 s; halve the step$"
     )
     with pytest.raises(NumericsError, match=message) as caught:
-        integrate(one_mass(1.0, stop, force=-10.0), 1.0, output_step=3.0e-4, step=3.0e-4)
+        integrate(Motion(one_mass(1.0, stop, force=-10.0), 1.0, output_step=3.0e-4), step=3.0e-4)
     found = re.match(message, str(caught.value))
     assert found is not None
     assert float(found[1]) > 0.01
@@ -338,26 +349,28 @@ def test_complains_of_energy_from_a_coarse_step(one_mass: OneMass) -> None:
 def test_energy_bound_can_be_set(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e8, exponent=1.0, clearance=1.0e-3)
     system = one_mass(1.0, stop, force=-10.0)
-    residual = integrate(system, 0.1).energy_residual
-    assert integrate(system, 0.1, energy_bound=1.01 * residual).energy_residual == residual
+    residual = integrate(Motion(system, 0.1)).energy_residual
+    assert integrate(Motion(system, 0.1), energy_bound=1.01 * residual).energy_residual == residual
     message = (
         f"the energy residual is {residual:.3g} of the work done, above the bound of "
         f"{0.99 * residual:.3g}, at a step of "
     )
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}"):
-        integrate(system, 0.1, energy_bound=0.99 * residual)
+        integrate(Motion(system, 0.1), energy_bound=0.99 * residual)
 
 
 def test_complains_of_a_motion_that_is_not_finite(one_mass: OneMass) -> None:
     stop = PowerContact(stiffness=1.0e13, exponent=3.0, clearance=1.0e-3)
     message = "the motion is not finite at a step of 0.01 s; halve the step"
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
-        integrate(one_mass(1.0, stop, force=-10.0), 200.0, output_step=0.1, step=0.01)
+        integrate(Motion(one_mass(1.0, stop, force=-10.0), 200.0, output_step=0.1), step=0.01)
 
 
 def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
     """A boom may have segments without load: their gaps close at no speed at all."""
-    run = integrate(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1, step=1.0e-4)
+    run = integrate(
+        Motion(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1), step=1.0e-4
+    )
     assert not run.states.any()
     assert np.isnan(run.first_contact)
 
@@ -386,9 +399,10 @@ def test_steps_made_at_once_miss_no_contact(load: float) -> None:
         )
 
     feather = PowerContact(stiffness=1.0e-30, exponent=1.0, clearance=0.0)
-    arguments = {"duration": 6.0, "output_step": 0.01, "step": 1.0e-5, "position": start}
-    at_once = integrate(system(law), **arguments)
-    one_by_one = integrate(system(law, feather), **arguments)
+    at_once, one_by_one = (
+        integrate(Motion(system(*laws), 6.0, 0.01, position=start), step=1.0e-5)
+        for laws in ((law,), (law, feather))
+    )
     assert one_by_one.data.attrs["steps"] == 600_000
     assert at_once.data.attrs["steps"] < 200_000
     assert at_once.data.attrs["contact_changes"] >= 20

@@ -15,6 +15,7 @@ from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
@@ -32,7 +33,7 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
     system = replace(
         system, observers={**system.observers, "stress": Observer(np.array([5.0]), "Pa")}
     )
-    run = integrate(system, 0.2, output_step=1.0e-2)
+    run = integrate(Motion(system, 0.2, output_step=1.0e-2))
     units = {name: variable.attrs.get("units") for name, variable in run.data.variables.items()}
     assert units == {
         "time": "s",
@@ -81,7 +82,7 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
         laws=[STOP.shared(0.25), whole.laws[1], STOP.shared(0.75)],
         station_of_row=np.array([0, 1, 0]),
     )
-    one, two = (integrate(s, 2.0, output_step=1.0e-2, step=1.0e-4) for s in (whole, shared))
+    one, two = (integrate(Motion(s, 2.0, output_step=1.0e-2), step=1.0e-4) for s in (whole, shared))
     assert np.abs(one.data["contact_force"]).max("time").values.min() > 1.0
     for name in ("contact_force", "contact_force_peak", "gap"):
         assert two.data[name].shape == (201, 2)
@@ -104,7 +105,7 @@ def test_stations_have_directions_and_friction_forces() -> None:
         frictions=[DryFriction(0.1, 1, 4.0), DryFriction(0.1, 1, 6.0)],
     )
     whole = replace(system, friction_rows=system.rows, frictions=[DryFriction(0.1, 1, 10.0)])
-    one, two = (integrate(s, 1.0, output_step=0.01) for s in (whole, system))
+    one, two = (integrate(Motion(s, 1.0, output_step=0.01)) for s in (whole, system))
     assert two.data["direction"].values.tolist() == ["z", "y"]
     assert not two.data["friction_force"].values[:, 0].any()
     force = one.data["friction_force"].values[:, 1]
@@ -122,7 +123,7 @@ def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
         stations=[9.0, 10.0],
         observers={},
     )
-    run = integrate(system, 1.0, output_step=0.1)
+    run = integrate(Motion(system, 1.0, output_step=0.1))
     np.testing.assert_allclose(run.data["gap"][:, 0], run.states.sum(axis=1), rtol=1e-14)
     np.testing.assert_allclose(run.data["gap"][:, 1], run.states.mean(axis=1), rtol=1e-14)
 

@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import FiniteElementTable
 from runs.pipeline.models import beam_system
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 
@@ -198,10 +198,10 @@ def test_constant_loads_go_from_contact_to_contact(tmp_path: Path) -> None:
     case = case_file.load(str(path))
     (model,) = case.models
     assert isinstance(model, FiniteElementTable)
-    motion = Motion.of(beam_system(case, build_boom(case), model), case, model)
-    assert isinstance(motion.integrator, Events)
-    expected = (900.0 - 500.0 * 9.80665) * motion.system.observers["tip"].row
-    np.testing.assert_allclose(motion.system.load, expected, rtol=1e-12)
+    plan = Plan.of(beam_system(case, build_boom(case), model), case, model)
+    assert isinstance(plan.integrator, Events)
+    expected = (900.0 - 500.0 * 9.80665) * plan.motion.system.observers["tip"].row
+    np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)
 
 
 def test_histories_are_what_the_case_says(tmp_path: Path) -> None:

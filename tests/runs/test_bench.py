@@ -12,6 +12,7 @@ import pytest
 from rich.console import Console
 
 from dynamics.event_driven import TOLERANCE, integrate_events
+from dynamics.motion import Motion
 from runs.benchmarks.bench import (
     COMPILED,
     LEVELS,
@@ -125,7 +126,7 @@ def test_the_rates_are_those_of_the_series() -> None:
     touched; 1e-5 of the tip's range is far below what a wrong force would do.
     """
     system = five_terms(case_file.load(str(PAPER)))
-    ours = integrate_events(system, 0.2)
+    ours = integrate_events(Motion(system, 0.2))
     for rates in (compiled_rates(system), array_rates(system)):
         states = generic("DOP853", rates, 10, 0.2, 1e-11)
         tip = states[:, :5] @ system.observers["tip"].row

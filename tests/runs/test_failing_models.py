@@ -16,7 +16,7 @@ from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
 from runs.paper.rules import judge
 from runs.pipeline.models import beam_system
-from runs.pipeline.motion import Motion
+from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile, trajectories
@@ -44,13 +44,13 @@ def write_case(step: str) -> None:
 def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The modes of each system that has moved."""
     modes: list[int] = []
-    move = Motion.trajectory
+    move = Plan.trajectory
 
-    def count(motion: Motion, progress: Any) -> Trajectory:
-        modes.append(motion.system.num_modes)
-        return move(motion, progress)
+    def count(plan: Plan, progress: Any) -> Trajectory:
+        modes.append(plan.motion.system.num_modes)
+        return move(plan, progress)
 
-    monkeypatch.setattr(Motion, "trajectory", count)
+    monkeypatch.setattr(Plan, "trajectory", count)
     return modes
 
 
@@ -104,15 +104,15 @@ def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch)
     assert protractile(*RUN, "--no-cache") == 0
     undisturbed = Path("out/trajectories.nc").read_bytes()
     assert moved == [4, 5]
-    move = Motion.trajectory
+    move = Plan.trajectory
 
-    def break_off(motion: Motion, progress: Any) -> Trajectory:
-        if motion.system.num_modes == 5:
+    def break_off(plan: Plan, progress: Any) -> Trajectory:
+        if plan.motion.system.num_modes == 5:
             raise OSError("broken off")
-        return move(motion, progress)
+        return move(plan, progress)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Motion, "trajectory", break_off)
+        patch.setattr(Plan, "trajectory", break_off)
         assert protractile(*RUN) == 2
     assert protractile(*RUN) == 0
     assert moved == [4, 5, 4, 5]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.predictability.low_pass import slow_peaks
 from dynamics.splitting import integrate
 from runs import CASES
@@ -36,7 +37,7 @@ def five_terms() -> tuple[GapSystem, float]:
 
 def peaks_of(system: GapSystem, cutoff: float, spread: float) -> dict[str, Any]:
     """Slow peaks of one run as those of an ensemble."""
-    run = integrate(system, 4.0, STEP)
+    run = integrate(Motion(system, 4.0, STEP))
     times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
     return {
         "time": times.tolist(),
@@ -50,7 +51,7 @@ def peaks_of(system: GapSystem, cutoff: float, spread: float) -> dict[str, Any]:
 def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
     """Reference: non-regression. Slow peaks scatter by some percent from the second on."""
     system, cutoff = five_terms
-    found = steps_for_peaks(system, peaks_of(system, cutoff, 0.1), cutoff, STEP)
+    found = steps_for_peaks(Motion(system, 4.0, STEP), peaks_of(system, cutoff, 0.1), cutoff)
     assert found is not None
     assert {trial["integrator"] for trial in found["trials"]} == {"splitting", "events"}
     for integrator in ("splitting", "events"):
@@ -68,7 +69,7 @@ def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, flo
     system, cutoff = five_terms
     peaks = peaks_of(system, cutoff, 0.0)
     peaks["height"] = [1.05 * height for height in peaks["height"]]
-    found = steps_for_peaks(system, peaks, cutoff, STEP)
+    found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
     assert found is not None
     assert found["fewest"] is None
 
@@ -77,4 +78,4 @@ def test_too_few_peaks_are_not_asked_for(five_terms: tuple[GapSystem, float]) ->
     system, cutoff = five_terms
     two = {"time": [0.5, 1.6]}
     assert len(two["time"]) < PEAKS
-    assert steps_for_peaks(system, two, cutoff, STEP) is None
+    assert steps_for_peaks(Motion(system, 4.0, STEP), two, cutoff) is None

@@ -21,6 +21,7 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.event_driven import integrate_events
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
@@ -156,7 +157,7 @@ def test_beams_do_not_know_the_units(
     """Reference: this model in SI, to 1e-9 of the range, with friction and through presses."""
     boom = flat_boom(friction=0.2)
     runs = [
-        integrate(model(*data), duration=1.0, step=5.0e-6)
+        integrate(Motion(model(*data), 1.0), step=5.0e-6)
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
     ]
     agree(*runs)
@@ -167,7 +168,7 @@ def test_jumps_from_contact_to_contact_do_not_know_the_units() -> None:
     boom = flat_boom()
     law = replace(LINEAR, clearance=0.0)
     runs = [
-        integrate_events(series(*data), duration=0.3)
+        integrate_events(Motion(series(*data), 0.3))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
     ]
     agree(*runs)
@@ -180,7 +181,7 @@ def test_shells_do_not_know_the_units(line: str) -> None:
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
     runs = [
-        integrate(_shell(line)(*data), duration=0.6, step=1.0e-6)
+        integrate(Motion(_shell(line)(*data), 0.6), step=1.0e-6)
         for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
     ]
     agree(*runs)

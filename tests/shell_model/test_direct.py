@@ -19,6 +19,7 @@ from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, Stop
 from shell_model.boom_shell import ShellOptions, reduce_boom
@@ -150,7 +151,7 @@ def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: floa
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
     reduced = reduce_boom(boom, [], ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
-    reference = integrate(reduced.system, 0.15, step=1.0e-6)
+    reference = integrate(Motion(reduced.system, 0.15), step=1.0e-6)
     motion = integrate_directly(_full(boom), 0.15, 5.0e-5)
     tip, exact = motion.observed["tip"], reference.data["tip"].values
     assert reference.first_contact < 0.1
@@ -190,7 +191,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     """
     boom = flat_boom(friction=0.2)
     system = reduce_boom(boom, [_SOFT], ShellOptions(0.5), MPI.COMM_SELF).system
-    reference = integrate(system, 0.4, step=2.5e-6)
+    reference = integrate(Motion(system, 0.4), step=2.5e-6)
     full = _full(boom)
     motion = integrate_directly(full, 0.4, 2.5e-4)
     exact = reference.data["tip"].values

@@ -17,6 +17,7 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
@@ -58,7 +59,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
     nothing.
     """
     rough, smooth = (
-        integrate(_system(flat_boom(friction)), duration=0.25) for friction in (0.2, 0.0)
+        integrate(Motion(_system(flat_boom(friction)), 0.25)) for friction in (0.2, 0.0)
     )
     loss = rough.data["friction_loss"].values
     assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()

@@ -16,6 +16,7 @@ import pytest
 from mpi4py import MPI
 
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
@@ -97,7 +98,7 @@ def friction_motion(comm: MPI.Comm) -> tuple[npt.NDArray[np.float64], GapSystem]
     system = reduce_boom(flat_boom(friction=0.2), [law], options, comm).system
     if comm.rank != 0:
         return np.empty(0), system
-    motion = integrate(system, duration=10.0, output_step=1.0e-2, step=2.0e-5)
+    motion = integrate(Motion(system, 10.0, output_step=1.0e-2), step=2.0e-5)
     return np.asarray(motion.data["tip"].values), system
 
 

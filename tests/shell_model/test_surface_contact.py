@@ -16,6 +16,7 @@ from mpi4py import MPI
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import Boom, BoomError, PadSize
 from geometry.contact_places import ContactLine
@@ -193,7 +194,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
 def test_contact_over_a_surface_keeps_energy() -> None:
     """Reference: analytic, the ledger; first contact where the stations' is, at the tail."""
     surface, lines = (
-        integrate(_system(flat_boom(), line=line), duration=0.25)
+        integrate(Motion(_system(flat_boom(), line=line), 0.25))
         for line in ("surface", "near webs")
     )
     assert surface.energy_residual < 1.0e-4

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What is to be computed: a system, where it starts from, for how long."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.gap_system import GapSystem
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """The motion of a gap system from its initial state; what every integrator takes.
+
+    Args:
+        system: what moves.
+        duration: in s; a whole number of output steps is made, at least one.
+        output_step: in s.
+        position: (num_modes,) initial a in √kg·m, zero unless given.
+        velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
+
+    Raises:
+        ValueError: a time is not positive, a shape does not agree, or a number is not finite.
+    """
+
+    system: GapSystem
+    duration: float
+    output_step: float = 1.0e-3
+    position: Array = field(default_factory=lambda: np.zeros(0))
+    velocity: Array = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        for name in ("duration", "output_step"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)} s")
+        n = self.system.num_modes
+        for name in ("position", "velocity"):
+            state = np.asarray(getattr(self, name), dtype=np.float64)
+            state = state if state.size else np.zeros(n)
+            if state.shape != (n,):
+                raise ValueError(f"{name} must have the shape {(n,)}, got {state.shape}")
+            if not np.isfinite(state).all():
+                raise ValueError(f"{name} must be finite")
+            object.__setattr__(self, name, state)
+
+    @property
+    def outputs(self) -> int:
+        """How many output steps are made."""
+        return max(1, round(self.duration / self.output_step))
+
+    @property
+    def from_rest(self) -> bool:
+        """Whether nothing moves or is bent at t = 0."""
+        return not (self.position.any() or self.velocity.any())
+
+    @property
+    def initial_speeds(self) -> Array:
+        """(num_modes,) √(v² + ω² a²), the speed that each mode reaches from its initial state."""
+        return np.asarray(np.sqrt(self.velocity**2 + self.system.omega2 * self.position**2))
