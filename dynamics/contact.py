@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -134,10 +134,13 @@ class ContactLaw(ABC):
         depth = brentq(excess, high, high - up) if up * excess(high) > 0.0 else high
         return float(self.slope(np.array(side * np.exp(depth))))
 
-    def _sum(self, of_term: Callable[[np.void, float], float], y: Array) -> Array:
-        gaps = np.asarray(y, dtype=np.float64)
+    def _sum(self, of_term: Any, y: Array) -> Array:
+        gaps, terms = np.asarray(y, dtype=np.float64), contact_terms([self])
+        if gaps.ndim == 0:
+            # One gap takes less time than numba does to compile the loop over many.
+            return np.array(sum(of_term.py_func(term, float(gaps)) for term in terms))
         total = np.zeros(gaps.size)
-        _add_terms(of_term, contact_terms([self]), gaps.ravel(), total)
+        _add_terms(of_term, terms, gaps.ravel(), total)
         return total.reshape(gaps.shape)
 
 

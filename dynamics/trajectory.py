@@ -9,14 +9,17 @@ what there was.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
-from scipy.signal import find_peaks
 
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
+
+# Imported where data are made or read: what only plans a motion spares a second of imports.
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = npt.NDArray[np.float64]
 
@@ -98,6 +101,8 @@ class Trajectory:
             name: ("time", column, {"units": "J"})
             for name, column in zip(ENERGIES, energies.T, strict=True)
         }
+        import xarray as xr
+
         data = xr.Dataset(
             variables,
             coords={
@@ -137,6 +142,8 @@ class Trajectory:
         counts when it stands out by a fifth of the whole range, so that the ripple of
         micro-impacts does not; NaN where there is none.
         """
+        from scipy.signal import find_peaks
+
         deflection = np.asarray(self.data[observer].values)
         outstanding = 0.2 * np.ptp(deflection)
         if outstanding < STILL * np.abs(deflection).max():

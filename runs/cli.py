@@ -16,39 +16,24 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from dynamics.failure import NumericsError
-from runs.case import reading as case_file
-from runs.case.messages import BadInput
-from runs.case.schema import Case, ShellTable, case_schema
-from runs.case.user_files import check_left
-from runs.folder.cache import Cache
-from runs.folder.files import alone, beside, changed_folder, whole_folder
-from runs.paper import readings
-from runs.paper.rules import judge
-from runs.paper.verdict_table import print_verdicts
-from runs.pipeline import estimates
-from runs.pipeline.inferred import print_inferred
-from runs.pipeline.results import FIELDS, Results
-from runs.pipeline.run import Progress as Tell
-from runs.pipeline.run import run_case
+# Each command imports what it needs: the libraries of all of them take seconds.
 from runs.process import notices, ranks, terminal
 from runs.process.shown import message, printable, shown
 from runs.process.terminal import Terminal, say
-from runs.report import output
-from runs.report.printed import print_models
-from runs.report.verdict import Verdict
-from runs.sweep import output as sweep_output
-from runs.sweep import points
-from runs.sweep import run as sweep_runs
-from shell_model.pictures.rendering import RenderingUnavailable
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from runs.case.schema import Case
+    from runs.pipeline.results import Results
+    from runs.pipeline.run import Progress as Tell
+    from runs.report.verdict import Verdict
+    from runs.sweep.points import Plan
+    from runs.sweep.run import Outcome
+
 app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
-    help="Vibrations of telescopic booms whose segments touch across plays.",
 )
 
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
@@ -73,6 +58,24 @@ Large = Annotated[
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
+def _print_version(asked: bool) -> None:
+    if asked:
+        from runs.folder.versions import installed_version
+
+        print(f"protractile {installed_version('protractile') or '(not installed)'}")
+        raise typer.Exit
+
+
+@app.callback()
+def protractile(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print it and end."),
+    ] = False,
+) -> None:
+    """Vibrations of telescopic booms whose segments touch across plays."""
+
+
 @app.command()
 def run(
     case: CaseFile,
@@ -89,15 +92,23 @@ def run(
     large: Large = False,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
-    effective = case_file.select(
-        case_file.load(case), case, _names(models), mesh_size, members, modes
-    )
+    from runs.case import reading
+    from runs.folder.cache import Cache
+    from runs.folder.files import beside, whole_folder
+    from runs.paper import readings
+    from runs.paper.rules import judge
+    from runs.pipeline import estimates
+    from runs.pipeline.run import run_case
+    from runs.report import output
+    from runs.sweep.run import launched_world
+
+    effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     if not large:
         estimates.refuse_large(estimates.of_run(effective), case)
     cache = None if no_cache else Cache.of_user()
     comm = _enter_mpi(effective, case)
     if comm is None and effective.ensemble is not None:
-        comm = sweep_runs.launched_world(case)
+        comm = launched_world(case)
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
@@ -120,6 +131,13 @@ def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
+    from runs.case.user_files import check_left
+    from runs.folder.files import alone, changed_folder
+    from runs.paper import readings
+    from runs.paper.rules import judge
+    from runs.pipeline.results import Results
+    from runs.report import output
+
     runs, verdicts = {}, {}
     for folder in folders:
         with alone(Path(folder)):
@@ -140,6 +158,15 @@ def snapshot(
     ] = None,
 ) -> int:
     """Render the deformed shells of a run, and its report again with the pictures."""
+    from runs.case.messages import BadInput
+    from runs.case.user_files import check_left
+    from runs.folder.files import alone, changed_folder
+    from runs.paper import readings
+    from runs.paper.rules import judge
+    from runs.pipeline.results import FIELDS, Results
+    from runs.report import output
+    from shell_model.pictures.rendering import RenderingUnavailable
+
     with alone(Path(folder)):
         results = Results.load(Path(folder))
         check_left(Path(folder), folder, "folder")
@@ -187,6 +214,13 @@ def sweep(
     those of its own play, whatever play a point has. Under mpirun the ranks but the first run the
     points, else the cores do. Ensembles are left out.
     """
+    from runs.folder.cache import Cache
+    from runs.folder.files import beside
+    from runs.pipeline import estimates
+    from runs.sweep import output as charts
+    from runs.sweep import points
+    from runs.sweep import run as sweep_runs
+
     plan = points.plan(case, vary, _names(models), mesh_size)
     if not large:
         estimates.refuse_large(estimates.of_sweep([point.case for point in plan.points]), case)
@@ -201,22 +235,27 @@ def sweep(
             with beside(folder) as scratch, _progress_bars() as tell:
                 cache = None if no_cache else Cache.of_user()
                 outcomes = sweep_runs.run_points(plan.points, folder, pool, scratch, tell, cache)
-        data = sweep_output.write(plan, outcomes, folder)
-        print(printable(str(folder / sweep_output.CSV)))
-        sweep_output.show(data, Terminal())
+        data = charts.write(plan, outcomes, folder)
+        print(printable(str(folder / charts.CSV)))
+        charts.show(data, Terminal())
         return _show_failures(plan, outcomes)
 
 
 @app.command()
 def check(case: CaseFile) -> int:
     """Check a case file, and print what follows from it."""
-    print_inferred(case_file.load(case), Terminal())
+    from runs.case.reading import load
+    from runs.pipeline.inferred import print_inferred
+
+    print_inferred(load(case), Terminal())
     return 0
 
 
 @app.command()
 def schema() -> int:
     """Print the JSON Schema of a case file."""
+    from runs.case.schema import case_schema
+
     # Longer than what is kept until the end, where who reads no more is known to have had enough.
     with suppress(BrokenPipeError):
         print(json.dumps(case_schema(), indent=1))
@@ -241,6 +280,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _explain(error: Exception) -> tuple[str, int] | None:
     """The line and the exit status for what is not a fault of the program."""
+    from dynamics.failure import NumericsError
+    from runs.case.messages import BadInput
+
     if isinstance(error, BadInput):
         return message(str(error)), 2
     if isinstance(error, NumericsError):
@@ -280,6 +322,9 @@ def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
     Raises:
         BadInput: a shell is asked for, and what it takes is not installed.
     """
+    from runs.case.messages import BadInput
+    from runs.case.schema import ShellTable
+
     for number, model in enumerate(case.models, start=1):
         if isinstance(model, ShellTable):
             try:
@@ -323,6 +368,9 @@ def _silence(model: str, stage: str, part: float) -> None:
 
 def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]) -> int:
     """Print the tables of runs, by their file, and what is amiss; the exit status."""
+    from runs.paper.verdict_table import print_verdicts
+    from runs.report.printed import print_models
+
     console = Terminal()
     for results in runs.values():
         print_models(results, console)
@@ -357,7 +405,7 @@ def _show_models_that_failed(file: str, results: Results) -> int:
     return 3
 
 
-def _show_failures(plan: points.Plan, outcomes: Sequence[sweep_runs.Outcome]) -> int:
+def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
     """A line for each model that failed at a point; the exit status, 3 if nothing else is left."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():

@@ -18,7 +18,6 @@ from geometry.boom import Boom
 from runs.case.build import contact_laws, lateral_laws
 from runs.case.schema import Case, FiniteElementTable, KantorovichTable, ShellTable
 from runs.folder.cache import Cache
-from runs.folder.shell_cache import remembered
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -78,6 +77,7 @@ def reduce_shell(
         tell: told the stage and the part of it that is done.
         cache: where the same shell may be already, and is kept; computed unless given.
     """
+    from runs.folder.shell_cache import remembered
     from shell_model.boom_shell import reduce_boom
 
     if comm.rank == 0:

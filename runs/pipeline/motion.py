@@ -6,23 +6,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.integrators import Events, Splitting, by_splitting, suited
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
-from dynamics.predictability.horizon import measure_horizons
 from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.schema import Case, EnsembleTable, Model
 from runs.pipeline.known import known
 from runs.pipeline.models import damped
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -88,6 +88,8 @@ class Plan:
         self, table: EnsembleTable, executor: Executor | None, progress: Progress
     ) -> xr.Dataset:
         """All members, see :func:`dynamics.predictability.ensemble.integrate_ensemble`."""
+        from dynamics.predictability.ensemble import integrate_ensemble
+
         return integrate_ensemble(
             self.motion,
             table.members,
@@ -106,6 +108,8 @@ class Plan:
 
         None stands for what does not happen within the run.
         """
+        from dynamics.predictability.horizon import measure_horizons
+
         found = measure_horizons(
             self.motion,
             CHANGES,

@@ -20,7 +20,8 @@ Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
 # The command, with pictures left out for the sake of time.
 COMMAND = """
-from runs import cli, output
+from runs import cli
+from runs.report import output
 
 def refuse(*arguments):
     raise output.RenderingUnavailable("left out")
