@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What an installation brings, and that the files which name a version name the same."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_the_wheel_brings_the_names_that_the_readme_says_and_no_tests() -> None:
+    setuptools = pytest.importorskip("setuptools", reason="setuptools finds what a wheel brings")
+    options = PYPROJECT["tool"]["setuptools"]["packages"]["find"]
+    assert options.pop("namespaces") is False
+    brought = {name.split(".")[0] for name in setuptools.find_packages(str(ROOT), **options)}
+    said = re.search(r"top-level names\s+(.*?), and no other", read("README.md"), re.DOTALL)
+    assert said is not None
+    assert brought == set(re.findall(r"`(\w+)`", said[1]))
+    assert "tests" not in brought
+
+
+def test_the_version_is_that_of_the_changes_and_of_the_citation() -> None:
+    version = re.sub(r"\.dev\d+$", "", PYPROJECT["project"]["version"])
+    newest = re.search(r"^## \[(.+?)\]", read("CHANGELOG.md"), re.MULTILINE)
+    cited = re.search(r"^version: (.+)$", read("CITATION.cff"), re.MULTILINE)
+    assert newest is not None
+    assert cited is not None
+    assert newest[1] == cited[1] == version
