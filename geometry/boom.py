@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any
 
+from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
     BoomError,
@@ -39,8 +40,6 @@ __all__ = [
     "Stop",
     "Support",
 ]
-
-Direction = Literal["z", "y"]
 
 # What stations press of a segment's corners, over the overlap, and stops, over the height of the
 # box: about 0.1 m in the paper's boom, as slide pads are long.
@@ -229,7 +228,7 @@ class Boom:
             return _OF_OVERLAP * self._room(place)
         section = self.segments[place.segment].section
         assert section is not None
-        return min(_OF_HEIGHT * section.height, self._room(place))
+        return min(_OF_HEIGHT * section.size("z"), self._room(place))
 
     def _room(self, place: Joint | Stop) -> float:
         """Length in m on which they may press."""
@@ -380,8 +379,8 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")
     if outer.section is None or inner.section is None:
         return
-    height = outer.section.clear_height_around(inner.section)
-    width = outer.section.clear_width_around(inner.section)
+    height = outer.section.room_around(inner.section, "z")
+    width = outer.section.room_around(inner.section, "y")
     if height < 2.0 * joint.clearance - near or width < 0.0:
         raise BoomError(
             f"{where}.play",
@@ -410,7 +409,7 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
     section = boom.segments[joint.inner].section
     if section is None:
         return
-    room = 0.5 * (min(section.width, section.height) if boom.spatial else section.width)
+    room = 0.5 * min(face.width for face in section.faces if face.direction in boom.directions)
     if not 0.0 < pad.width <= room:
         raise BoomError(
             f"{where}.pad.width",

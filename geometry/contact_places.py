@@ -2,8 +2,8 @@
 """Where the segments of a joint touch, and where they rub.
 
 In a flat boom a joint touches on the axis of its segments, above and below in one place. In
-space it touches in the corners of its boxes, where slide pads sit because a box is stiff there:
-on each flange above the two webs, on each web beside the two flanges. Pads of a given size are
+space it touches in the corners of its sections, where slide pads sit because plates that meet are
+stiff there: at both ends of each face. Pads of a given size are
 patches that reach from the corners inwards.
 """
 
@@ -17,13 +17,12 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.boom import Boom, Direction, Joint
+from geometry.section import Offset, Side
 from geometry.segment import Segment
 
 Array = npt.NDArray[np.float64]
 
 ContactLine = Literal["near webs", "across", "surface"]
-Side = Literal[-1, 0, 1]
-Offset = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,14 +146,12 @@ def _points(
     inner, outer = boom.segments[joint.inner].section, boom.segments[joint.outer].section
     assert inner is not None
     assert outer is not None
-    if direction == "y":
-        inner, outer = inner.turned(), outer.turned()
     clearance = joint.clearance if direction == "z" else joint.lateral_clearance
-    face = 0.5 * (outer.height - outer.flange)
     sides: tuple[Side, Side] = (1, -1)
     for side in sides:
-        for corner in (-0.5 * inner.width, 0.5 * inner.width):
-            within, around = (corner, side * (face - clearance)), (corner, side * face)
+        touching, surface = inner.face(direction, side), outer.face(direction, side).inside
+        for corner in (touching.low, touching.high):
+            within, around = (corner, surface - side * clearance), (corner, surface)
             if direction == "y":
                 within, around = within[::-1], around[::-1]
             yield side, within, around, 0.5
@@ -172,5 +169,5 @@ def patch(boom: Boom, pad: Pad) -> Patch | None:
     assert section is not None
     first, last = boom.overlap(pad.joint)
     start = min(max(pad.x - 0.5 * size.length, first), last - size.length)
-    half = 0.5 * (section.width if pad.direction == "z" else section.height)
+    half = 0.5 * section.face(pad.direction, pad.side or 1).width
     return Patch(start, start + size.length, half - size.width, half)

@@ -5,8 +5,8 @@ Rectangles first: near a spot they are square, far from all they are four times 
 boom as across, since a boom's walls bend across much more sharply than along. Then newest-vertex
 bisection (Mitchell 1989): a triangle is cut from its newest corner to the middle of the edge
 opposite, the first time across the diagonal of its rectangle. Its grandchildren have its shape, and
-neighbours are cut with it, so that no node hangs. Places are compared as they are in the quarter at
-positive y and z, rounded, so that a mirror image is cut where its original is.
+neighbours are cut with it, so that no node hangs. Places are compared as they are on the positive
+side of the section's mirrors, rounded, so that a mirror image is cut where its original is.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.mesh import SegmentMesh, mesh_segment
-from geometry.section import BoxSection
+from geometry.section import COMPONENT, Direction, Section
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
@@ -34,10 +34,10 @@ _ALONG = (0.5, 1.0, 2.0)
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where a segment's mesh is to be fine: the same place in all four quarters of the box.
+    """Where a segment's mesh is to be fine, there and in all mirror images.
 
     Args:
-        low, high: (x, \\|y\\|, \\|z\\|) in m between which it lies.
+        low, high: (x, y, z) in m between which it lies, on the positive side of the mirrors.
         size: edge length there in m.
         growth: how much longer edges may be for each unit of distance from it.
     """
@@ -48,7 +48,7 @@ class Spot:
     growth: float
 
     def allowed(self, places: Array) -> Array:
-        """(num_places,) edge length in m at places (num_places, 3) of that quarter."""
+        """(num_places,) edge length in m at places (num_places, 3) on that side."""
         outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
         return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
 
@@ -59,13 +59,13 @@ class Spot:
 
 
 def graded_mesh(
-    section: BoxSection,
+    section: Section,
     breaks: Mapping[str, float],
     size: float,
     spots: Sequence[Spot],
     closed: Sequence[str] = (),
 ) -> SegmentMesh:
-    """Mesh the walls of a box as :func:`mesh_segment` does, fine at the spots.
+    """Mesh the walls of a segment as :func:`mesh_segment` does, fine at the spots.
 
     Args:
         section, breaks, closed: see :func:`mesh_segment`.
@@ -77,7 +77,7 @@ def graded_mesh(
     """
     along = _along(breaks, size, spots)
     mesh = _diagonals_first(mesh_segment(section, breaks, _ACROSS * size, closed, along))
-    while (cut := _too_large(mesh, spots)).any():
+    while (cut := _too_large(mesh, section.mirrors, spots)).any():
         mesh = _bisected(mesh, cut)
     return mesh
 
@@ -115,10 +115,14 @@ def _edges(corners: Array) -> Array:
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
-def _too_large(mesh: SegmentMesh, spots: Sequence[Spot]) -> npt.NDArray[np.bool_]:
+def _too_large(
+    mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[Spot]
+) -> npt.NDArray[np.bool_]:
     """(num_triangles,) which are larger than a spot allows at their nearest corner."""
     near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
-    places = np.column_stack([mesh.points[:, 0], np.abs(mesh.points[:, 1:])])
+    places = mesh.points.copy()
+    mirrored = [COMPONENT[axis] for axis in mirrors]
+    places[:, mirrored] = np.abs(places[:, mirrored])
     places = near * np.round(places / near)
     allowed = np.min([spot.allowed(places) for spot in spots], axis=0, initial=np.inf)
     # Of the right triangle with equal sides and the same longest edge.
@@ -151,7 +155,7 @@ def _bisected(mesh: SegmentMesh, cut: npt.NDArray[np.bool_]) -> SegmentMesh:
         walls = np.concatenate([walls[~split], walls[split], walls[split]])
     new_of = {(a, b): m for (a, b), m in zip(ends.tolist(), middle.tolist(), strict=True) if m >= 0}
     lines = {name: _with_middles(line, new_of) for name, line in mesh.lines.items()}
-    return SegmentMesh(points, triangles, walls, lines)
+    return replace(mesh, points=points, triangles=triangles, walls=walls, lines=lines)
 
 
 def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Structured triangle meshes of a box segment, made by gmsh.
+"""Structured triangle meshes of a segment, made by gmsh.
 
-Every wall is cut into transfinite patches, so that mesh lines lie exactly where supports,
-stations and contact points are, whatever the lengths and the mesh size, and so that the mesh
-does not depend on gmsh's version. The triangles mirror each other in y and in z: a load in
-the plane of bending then moves the section in that plane, to round-off. The mesh of a box on
-its side lies on its side. A diaphragm has four patches, which share the nodes of its outline
-with the walls: there an edge has three triangles.
+Every plate of the section is a wall, cut in its middle and into transfinite patches, so that mesh
+lines lie exactly where supports, stations and contact points are, whatever the lengths and the mesh
+size, and so that the mesh does not depend on gmsh's version. The triangles mirror each other where
+the section does: a load in the plane of bending then moves the section in that plane, to round-off.
+The mesh of a box on its side lies on its side. A diaphragm has a patch in each corner of the
+section, which share the nodes of its outline with the walls: there an edge has three triangles.
 """
 
 from __future__ import annotations
@@ -24,9 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.boom import SAME_PLACE, Segment
-from geometry.section import BoxSection
-
-WALLS = ("bottom", "right", "top", "left")
+from geometry.section import Offset, Plate, Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,20 +34,22 @@ class SegmentMesh:
     Args:
         points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
         triangles: (num_triangles, 3) point numbers.
-        walls: (num_triangles,) position of each triangle's wall in ``WALLS``; ``len(WALLS)`` + k
+        plates: names of the section's plates.
+        walls: (num_triangles,) position of each triangle's wall in ``plates``; ``len(plates)`` + k
             on the diaphragm k.
         lines: name of a cross-section line → (num_edges, 2) point numbers.
     """
 
     points: npt.NDArray[np.float64]
     triangles: npt.NDArray[np.int64]
+    plates: tuple[str, ...]
     walls: npt.NDArray[np.int32]
     lines: Mapping[str, npt.NDArray[np.int64]]
 
     @property
     def on_walls(self) -> npt.NDArray[np.bool_]:
         """(num_triangles,) False on diaphragms."""
-        return np.asarray(self.walls < len(WALLS))
+        return np.asarray(self.walls < len(self.plates))
 
     def write(self, path: Path) -> None:
         """Write for ParaView (``.vtu``) with the wall of each triangle as a field."""
@@ -67,7 +67,7 @@ class SegmentMesh:
         Raises:
             OSError: it cannot be written whole; names the file.
         """
-        groups = {name: np.array([k, 2]) for k, name in enumerate([*WALLS, *closed], start=1)}
+        groups = {name: np.array([k, 2]) for k, name in enumerate([*self.plates, *closed], start=1)}
         first = len(groups) + 1
         groups |= {name: np.array([k, 1]) for k, name in enumerate(self.lines, start=first)}
         of_edges = np.repeat(
@@ -87,13 +87,13 @@ class SegmentMesh:
 
 
 def mesh_segment(
-    section: BoxSection,
+    section: Section,
     breaks: Mapping[str, float],
     size: float,
     closed: Sequence[str] = (),
     along: Mapping[float, float] | None = None,
 ) -> SegmentMesh:
-    """Mesh the four walls of a box, and the plates that close it.
+    """Mesh the plates of a section, and those that close it.
 
     Args:
         section: its mid-lines are meshed.
@@ -115,21 +115,18 @@ def mesh_segment(
     zones = {-np.inf: size} | dict(along or {})
     outlines = _merge_places([*breaks.values(), *(along or {})])
     lengths = [zones[max(start for start in zones if start <= x)] for x in outlines[:-1]]
-    corners, walls = _ring(section)
     at = {name: int(np.abs(np.array(outlines) - x).argmin()) for name, x in breaks.items()}
     with _gmsh_model():
-        plates, rings = _build_patches(outlines, corners, walls, size, lengths)
-        plates |= {
-            name: _close(outlines[at[name]], rings[at[name]], section, size) for name in closed
-        }
+        surfaces, rings = _build_patches(outlines, section.plates, size, lengths)
+        surfaces += [_close(outlines[at[name]], rings[at[name]], section, size) for name in closed]
         gmsh.model.geo.synchronize()
         for name in breaks:
             ring = rings[at[name]].curves
-            for wall in WALLS:
-                curves = [c for c, w in zip(ring, walls, strict=True) if w == wall]
-                gmsh.model.addPhysicalGroup(1, curves, name=f"{name}:{wall}")
+            for number, plate in enumerate(section.plates):
+                halves = ring[2 * number : 2 * number + 2]
+                gmsh.model.addPhysicalGroup(1, halves, name=f"{name}:{plate.name}")
         gmsh.model.mesh.generate(2)
-        return _extract(plates)
+        return _extract(surfaces, tuple(plate.name for plate in section.plates))
 
 
 def collar_breaks(segment: Segment) -> dict[str, float]:
@@ -145,14 +142,14 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
 
 
-def plain_thickness(section: BoxSection, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def plain_thickness(section: Section, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
     """(num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
-    of_wall = [section.flange if wall in ("bottom", "top") else section.web for wall in WALLS]
-    return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(WALLS))])
+    of_wall = [plate.thickness for plate in section.plates]
+    return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 
 
 def plate_thickness(segment: Segment, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
-    """(num_triangles,) thickness in m of all plates of a segment with a box section.
+    """(num_triangles,) thickness in m of all plates of a segment whose section is known.
 
     Args:
         segment: its diaphragms are those of the mesh, in the same order.
@@ -163,7 +160,7 @@ def plate_thickness(segment: Segment, mesh: SegmentMesh) -> npt.NDArray[np.float
     x = mesh.points[mesh.triangles, 0].mean(axis=1)
     for collar in segment.collars:
         thickness[mesh.on_walls & (x > collar.start) & (x < collar.end)] += collar.thickness
-    for number, diaphragm in enumerate(segment.diaphragms, start=len(WALLS)):
+    for number, diaphragm in enumerate(segment.diaphragms, start=len(mesh.plates)):
         thickness[mesh.walls == number] = diaphragm.thickness
     return thickness
 
@@ -178,13 +175,6 @@ def _merge_places(values: Iterable[float]) -> list[float]:
     return places
 
 
-def _ring(section: BoxSection) -> tuple[list[tuple[float, float]], list[str]]:
-    """Corners (y, z) of the patches once around the box, and the wall of each edge."""
-    b, h = 0.5 * section.width, 0.5 * section.height
-    corners = [(-b, -h), (0.0, -h), (b, -h), (b, 0.0), (b, h), (0.0, h), (-b, h), (-b, 0.0)]
-    return corners, [wall for wall in WALLS for _ in range(2)]
-
-
 @contextmanager
 def _gmsh_model() -> Iterator[None]:
     gmsh.initialize(interruptible=False)
@@ -197,7 +187,10 @@ def _gmsh_model() -> Iterator[None]:
 
 
 class _Ring(NamedTuple):
-    """gmsh's points and curves once around the box; a curve begins at the point of its number."""
+    """gmsh's points and curves once around; a curve begins at the point of its number.
+
+    Plates begin at even numbers, and have their middles at odd ones.
+    """
 
     points: Sequence[int]
     curves: Sequence[int]
@@ -205,28 +198,28 @@ class _Ring(NamedTuple):
 
 def _build_patches(
     outlines: Sequence[float],
-    corners: Sequence[tuple[float, float]],
-    walls: Sequence[str],
+    plates: Sequence[Plate],
     across: float,
     along: Sequence[float],
-) -> tuple[dict[str, list[int]], list[_Ring]]:
-    """Transfinite patches; gives surfaces by wall, and the ring of each outline.
+) -> tuple[list[list[int]], list[_Ring]]:
+    """Transfinite patches; gives the surfaces of each wall, and the ring of each outline.
 
-    Edges are ``across`` long around the box, ``along`` the boom as long as each stretch says.
+    Edges are ``across`` long around the section, ``along`` the boom as long as each stretch says.
     """
     geo = gmsh.model.geo
+    corners: list[Offset] = [place for plate in plates for place in (plate.start, plate.middle)]
     n = len(corners)
     points = [[geo.addPoint(x, y, z) for y, z in corners] for x in outlines]
     rings = [[geo.addLine(p[j], p[(j + 1) % n]) for j in range(n)] for p in points]
     rails = [[geo.addLine(a[j], b[j]) for j in range(n)] for a, b in pairwise(points)]
-    surfaces: dict[str, list[int]] = {wall: [] for wall in WALLS}
+    surfaces: list[list[int]] = [[] for _ in plates]
     for i, (x0, x1) in enumerate(pairwise(outlines)):
         for j, (y0, z0) in enumerate(corners):
             k = (j + 1) % n
             y1, z1 = corners[k]
             loop = geo.addCurveLoop([rails[i][j], rings[i + 1][j], -rails[i][k], -rings[i][j]])
             surface = geo.addPlaneSurface([loop])
-            surfaces[walls[j]].append(surface)
+            surfaces[j // 2].append(surface)
             # Along x every diagonal runs from a wall's middle towards a corner, which makes the
             # mesh a mirror image of itself, and that of the box on its side lie on its side.
             geo.mesh.setTransfiniteSurface(
@@ -241,17 +234,22 @@ def _build_patches(
     return surfaces, [_Ring(p, curves) for p, curves in zip(points, rings, strict=True)]
 
 
-def _close(x: float, ring: _Ring, section: BoxSection, size: float) -> list[int]:
+def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """Transfinite patches of a diaphragm, one in each corner; gives their surfaces."""
     geo = gmsh.model.geo
-    middle = geo.addPoint(x, 0.0, 0.0)
+    plates, count = section.plates, len(ring.points)
+    low, high = (
+        [end(plate.start[axis] for plate in plates) for axis in (0, 1)] for end in (min, max)
+    )
+    middle = geo.addPoint(x, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
     spokes = {}
-    for j in range(1, 8, 2):
+    for j in range(1, count, 2):
         spokes[j] = geo.addLine(ring.points[j], middle)
-        _divide(spokes[j], 0.5 * (section.height if j % 4 == 1 else section.width), size)
+        # As many edges as the halves of the plates beside it have, which face the spoke.
+        _divide(spokes[j], 0.5 * plates[(j // 2 + 1) % len(plates)].length, size)
     surfaces = []
-    for j in range(0, 8, 2):
-        before, after = (j - 1) % 8, j + 1
+    for j in range(0, count, 2):
+        before, after = (j - 1) % count, j + 1
         sides = [ring.curves[before], ring.curves[j], spokes[after], -spokes[before]]
         surfaces.append(geo.addPlaneSurface([geo.addCurveLoop(sides)]))
         # Every diagonal runs from the middle towards a corner, for the mirrors' sake.
@@ -265,22 +263,22 @@ def _divide(curve: int, length: float, size: float) -> None:
     gmsh.model.geo.mesh.setTransfiniteCurve(curve, edges + 1)
 
 
-def _extract(plates: Mapping[str, Sequence[int]]) -> SegmentMesh:
+def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)
     triangles, walls = [], []
-    for number_of_plate, surfaces in enumerate(plates.values()):
-        for surface in surfaces:
+    for wall, of_wall in enumerate(surfaces):
+        for surface in of_wall:
             _, nodes = mesh.getElementsByType(2, surface)
             triangles.append(number[nodes].reshape(-1, 3))
-            walls.append(np.full(len(triangles[-1]), number_of_plate, dtype=np.int32))
+            walls.append(np.full(len(triangles[-1]), wall, dtype=np.int32))
     lines = {}
     for dim, group in gmsh.model.getPhysicalGroups(1):
         curves = gmsh.model.getEntitiesForPhysicalGroup(dim, group)
         edges = [number[mesh.getElementsByType(1, curve)[1]].reshape(-1, 2) for curve in curves]
         lines[gmsh.model.getPhysicalName(dim, group)] = np.concatenate(edges)
     return SegmentMesh(
-        coordinates.reshape(-1, 3), np.concatenate(triangles), np.concatenate(walls), lines
+        coordinates.reshape(-1, 3), np.concatenate(triangles), plates, np.concatenate(walls), lines
     )

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Thin-walled single-cell box sections, and their inference from what a beam model knows.
+"""What a thin-walled section is, its first shape, a box, and how one is inferred.
+
+A section is flat plates around a cell. Its places (y, z) count from its centroid, y lateral, z in
+the plane of bending. Nobody else knows how many plates there are: meshes and shells read the
+plates, contacts the faces, beams the properties.
 
 A beam model gives a section's area and second moment of area; a shell model needs its
 plates. With a uniform wall a box has three numbers (height, width, wall), so one more is
@@ -9,21 +13,247 @@ larger section for every other one.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 from scipy.optimize import brentq
+
+Array = npt.NDArray[np.float64]
+
+Direction = Literal["z", "y"]
+Side = Literal[-1, 0, 1]
+Offset = tuple[float, float]
+
+# Position of a direction in an (x, y, z).
+COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
 # No inner box is lower than this part of the outer one.
 SMALLEST = 1.0e-6
 
 
 class SectionError(ValueError):
-    """No box section satisfies what is asked of it."""
+    """No section satisfies what is asked of it."""
+
+
+class Plate(NamedTuple):
+    """A flat wall.
+
+    Args:
+        name: how results call it.
+        start, end: (y, z) in m of the ends of its mid-line.
+        thickness: in m.
+    """
+
+    name: str
+    start: Offset
+    end: Offset
+    thickness: float
+
+    @property
+    def length(self) -> float:
+        """Of the mid-line in m."""
+        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    @property
+    def middle(self) -> Offset:
+        """(y, z) in m of the mid-line's middle."""
+        return 0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])
+
+    @property
+    def tangent(self) -> Array:
+        """(2,) unit vector from the start to the end."""
+        return np.asarray(np.subtract(self.end, self.start) / self.length)
+
+    def distance(self, places: Array) -> Array:
+        """(num_places,) of places (num_places, 2) from the mid-line, in m."""
+        tangent = self.tangent
+        arms = places - np.array(self.start)
+        along = arms @ tangent
+        beyond = np.maximum(np.maximum(-along, along - self.length), 0.0)
+        return np.asarray(np.hypot(beyond, arms[:, 0] * tangent[1] - arms[:, 1] * tangent[0]))
+
+
+class Face(NamedTuple):
+    """A plate that may touch another section's, from within or from around it.
+
+    Args:
+        plate: its number in the section's plates.
+        direction: of its outward normal.
+        side: 1 where the normal points along the direction, −1 where against it.
+        offset: of the mid-line along the direction, in m.
+        low, high: coordinates across the plate in m, of its ends.
+        thickness: of the plate in m.
+    """
+
+    plate: int
+    direction: Direction
+    side: Side
+    offset: float
+    low: float
+    high: float
+    thickness: float
+
+    @classmethod
+    def of(cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side) -> Face:
+        """That of a plate at right angles to a direction."""
+        plate, normal = plates[number], COMPONENT[direction] - 1
+        low, high = sorted((plate.start[1 - normal], plate.end[1 - normal]))
+        return cls(number, direction, side, plate.start[normal], low, high, plate.thickness)
+
+    @property
+    def width(self) -> float:
+        """Of the mid-line in m."""
+        return self.high - self.low
+
+    @property
+    def outside(self) -> float:
+        """Coordinate of the surface that faces a section around it, in m."""
+        return self.offset + 0.5 * self.side * self.thickness
+
+    @property
+    def inside(self) -> float:
+        """Coordinate of the surface that faces a section within, in m."""
+        return self.offset - 0.5 * self.side * self.thickness
+
+
+class Section(Protocol):
+    """A thin-walled section of one cell."""
+
+    @property
+    def area(self) -> float:
+        """Cross-sectional area in m²."""
+
+    @property
+    def second_moment_of_area(self) -> float:
+        """Second moment about y (bending in the plane x-z) in m⁴."""
+
+    @property
+    def lateral_second_moment_of_area(self) -> float:
+        """Second moment about z (bending in the plane x-y) in m⁴."""
+
+    @property
+    def torsion_constant(self) -> float:
+        """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
+
+    @property
+    def shear_area(self) -> float:
+        """Area that carries a shear force along z in m²."""
+
+    @property
+    def lateral_shear_area(self) -> float:
+        """Area that carries a shear force along y in m²."""
+
+    @property
+    def plates(self) -> tuple[Plate, ...]:
+        """All of them, once around: each begins where the one before ends."""
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """One for each direction and side."""
+
+    @property
+    def mirrors(self) -> tuple[Direction, ...]:
+        """The directions, ``y`` before ``z``, in whose mirror the section is its own image."""
+
+    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+        """Numbers of the plates that carry a shear force of the direction in their own plane.
+
+        Each with the part that it takes of a force through the centroid.
+        """
+
+    def __str__(self) -> str:
+        """Its sizes in mm, as a table shows them."""
+
+    def turned(self) -> Section:
+        """The section lying on its side, y and z exchanged."""
+
+    @property
+    def polar_second_moment_of_area(self) -> float:
+        """Second moment about the axis (density times it is the polar inertia) in m⁴."""
+        return self.second_moment_of_area + self.lateral_second_moment_of_area
+
+    @property
+    def perimeter(self) -> float:
+        """Length of all mid-lines in m."""
+        return sum(plate.length for plate in self.plates)
+
+    @property
+    def enclosed_area(self) -> float:
+        """Area within the mid-lines in m²."""
+        start, end = (np.array([getattr(p, at) for p in self.plates]) for at in ("start", "end"))
+        return float(0.5 * abs(start[:, 0] @ end[:, 1] - start[:, 1] @ end[:, 0]))
+
+    def mass_per_length(self, density: float) -> float:
+        """Mass of a unit of length in kg/m, for a density in kg/m³."""
+        return density * self.area
+
+    def size(self, direction: Direction) -> float:
+        """How far the mid-lines reach along a direction, from end to end, in m."""
+        reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
+        return max(reached) - min(reached)
+
+    def face(self, direction: Direction, side: float) -> Face:
+        """The one with this outward normal; of ``side`` the sign alone counts."""
+        return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
+
+    def room_around(self, inner: Section, direction: Direction) -> float:
+        """What is free along a direction between this section and one within it, in m."""
+        hole = self.face(direction, 1).inside - self.face(direction, -1).inside
+        return hole - (inner.face(direction, 1).outside - inner.face(direction, -1).outside)
+
+    def offset_of(self, inner: Section, direction: Direction) -> float:
+        """Where the centroid of a section is that stands in the middle of this one, in m."""
+        within = inner.face(direction, 1).outside + inner.face(direction, -1).outside
+        return 0.5 * (self.face(direction, 1).inside + self.face(direction, -1).inside - within)
+
+    def on_plates(self, places: Array) -> npt.NDArray[np.bool_]:
+        """(num_places,) which places (num_places, 2) lie on a mid-line."""
+        distance = np.min([plate.distance(places) for plate in self.plates], axis=0)
+        return np.asarray(distance < self.near)
+
+    @property
+    def near(self) -> float:
+        """Places closer than this (m) are one: meshes are exact to round-off."""
+        return _ON_PLATE * self.size("z")
+
+
+# A part of a section's height.
+_ON_PLATE = 1.0e-7
+
+
+def rectangle(
+    low: Offset, high: Offset, bottom: float, right: float, top: float, left: float
+) -> tuple[Plate, ...]:
+    """Four plates once around.
+
+    Args:
+        low, high: (y, z) in m of opposite corners of the mid-lines.
+        bottom, right, top, left: thicknesses in m.
+    """
+    (y0, z0), (y1, z1) = low, high
+    return (
+        Plate("bottom", (y0, z0), (y1, z0), bottom),
+        Plate("right", (y1, z0), (y1, z1), right),
+        Plate("top", (y1, z1), (y0, z1), top),
+        Plate("left", (y0, z1), (y0, z0), left),
+    )
+
+
+def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
+    """All four of them."""
+    return (
+        Face.of(plates, 0, "z", -1),
+        Face.of(plates, 1, "y", 1),
+        Face.of(plates, 2, "z", 1),
+        Face.of(plates, 3, "y", -1),
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class BoxSection:
+class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
     Args:
@@ -68,11 +298,6 @@ class BoxSection:
         return _hollow_rectangle(self.height, self.width, self.flange, self.web)
 
     @property
-    def polar_second_moment_of_area(self) -> float:
-        """Second moment about the axis (density times it is the polar inertia) in m⁴."""
-        return self.second_moment_of_area + self.lateral_second_moment_of_area
-
-    @property
     def torsion_constant(self) -> float:
         """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
         enclosed = self.height * self.width
@@ -88,21 +313,33 @@ class BoxSection:
         """Area that carries a shear force along y: the two flanges, in m²."""
         return 2.0 * self.width * self.flange
 
+    def __str__(self) -> str:
+        wall = " / ".join(dict.fromkeys(f"{1e3 * t:.4g}" for t in (self.flange, self.web)))
+        return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {wall}"
+
     def turned(self) -> BoxSection:
         """The box lying on its side, y and z exchanged."""
         return BoxSection(self.width, self.height, self.web, self.flange)
 
-    def mass_per_length(self, density: float) -> float:
-        """Mass of a unit of length in kg/m, for a density in kg/m³."""
-        return density * self.area
+    @property
+    def plates(self) -> tuple[Plate, ...]:
+        """Bottom, right, top and left."""
+        b, h = 0.5 * self.width, 0.5 * self.height
+        return rectangle((-b, -h), (b, h), self.flange, self.web, self.flange, self.web)
 
-    def clear_height_around(self, inner: BoxSection) -> float:
-        """Height between this section's inner faces less ``inner``'s outer height, in m."""
-        return (self.height - self.flange) - (inner.height + inner.flange)
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """All plates."""
+        return rectangle_faces(self.plates)
 
-    def clear_width_around(self, inner: BoxSection) -> float:
-        """Width between this section's inner faces less ``inner``'s outer width, in m."""
-        return (self.width - self.web) - (inner.width + inner.web)
+    @property
+    def mirrors(self) -> tuple[Direction, ...]:
+        """Both."""
+        return "y", "z"
+
+    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+        """The webs along z, the flanges along y."""
+        return ((1, 0.5), (3, 0.5)) if direction == "z" else ((2, 0.5), (0, 0.5))
 
 
 def _hollow_rectangle(width: float, height: float, web: float, flange: float) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
-from geometry.section import BoxSection
+from geometry.section import Section
 
 # Two places closer than this part of a segment's length are one: far below any plate, far above
 # round-off, in whatever unit.
@@ -66,7 +66,7 @@ class PointMass:
 
 @dataclass(frozen=True, slots=True)
 class Collar:
-    """A doubler around the box, on all four walls; the walls' mid-surfaces stay where they are.
+    """A doubler around the box, on all walls, whose mid-surfaces stay where they are.
 
     Args:
         start, end: x of its ends in m.
@@ -80,7 +80,7 @@ class Collar:
 
 @dataclass(frozen=True, slots=True)
 class Diaphragm:
-    """A plate that closes the box at x, welded to its four walls.
+    """A plate that closes the box at x, welded to its walls.
 
     Args:
         x: of its mid-surface in m.
@@ -121,7 +121,7 @@ class Segment:
         mass_per_length: m̄ in kg/m.
         second_moment_of_area: J in m⁴.
         rotary_inertia: I_p in kg·m.
-        section: the box; only shear-flexible beams, shells and booms in space need it.
+        section: its plates; only shear-flexible beams, shells and booms in space need it.
         load: uniform load along z in N/m, applied at t = 0 and kept.
         supports: what holds it.
         viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
@@ -138,7 +138,7 @@ class Segment:
     mass_per_length: float
     second_moment_of_area: float
     rotary_inertia: float
-    section: BoxSection | None = None
+    section: Section | None = None
     load: float = 0.0
     supports: tuple[Support, ...] = ()
     viscous_damping: float = 0.0
@@ -262,7 +262,7 @@ class Segment:
             )
         if self.section is None:
             return
-        half = 0.5 * min(self.section.height, self.section.width)
+        half = 0.5 * min(self.section.size("z"), self.section.size("y"))
         if thickness > half:
             raise BoomError(
                 f"{where}.thickness",

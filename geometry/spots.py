@@ -16,7 +16,7 @@ import numpy as np
 from geometry.boom import Boom
 from geometry.contact_places import ContactLine, Pad, Stretch, pads, patch
 from geometry.grading import Spot
-from geometry.section import BoxSection
+from geometry.section import Direction, Face, Section
 
 # The tolerance at which the parts below were measured.
 MEASURED_AT = 0.01
@@ -29,7 +29,7 @@ _WALLS, _WALLS_GROWTH = 0.2, 0.5
 
 
 def spots(boom: Boom, number: int, tolerance: float, line: ContactLine) -> list[Spot]:
-    """Of a segment with a box section.
+    """Of a segment with known plates.
 
     Args:
         boom: of the segment.
@@ -53,16 +53,19 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
     segment = boom.segments[number]
     section = segment.section
     assert section is not None
-    b, h = 0.5 * section.width, 0.5 * section.height
+    low, high = zip(*(_reached(section, axis) for axis in ("y", "z")), strict=True)
+    across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
-        yield (x, 0.0, 0.0), (x, b, h), _WALLS * 2.0 * min(b, h), _WALLS_GROWTH
+        yield (x, *low), (x, *high), _WALLS * across, _WALLS_GROWTH
     for stop in boom.stops:
         if stop.segment == number:
             stretch = Stretch.on(segment, stop.x, boom.contact_length(stop))
-            yield _corner(stretch, section)
+            for face in _faces(section, "z"):
+                yield _corner(stretch, face)
     for pad in pads(boom):
         if number in (pad.joint.outer, pad.joint.inner):
-            yield _pressed(boom, pad, number, line)
+            for face in _faces(section, pad.direction):
+                yield _pressed(boom, pad, number, face, line)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -79,25 +82,38 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
     yield from (plate.x for plate in segment.diaphragms)
 
 
-def _corner(stretch: Stretch, section: BoxSection) -> _Measured:
-    b, h = 0.5 * section.width, 0.5 * section.height
+def _reached(section: Section, axis: Direction) -> tuple[float, float]:
+    """Coordinates in m of the section's ends along an axis, on the positive side of a mirror."""
+    low, high = section.face(axis, -1).offset, section.face(axis, 1).offset
+    return (0.0 if axis in section.mirrors else low), high
+
+
+def _faces(section: Section, direction: Direction) -> list[Face]:
+    """Those along a direction, without the mirror images."""
+    sides = (1,) if direction in section.mirrors else (1, -1)
+    return [section.face(direction, side) for side in sides]
+
+
+def _place(face: Face, x: float, across: float) -> _Place:
+    return (x, across, face.offset) if face.direction == "z" else (x, face.offset, across)
+
+
+def _corner(stretch: Stretch, face: Face) -> _Measured:
     size = _CORNER * (stretch.end - stretch.start)
-    return (stretch.start, b, h), (stretch.end, b, h), size, _CORNER_GROWTH
+    low, high = (_place(face, x, face.high) for x in (stretch.start, stretch.end))
+    return low, high, size, _CORNER_GROWTH
 
 
-def _pressed(boom: Boom, pad: Pad, number: int, line: ContactLine) -> _Measured:
-    """What a pad presses of a segment."""
-    section = boom.segments[number].section
-    assert section is not None
-    b, h = 0.5 * section.width, 0.5 * section.height
+def _pressed(boom: Boom, pad: Pad, number: int, face: Face, line: ContactLine) -> _Measured:
+    """What a pad presses of a segment's face."""
     covered = patch(boom, pad)
     if covered is None:
         length = boom.contact_length(pad.joint)
-        low, high, size, growth = _corner(Stretch.on(boom.segments[number], pad.x, length), section)
-        return (low[0], 0.0 if line == "across" else b, h), high, size, growth
+        low, high, size, growth = _corner(Stretch.on(boom.segments[number], pad.x, length), face)
+        return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
     size = _PAD * min(covered.end - covered.start, covered.far - covered.near)
-    if pad.direction == "z":
-        low, high = (covered.start, covered.near, h), (covered.end, covered.far, h)
-    else:
-        low, high = (covered.start, b, covered.near), (covered.end, b, covered.far)
+    low, high = (
+        _place(face, x, across)
+        for x, across in ((covered.start, covered.near), (covered.end, covered.far))
+    )
     return low, high, size, _PAD_GROWTH

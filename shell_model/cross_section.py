@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows that read a section of the shell: its mean deflection, rotation, distortion, points.
 
-An outline is a mesh line around the box; displacement is quadratic along each of its edges,
+An outline is a mesh line around the section; displacement is quadratic along each of its edges,
 so Simpson's rule and quadratic interpolation on the edges' nodes are exact. A row read the other
 way round is a force that is spread over the section.
 """
@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import Direction
-from geometry.section import BoxSection
+from geometry.section import COMPONENT, Direction, Plate, Section
 
 Array = npt.NDArray[np.float64]
 Row = Mapping[int, float]
@@ -23,11 +22,7 @@ Row = Mapping[int, float]
 # Number of a segment → what is read of it, with its sign.
 Reading = Mapping[int, Row]
 
-# Nodes closer than this part of the section's height to a place lie on it; meshes are exact to
-# round-off.
-ON_WALL = 1.0e-7
 _X = 0
-COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
 
 def combine(*terms: tuple[float, Row]) -> Row:
@@ -77,7 +72,7 @@ class Outline:
     x: float
     places: Array
     dofs: npt.NDArray[np.int64]
-    section: BoxSection
+    section: Section
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
         """u_z or u_y averaged over the section's area: its neutral axis' deflection, in m."""
@@ -92,30 +87,37 @@ class Outline:
         """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, 2]
+        z = z - (areas @ z) / areas.sum()
         return row_of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
         """How much taller the section has become: mean u_z of the top less the bottom, in m."""
-        top, bottom = (self._wall("y", side, "z") for side in (1.0, -1.0))
+        faces = (self.section.face("z", side) for side in (1, -1))
+        top, bottom = (self._mean(self.section.plates[face.plate], "z") for face in faces)
         return combine((1.0, top), (-1.0, bottom))
 
     def wall_deflection(self, direction: Direction) -> Row:
-        """u_z averaged over the webs, or u_y over the flanges, in m.
+        """u_z or u_y averaged over the plates that carry its shear force in their own plane, in m.
 
-        These walls carry the shear force of the direction in their own plane: a force spread so
-        bends no plate.
+        A force spread so bends no plate.
         """
-        return combine(*((0.5, self._wall(direction, side, direction)) for side in (1.0, -1.0)))
+        carriers = self.section.carriers(direction)
+        plates = self.section.plates
+        return combine(*((part, self._mean(plates[n], direction)) for n, part in carriers))
 
     def twist(self) -> Row:
-        """Turn about x in rad: the mean of the turns of the pair of webs and that of flanges.
+        """Turn about x in rad: the circulation of the displacement over twice the enclosed area.
 
-        A distortion into a parallelogram turns the pairs by opposite angles and is not read.
+        That of a rigid turn by Stokes' theorem; a box's distortion into a parallelogram, which
+        turns webs and flanges by opposite angles, is not read.
         """
-        b, h = self.section.width, self.section.height
-        right, left = (self._wall("z", side, "z") for side in (1.0, -1.0))
-        top, bottom = (self._wall("y", side, "y") for side in (1.0, -1.0))
-        return combine((0.5 / b, right), (-0.5 / b, left), (-0.5 / h, top), (0.5 / h, bottom))
+        terms = []
+        for plate in self.section.plates:
+            part = plate.length / (2.0 * self.section.enclosed_area)
+            for direction, slope in zip(COMPONENT, plate.tangent.tolist(), strict=True):
+                if slope != 0.0:
+                    terms.append((part * slope, self._mean(plate, direction)))
+        return combine(*terms)
 
     def flange_deflection(self, side: float, y: float) -> Row:
         """u_z of a flange, averaged over the two points ±y, in m.
@@ -124,36 +126,37 @@ class Outline:
             side: 1 for the top flange, −1 for the bottom one.
             y: distance from the middle in m.
         """
-        nodes = self._along("y", side)
-        return combine(*((0.5, self._interpolated(nodes, place, "z")) for place in (y, -y)))
+        face = self.section.face("z", side)
+        nodes, along = self._along(self.section.plates[face.plate])
+        return combine(*((0.5, self._interpolated(nodes, along, place)) for place in (y, -y)))
 
-    def _interpolated(self, nodes: npt.NDArray[np.int64], y: float, direction: Direction) -> Row:
-        """A displacement at one point of a flange."""
-        along = self.places[nodes, 1]
+    def _interpolated(self, nodes: npt.NDArray[np.int64], along: Array, place: float) -> Row:
+        """u_z at one place along a plate."""
         # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
-        edge = int(np.clip(np.searchsorted(along[::2], y) - 1, 0, nodes.size // 2 - 1))
-        ends = nodes[2 * edge : 2 * edge + 3]
-        left, _, right = self.places[ends, 1]
-        shapes = quadratic(np.asarray((y - left) / (right - left)))
-        return row_of(self.dofs[ends, COMPONENT[direction]], shapes)
+        edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
+        left, _, right = along[2 * edge : 2 * edge + 3]
+        shapes = quadratic(np.asarray((place - left) / (right - left)))
+        return row_of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
 
-    def _wall(self, axis: Direction, side: float, direction: Direction) -> Row:
-        """Mean displacement over one wall's line, in m."""
-        nodes, lengths = self._simpson(axis, side)
+    def _mean(self, plate: Plate, direction: Direction) -> Row:
+        """Mean displacement over one plate's line, in m."""
+        nodes, lengths = self._simpson(plate)
         return row_of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
-    def _along(self, axis: Direction, side: float) -> npt.NDArray[np.int64]:
-        """Nodes of one wall's line, rising along the axis, ends and middles in turn."""
-        normal: Direction = "z" if axis == "y" else "y"
-        size = self.section.height if axis == "y" else self.section.width
-        distance = self.places[:, COMPONENT[normal]] - 0.5 * size * side
-        on_wall = np.flatnonzero(np.abs(distance) < ON_WALL * self.section.height)
-        return on_wall[np.argsort(self.places[on_wall, COMPONENT[axis]])]
+    def _along(self, plate: Plate) -> tuple[npt.NDArray[np.int64], Array]:
+        """Nodes of one plate's line, ends and middles in turn, and where they are along it in m.
 
-    def _simpson(self, axis: Direction, side: float) -> tuple[npt.NDArray[np.int64], Array]:
-        """Nodes of one wall's line and their weights in m."""
-        nodes = self._along(axis, side)
-        along = self.places[nodes, COMPONENT[axis]]
+        They rise with y, or with z where the plate is steep.
+        """
+        on_plate = np.flatnonzero(plate.distance(self.places[:, 1:]) < self.section.near)
+        tangent = plate.tangent
+        along = self.places[on_plate, 1:] @ (tangent * np.sign(tangent[np.abs(tangent).argmax()]))
+        order = np.argsort(along)
+        return on_plate[order], along[order]
+
+    def _simpson(self, plate: Plate) -> tuple[npt.NDArray[np.int64], Array]:
+        """Nodes of one plate's line and their weights in m."""
+        nodes, along = self._along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
         weights[:-2:2] += lengths / 6.0
@@ -162,12 +165,8 @@ class Outline:
         return nodes, weights
 
     def _area_weights(self) -> tuple[npt.NDArray[np.int64], Array]:
-        """Nodes of all four walls (corners twice) and the areas in m² that they stand for."""
-        walls: list[tuple[Direction, float]] = [
-            ("y", self.section.flange),
-            ("z", self.section.web),
-        ]
-        parts = [(*self._simpson(axis, side), t) for axis, t in walls for side in (1.0, -1.0)]
+        """Nodes of all plates (corners twice) and the areas in m² that they stand for."""
+        parts = [(*self._simpson(plate), plate.thickness) for plate in self.section.plates]
         return (
             np.concatenate([nodes for nodes, _, _ in parts]),
             np.concatenate([wall * weights for _, weights, wall in parts]),

@@ -17,10 +17,10 @@ from scipy.linalg import null_space, qr
 
 from geometry.boom import Direction, Segment, Support
 from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
-from geometry.section import BoxSection
+from geometry.section import COMPONENT, Section
 from shell_model import compat
 from shell_model.contact.attachments import Attached
-from shell_model.cross_section import COMPONENT, ON_WALL, Outline, Row
+from shell_model.cross_section import Outline, Row
 from shell_model.forms import ShellForms, shell_forms
 
 Array = npt.NDArray[np.float64]
@@ -160,7 +160,7 @@ class SegmentShell(Shell):
 
     Args:
         unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
-            it is spread over the plain box, collars and diaphragms have no part in it.
+            it is spread over the plain section, collars and diaphragms have no part in it.
         stiffener_loads: direction → (num_owned,) what collars and diaphragms alone feel of an
             acceleration of 1 m/s² along it, in N, zero in held rows.
         masses: what the segment carries.
@@ -172,7 +172,7 @@ class SegmentShell(Shell):
     unit_loads: Mapping[Direction, Array]
     stiffener_loads: Mapping[Direction, Array]
     masses: Attached
-    section: BoxSection
+    section: Section
     segment: Segment
     mesh: SegmentMesh | None
 
@@ -196,7 +196,7 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
 
     Args:
         comm: the ranks that share it.
-        segment: with a box section.
+        segment: whose section is known.
         mesh: of its walls and diaphragms, on rank 0, with mesh lines at supports, masses and the
             ends of collars; None elsewhere.
     """
@@ -272,7 +272,7 @@ def _outline(
     comm: MPI.Comm,
     nodes: Array,
     node_dofs: npt.NDArray[np.int64],
-    section: BoxSection,
+    section: Section,
     x: float,
 ) -> Outline:
     at = _on_outline(nodes, section, x)
@@ -281,11 +281,10 @@ def _outline(
     return Outline(x, places, dofs, section)
 
 
-def _on_outline(places: Array, section: BoxSection, x: float) -> npt.NDArray[np.bool_]:
+def _on_outline(places: Array, section: Section, x: float) -> npt.NDArray[np.bool_]:
     """(num_places,) whether places (num_places, 3) are on the walls at x."""
-    off_wall = np.abs(np.abs(places[:, 1:]) - 0.5 * np.array([section.width, section.height]))
-    near = ON_WALL * section.height
-    return np.asarray((off_wall.min(axis=1) < near) & (np.abs(places[:, 0] - x) < near))
+    at_x = np.abs(places[:, 0] - x) < section.near
+    return np.asarray(section.on_plates(places[:, 1:]) & at_x)
 
 
 def _local_row(first: int, free: npt.NDArray[np.bool_], weights: Row) -> Array:
@@ -328,7 +327,7 @@ def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
         yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
 
 
-def _holds(space: Any, segment: Segment, section: BoxSection) -> list[Any]:
+def _holds(space: Any, segment: Segment, section: Section) -> list[Any]:
     """Dirichlet conditions of the rigid supports."""
 
     def at(x: float) -> Callable[[Array], npt.NDArray[np.bool_]]:

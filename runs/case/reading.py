@@ -308,7 +308,7 @@ def _check_models(case: Case, boom: Boom) -> None:
 
 def _check_mesh_size(where: str, size: float, boom: Boom) -> None:
     surface = sum(
-        2.0 * (segment.section.height + segment.section.width) * segment.length
+        segment.section.perimeter * segment.length
         for segment in boom.segments
         if segment.section is not None
     )

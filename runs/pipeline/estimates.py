@@ -178,7 +178,7 @@ def _stand_in(model: Model, boom: Boom) -> _StandIn:
 
 def _of_shell(model: ShellTable, boom: Boom) -> _StandIn:
     area = sum(
-        2.0 * (segment.section.height + segment.section.width) * segment.length
+        segment.section.perimeter * segment.length
         for segment in boom.segments
         if segment.section is not None
     )

@@ -12,7 +12,6 @@ from rich.table import Table
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NumericsError
 from geometry.boom import Boom, Joint
-from geometry.section import BoxSection
 from runs.case import actions
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
@@ -43,7 +42,7 @@ def print_inferred(case: Case, console: Console) -> None:
 def _segments(case: Case, boom: Boom) -> Table:
     table = Table("segment", "span (m)", "m (kg/m)", "J (m⁴)", "I_p (kg m)", "box (mm)")
     for given, segment in zip(case.segments, boom.segments, strict=True):
-        box = _plates(segment.section)
+        box = "unknown" if segment.section is None else str(segment.section)
         table.add_row(
             segment.name,
             f"{segment.start:g}–{segment.end:g}",
@@ -63,11 +62,11 @@ def _stiffeners(boom: Boom) -> Table:
         if box is None:
             continue
         for one in segment.collars:
-            area = 2.0 * (box.height + box.width) * (one.end - one.start)
+            area = box.perimeter * (one.end - one.start)
             place = f"{one.start:g}–{one.end:g}"
             table.add_row("collar", segment.name, place, *_plate(one.thickness, density * area))
         for plate in segment.diaphragms:
-            per_thickness = density * box.height * box.width
+            per_thickness = density * box.enclosed_area
             row = _plate(plate.thickness, per_thickness)
             table.add_row("diaphragm", segment.name, f"{plate.x:g}", *row)
     return table
@@ -77,25 +76,14 @@ def _plate(thickness: float, mass_per_thickness: float) -> tuple[str, str]:
     return f"{1e3 * thickness:g}", f"{mass_per_thickness * thickness:.3g}"
 
 
-def _plates(section: BoxSection | None) -> str:
-    if section is None:
-        return "unknown"
-    height, width, flange, web = (
-        f"{1e3 * length:.4g}"
-        for length in (section.height, section.width, section.flange, section.web)
-    )
-    wall = flange if flange == web else f"{flange} / {web}"
-    return f"{height} x {width} x {wall}"
-
-
 def _joints(boom: Boom) -> Table:
     table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)", "friction")
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         room = "unknown"
         if outer.section is not None and inner.section is not None:
-            height = 1e3 * outer.section.clear_height_around(inner.section)
-            width = 1e3 * outer.section.clear_width_around(inner.section)
+            height = 1e3 * outer.section.room_around(inner.section, "z")
+            width = 1e3 * outer.section.room_around(inner.section, "y")
             room = f"{height:.1f} high, {width:.1f} wide"
         table.add_row(
             f"{inner.name} in {outer.name}",

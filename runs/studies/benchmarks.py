@@ -294,7 +294,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     vibrating = plates(sizes, tell)
     twisting = torsion(sizes, tell)
     exact = exactness(box, sizes, tell)
-    ties = drilling(box, 0.5 * inner.width, sizes, tell)
+    ties = drilling(box, 0.5 * inner.size("y"), sizes, tell)
     tell("pinched cylinder with shear")
     sheared = [benchmarks.pinched_cylinder(n) for n in sizes.cylinder]
     refined = [*known, *vibrating, *twisting]

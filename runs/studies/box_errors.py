@@ -171,7 +171,7 @@ class Comparison:
         """Wall thickness over the width of the box."""
         section = pair(self.wall)[what.segment].section
         assert section is not None
-        return self.wall / section.width
+        return self.wall / section.size("y")
 
 
 def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:

@@ -85,7 +85,7 @@ class Probe(NamedTuple):
 
 def pad_squeeze(outline: Outline) -> Row:
     """How much farther the flanges are apart under pads in the corners, in m."""
-    half = 0.5 * outline.section.width
+    half = 0.5 * outline.section.size("y")
     return combine(
         *(
             (side * weight, outline.flange_deflection(side, y))
@@ -239,7 +239,7 @@ def solid_parts(
     layers: int = 2,
 ) -> dict[Family, Part]:
     """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
-    assert segment.section is not None
+    assert isinstance(segment.section, BoxSection)
     places = _places(segment, probes)
     mesh = mesh_quarter(segment.section, places, along, around, splits, layers)
     parts = {}

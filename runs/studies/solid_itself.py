@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.section import BoxSection
 from runs.studies.box_pair import box
 from runs.studies.study import Proof
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, Family
@@ -74,6 +75,6 @@ def solid_proofs() -> list[Proof]:
 
 
 def _solid(family: Family) -> SolidFamily:
-    assert BAR.section is not None
+    assert isinstance(BAR.section, BoxSection)
     mesh = mesh_quarter(BAR.section, (BAR.start, BAR.end), (0.1, 0.1), 0.1)
     return assemble_solid(BAR, mesh, family)

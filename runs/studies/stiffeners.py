@@ -171,7 +171,7 @@ def _shell(segment: Segment, size: float, lines: Sequence[float] = ()) -> Segmen
 
 def _corners(outline: Outline, side: float) -> Row:
     """A flange's deflection above its webs, where pads near the webs press."""
-    return outline.flange_deflection(side, 0.5 * outline.section.width)
+    return outline.flange_deflection(side, 0.5 * outline.section.size("y"))
 
 
 def _timoshenko(segment: Segment, x: float) -> float:
@@ -348,7 +348,7 @@ def proofs(boom: Boom, sizes: Sizes, tell: Callable[[str], None]) -> list[Proof]
     """Stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
-    assert section is not None
+    assert isinstance(section, BoxSection)
     t, collar = sizes.diaphragms[len(sizes.diaphragms) // 2], sizes.collars[0]
     tell("a diaphragm in pure shear")
     shear = material.shear_modulus * t * section.width * section.height

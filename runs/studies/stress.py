@@ -18,7 +18,7 @@ from mpi4py import MPI
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom
 from geometry.contact_places import Stretch
-from geometry.mesh import WALLS, mesh_segment, plate_thickness
+from geometry.mesh import mesh_segment, plate_thickness
 from runs.case.build import build_boom, contact_laws
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
@@ -131,13 +131,13 @@ class Pressed:
         segment = self.boom.segments[INNER]
         assert segment.section is not None
         row = self.stress.row(0, x)
-        row = row[self.stress.wall[row] == WALLS.index("top")]
+        row = row[self.stress.wall[row] == self.stress.plates[0].index("top")]
         found = np.average(self.stress.at(0.0).membrane[row, 0], weights=self.stress.areas[row])
         begin, end = self.stress.spans[row, 0].min(), self.stress.spans[row, 1].max()
         arms = segment.end - np.array([begin, end])
         moment = -segment.load * (arms**3).dot([1.0, -1.0]) / (6.0 * (end - begin))
         section = segment.section
-        return float(found), moment * 0.5 * section.height / section.second_moment_of_area
+        return float(found), moment * 0.5 * section.size("z") / section.second_moment_of_area
 
     def shear(self, x: float) -> tuple[float, float]:
         """Force that the webs carry in N, and what equilibrium asks for."""

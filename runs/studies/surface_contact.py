@@ -197,7 +197,7 @@ def _density(case: Case, sizes: Sizes, system: GapSystem) -> float:
     section = boom.segments[joint.inner].section
     assert section is not None
     start, end = boom.overlap(joint)
-    return _upper_stiffness(system) / (section.width * (end - start))
+    return _upper_stiffness(system) / (section.size("y") * (end - start))
 
 
 def _contact_table(

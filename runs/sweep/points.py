@@ -17,6 +17,7 @@ from itertools import product
 
 from pydantic import ValidationError
 
+from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom, needs_plates
@@ -137,7 +138,9 @@ def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
 def _inferred(case: Case) -> Plates:
     sections = [segment.section for segment in build_boom(case).segments]
     return [
-        None if given.section is not None or section is None else SectionTable(**asdict(section))
+        SectionTable(**asdict(section))
+        if given.section is None and isinstance(section, BoxSection)
+        else None
         for given, section in zip(case.segments, sections, strict=True)
     ]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that read the corners of a box along a length.
+"""Rows that read the corners of a section along a length.
 
 A force at one point of a fold has no compliance: it grows with the logarithm of the mesh. One that
 is spread along the fold has. The rows are exact for any mesh, whose lines need not lie at their
@@ -14,17 +14,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import Direction
 from geometry.contact_places import Stretch
-from geometry.section import BoxSection
-from shell_model.cross_section import COMPONENT, ON_WALL, Row, combine, quadratic, row_of
+from geometry.section import COMPONENT, Direction, Offset
+from shell_model.cross_section import Row, combine, quadratic, row_of
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
-
-# Signs of y and z.
-Corner = tuple[int, int]
-_CORNERS: tuple[Corner, ...] = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 
 
 class _Line(NamedTuple):
@@ -52,22 +47,21 @@ class _Line(NamedTuple):
 
 
 class CornerLines:
-    """The four corners of a segment's box. Collective."""
+    """The corners of a segment's section. Collective."""
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._section: BoxSection = shell.section
-        half = 0.5 * np.array([shell.section.width, shell.section.height])
-        self._lines: Mapping[Corner, _Line] = {}
-        for corner in _CORNERS:
-            off = np.abs(shell.nodes[:, 1:] - corner * half).max(axis=1)
-            on = off < ON_WALL * shell.section.height
+        self._section = shell.section
+        self._lines: Mapping[Offset, _Line] = {}
+        for corner in (plate.start for plate in shell.section.plates):
+            off = np.abs(shell.nodes[:, 1:] - np.array(corner)).max(axis=1)
+            on = off < shell.section.near
             x = np.concatenate(shell.comm.allgather(shell.nodes[on, 0]))
             dofs = np.concatenate(shell.comm.allgather(shell.node_dofs[on]))
             order = np.argsort(x)
             self._lines[corner] = _Line(x[order], dofs[order])
 
     def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
-        """u_z of a flange or u_y of a web in m, on the straight line through its two corners.
+        """u_z or u_y of a face in m, on the straight line through its two corners.
 
         A force there goes to the corners by the law of the lever, as through a flange that its
         webs carry; no plate bows under it, and a turn of the section is read exactly.
@@ -75,17 +69,16 @@ class CornerLines:
         Args:
             stretch: of the corners that is read.
             direction: what is read.
-            y, z: offsets from the axis in m. Along z the sign of ``z`` tells which flange is read,
-                along y the sign of ``y`` tells which web.
+            y, z: offsets from the axis in m. Along z the sign of ``z`` tells which face is read,
+                along y the sign of ``y`` tells which one.
         """
-        b, h = 0.5 * self._section.width, 0.5 * self._section.height
-        if direction == "z":
-            wall, along = int(np.sign(z)), y / b
-            first, last = self._lines[-1, wall], self._lines[1, wall]
-        else:
-            wall, along = int(np.sign(y)), z / h
-            first, last = self._lines[wall, -1], self._lines[wall, 1]
+        side, across = (z, y) if direction == "z" else (y, z)
+        face = self._section.face(direction, side)
+        plate = self._section.plates[face.plate]
+        first, last = sorted((plate.start, plate.end))
+        middle, half = 0.5 * (face.low + face.high), 0.5 * face.width
+        along = (across - middle) / half
         return combine(
-            (0.5 * (1.0 - along), first.mean(stretch, direction)),
-            (0.5 * (1.0 + along), last.mean(stretch, direction)),
+            (0.5 * (1.0 - along), self._lines[first].mean(stretch, direction)),
+            (0.5 * (1.0 + along), self._lines[last].mean(stretch, direction)),
         )

@@ -153,7 +153,7 @@ def _touch(
     section = boom.segments[inner].section
     assert section is not None
     if line == "across":
-        return across(pad, walls[inner], walls[outer], pressed, section.width)
+        return across(pad, walls[inner], walls[outer], pressed, section)
     return near_webs(pad, corners[inner], corners[outer], pressed)
 
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import Direction
-from geometry.contact_places import Pad, Patch, Side, Stretch
+from geometry.contact_places import Pad, Patch, Stretch
+from geometry.section import Direction, Section, Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.surface import gauss
 from shell_model.contact.wall_points import Wall, WallPoints
@@ -51,11 +51,13 @@ def near_webs(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed
     return _sliding_as_its_mean([(side, 1.0, along(side)) for side in _SIDES])
 
 
-def across(pad: Pad, inner: WallPoints, outer: WallPoints, pressed: Pressed, width: float) -> Touch:
-    """A station of a flat boom over the width of the inner flanges. Collective."""
+def across(
+    pad: Pad, inner: WallPoints, outer: WallPoints, pressed: Pressed, section: Section
+) -> Touch:
+    """A station of a flat boom over the width of the inner section's faces. Collective."""
     points = []
     for side in _SIDES:
-        for y, weight in zip(*_half_gauss(width), strict=True):
+        for y, weight in zip(*_half_gauss(section.face("z", side).width), strict=True):
             rows = (
                 walls.mean(Wall("z", side), *_line(stretch, y), "z")
                 for walls, stretch in zip((inner, outer), pressed, strict=True)

@@ -129,7 +129,7 @@ class _Patch:
     def of(cls, boom: Boom, joint: Joint, wall: Wall, points: tuple[int, int]) -> _Patch:
         section = boom.segments[joint.inner].section
         assert section is not None
-        width = section.width if wall.normal == "z" else section.height
+        width = section.face(wall.normal, wall.side).width
         start, end = boom.overlap(joint)
         x, along = gauss(start, end, points[0])
         across, over = gauss(0.0, 0.5 * width, points[1])

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import Direction
+from geometry.section import COMPONENT, Direction
 from shell_model import compat
-from shell_model.cross_section import COMPONENT, ON_WALL, Row, combine
+from shell_model.cross_section import Row, combine
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
@@ -26,7 +26,7 @@ _ON_EDGE = 1.0e-8
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """One wall of a box: a flange, normal along z, or a web, normal along y.
+    """One face of a section.
 
     Args:
         normal: its direction.
@@ -91,11 +91,10 @@ class WallPoints:
     def _near(self, wall: Wall, x: Array) -> npt.NDArray[np.int64]:
         """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
         section = self._shell.section
-        size = section.height if wall.normal == "z" else section.width
-        off = self._places[:, COMPONENT[wall.normal]] - 0.5 * wall.side * size
-        flat = np.abs(off) < ON_WALL * section.height
+        margin = section.near
+        plate = section.plates[section.face(wall.normal, wall.side).plate]
+        flat = plate.distance(self._places[:, 1:]) < margin
         along = self._places[self._cells[:, :3], 0]
-        margin = ON_WALL * section.height
         close = (along.max(axis=1) >= x.min() - margin) & (along.min(axis=1) <= x.max() + margin)
         return np.asarray(self._cells[flat[self._cells].all(axis=1) & close])
 

@@ -143,8 +143,13 @@ class MovingShell:
         return np.asarray(np.unique(self.triangles[self.segment == segment]))
 
     def half_height(self, segment: int) -> float:
-        """Distance of a segment's flanges from its axis in m."""
-        return float(self.points[self.members(segment), 2].max())
+        """Half of how tall a segment's section is, in m."""
+        return 0.5 * float(np.ptp(self.points[self.members(segment), 2]))
+
+    def middle(self, segment: int) -> float:
+        """z in m half-way up a segment's section."""
+        z = self.points[self.members(segment), 2]
+        return 0.5 * float(z.min() + z.max())
 
     def supports(self) -> list[Array]:
         """(num_points, 3) each: the outlines that no mode moves across the boom."""
@@ -161,7 +166,7 @@ class MovingShell:
         """
         mine = self.members(segment)
         _, y, z = self.points[mine].T
-        mine = mine[(np.abs(y) < SAME_PLACE) & (side * z > z.max() - SAME_PLACE)]
+        mine = mine[(np.abs(y) < SAME_PLACE) & (side * z > (side * z).max() - SAME_PLACE)]
         return np.asarray(mine[self.points[mine, 0].argsort()])
 
     def change_of_shape(self, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
@@ -175,11 +180,9 @@ class MovingShell:
             segment: which.
             x: of the section in m, a mesh line.
         """
-        mine = self.members(segment)
+        walls = (self.segment == segment) & (self.stress.wall < len(self.stress.plates[segment]))
+        mine = np.unique(self.triangles[walls])
         mine = mine[np.abs(self.points[mine, 0] - x) < SAME_PLACE]
-        y, z = np.abs(self.points[mine, 1:]).T
-        # Those inside belong to a diaphragm.
-        mine = mine[(y > y.max() - SAME_PLACE) | (z > z.max() - SAME_PLACE)]
         y, z = self.points[mine, 1:].T
         mine = mine[np.arctan2(z, y).argsort()]
         y, z = self.points[mine, 1:].T
@@ -207,20 +210,25 @@ class MovingShell:
             scale: of displacement and play.
             section: of the outermost section.
         """
-        factor = self._section_factors(scale, section)
+        factor = self._at_points(self._section_factors(scale, section))
         x, y, z = self.points.T
+        z = z - self._at_points(np.array([self.middle(k) for k in range(self.segment.max() + 1)]))
         ux, _, uz = scale * moved.T
         return np.stack([x + factor * ux, factor * y, factor * z + uz], axis=1)
 
     def _section_factors(self, scale: float, section: float) -> Array:
-        """(num_points,) of y and z; every inner segment makes room for the play around it."""
+        """(num_segments,) of y and z; every inner segment makes room for the play around it."""
         factors = np.full(int(self.segment.max()) + 1, section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             around = factors[overlap.outer] * self.half_height(overlap.outer)
             room = scale * overlap.clearance + section * self.wall(overlap)
             factors[overlap.inner] = (around - room) / self.half_height(overlap.inner)
+        return factors
+
+    def _at_points(self, of_segments: Array) -> Array:
+        """(num_points,) what each segment's points have of it."""
         at_points = np.ones(len(self.points))
-        at_points[self.triangles] = factors[self.segment][:, None]
+        at_points[self.triangles] = of_segments[self.segment][:, None]
         return at_points
 
 

@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from PIL import Image
 
-from geometry.mesh import WALLS
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell, Overlap, round_scale
@@ -27,7 +26,7 @@ CHANGE_DRAWN = 0.12
 
 
 def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
-    """The triangles at an overlap; two walls of the outer segment, which hide the inner one, are
+    """The triangles at an overlap; those walls of the outer segment that hide the inner one are
     left out.
 
     Args:
@@ -40,7 +39,8 @@ def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
     middle = 0.5 * (inside + outside)
     width = outside - inside + 2.0 * BESIDE
     shown = (np.abs(corners[..., 0] - middle) < 0.5 * width + 0.3).all(axis=1)
-    hiding = np.isin(shell.stress.wall, [WALLS.index("top"), WALLS.index("left")])
+    _, across, up = shell.stress.outward.T
+    hiding = (up > 0.5) | (across < -0.5)
     hiding &= corners[..., 0].mean(axis=1) > inside - 0.2
     sheet = Sheet(PIXELS, floor=90)
     counts = [int((shell.segment == n).sum()) for n in (overlap.outer, overlap.inner)]
@@ -71,7 +71,7 @@ def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
     short = float(np.median(edges.min(axis=1)))
     sheet.write(
         "the mesh at the overlap, to scale",
-        f"edges of {short:.2g} m; two walls of the outer segment are taken away to show the inner "
+        f"edges of {short:.2g} m; walls of the outer segment are taken away to show the inner "
         "one\nmesh lines lie where the segments touch and where the outer segment ends",
     )
     return sheet.image()

@@ -19,7 +19,7 @@ from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell, Overlap
 from shell_model.pictures.overlap import Look, OverlapView
 from shell_model.pictures.theme import Scene, Sheet
-from shell_model.stress.stresses import Face, wall_name
+from shell_model.stress.stresses import Face
 
 # Of the overlap and of the whole boom, whose displacements are drawn up to this part of its length.
 OVERLAP_PIXELS, BOOM_PIXELS = (theme.SHEET[0], 475), (1160, 195)
@@ -146,7 +146,7 @@ def _largest(shell: MovingShell, overlap: Overlap, time: float) -> str:
     x, _, _ = shell.stress.centroids[triangle]
     faces: tuple[Face, ...] = ("outer", "inner")
     face = max(faces, key=lambda name: float(stress.von_mises(name)[triangle]))
-    wall = wall_name(int(shell.stress.wall[triangle]))
+    wall = shell.stress.wall_name(triangle)
     number = int(shell.segment[triangle])
     names = {overlap.outer: "outer segment", overlap.inner: "inner segment"}
     segment = names.get(number, f"segment {number + 1}")

@@ -37,8 +37,9 @@ def gather_fields(
         1/√kg: the displacement in m is the sum of the modal coordinates times ``modes``. For
         segment k, from 1 on, ``coordinates_k`` (own_k, mode) times the modal coordinates are its
         own ones, and the sum of these times ``stress_k`` (own_k, triangle_k, stress) are its
-        stresses in Pa. Other segments' coordinates have no stress there, so half of the numbers
-        of two segments and two thirds of those of three need not be kept.
+        stresses in Pa; ``plate_k`` names the plates that ``wall`` numbers. Other segments'
+        coordinates have no stress there, so half of the numbers of two segments and two thirds of
+        those of three need not be kept.
     """
     parts = []
     stresses = []
@@ -86,7 +87,10 @@ def gather_fields(
             "modes": (("mode", "point", "component"), all_modes),
             **_own_stresses(stresses),
         },
-        coords={"stress": list(COMPONENTS)},
+        coords={
+            "stress": list(COMPONENTS),
+            **{f"plate_{k}": list(mesh.plates) for k, mesh in enumerate(meshes, start=1)},
+        },
     )
 
 

@@ -15,8 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from geometry.mesh import WALLS
-from shell_model.stress.stresses import Face, Indices, ShellStress, wall_forces, wall_name
+from shell_model.stress.stresses import Face, Indices, ShellStress, wall_forces
 
 Array = npt.NDArray[np.float64]
 
@@ -28,9 +27,6 @@ PARTS = 80
 
 # Away from the bands the stress changes with the slow motion; so many instants show it.
 INSTANTS = 400
-
-
-_FLANGES = [WALLS.index(wall) for wall in ("bottom", "top")]
 
 
 class Largest(NamedTuple):
@@ -101,7 +97,7 @@ def sum_up(shell: ShellStress, history: xr.Dataset) -> dict[str, Any]:
         "von_mises": worst.von_mises,
         "time": time,
         "segment": names[number],
-        "wall": wall_name(int(shell.wall[worst.triangle])),
+        "wall": shell.wall_name(worst.triangle),
         "face": face,
         "x": x,
         "y": y,
@@ -176,9 +172,13 @@ def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:
     """(num_patches, num_triangles) area weights of the halves of the walls in a band."""
-    y, z = shell.centroids[band, 1:].T
-    # A flange is halved at its middle, a web or a diaphragm at half its height.
-    upper = np.where(np.isin(shell.wall[band], _FLANGES), y, z) > 0.0
-    patch = 2 * shell.wall[band] + upper
+    wall, places = shell.wall[band], shell.centroids[band, 1:]
+    # A flat wall is halved at its middle, a steep one or a diaphragm at half its height.
+    flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)
+    along = np.where(flat, *places.T)
+    lowest, highest = (np.zeros(wall.max() + 1) for _ in range(2))
+    np.minimum.at(lowest, wall, along)
+    np.maximum.at(highest, wall, along)
+    patch = 2 * wall + (along > 0.5 * (lowest + highest)[wall])
     weights = np.equal.outer(np.unique(patch), patch) * shell.areas[band]
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from geometry.mesh import WALLS, SegmentMesh
+from geometry.mesh import SegmentMesh
 
 Array = npt.NDArray[np.float64]
 Modes = npt.NDArray[np.float32]
@@ -74,7 +74,9 @@ class ShellStress:
         thickness: (num_triangles,) in m.
         spans: (num_triangles, 2) the smallest and the largest x in m.
         segment: (num_triangles,) of each triangle, rising.
-        wall: (num_triangles,) position in ``WALLS``; beyond it, a diaphragm.
+        outward: (num_triangles, 3) unit normals, away from the axis.
+        wall: (num_triangles,) position in its segment's ``plates``; beyond it, a diaphragm.
+        plates: for each segment the names of its section's plates.
         modes: for each segment (num_own, num_triangles_of_it, 6) ``COMPONENTS`` in Pa for a unit
             of each of its own coordinates.
         states: for each segment (num_times, num_own) these coordinates.
@@ -86,7 +88,9 @@ class ShellStress:
     thickness: Array
     spans: Array
     segment: npt.NDArray[np.int32]
+    outward: Array
     wall: npt.NDArray[np.int32]
+    plates: Sequence[Sequence[str]]
     modes: Sequence[Modes]
     states: Sequence[Modes]
     time: Array
@@ -102,6 +106,7 @@ class ShellStress:
             thickness=fields["thickness"].values,
             segment=segment,
             wall=fields["wall"].values,
+            plates=[[str(name) for name in fields[f"plate_{k}"].values] for k in numbers],
             modes=[fields[f"stress_{k}"].values for k in numbers],
             states=[(state @ combination.T).astype(np.float32) for combination in own],
             time=np.asarray(fields["time"].values, dtype=float),
@@ -121,6 +126,7 @@ class ShellStress:
             thickness=thickness,
             segment=np.zeros(len(mesh.triangles), dtype=np.int32),
             wall=mesh.walls,
+            plates=[mesh.plates],
             modes=[modes],
             states=[np.ones((1, 1), dtype=np.float32)],
             time=np.zeros(1),
@@ -174,18 +180,26 @@ class ShellStress:
 
         At a mesh line, of the row towards the tip.
         """
-        mine = (self.segment == segment) & (self.wall < len(WALLS))
+        mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = np.unique(self.spans[mine].round(6))
         after = int(np.clip(np.searchsorted(lines, x, side="right"), 1, lines.size - 1))
         along = self.centroids[:, 0]
         return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
 
+    def wall_name(self, triangle: int) -> str:
+        """What people call the wall or diaphragm of a triangle."""
+        names, number = self.plates[self.segment[triangle]], int(self.wall[triangle])
+        return names[number] if number < len(names) else f"diaphragm {number - len(names) + 1}"
+
 
 def _geometry(points: Array, triangles: Indices) -> dict[str, Array]:
     corners = points[triangles]
-    along = corners[..., 0]
+    along, centroids = corners[..., 0], corners.mean(axis=1)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    away = np.where((normals[:, 1:] * centroids[:, 1:]).sum(axis=1) < 0.0, -1.0, 1.0)
     return {
-        "centroids": corners.mean(axis=1),
+        "centroids": centroids,
+        "outward": away[:, None] * normals / np.linalg.norm(normals, axis=1, keepdims=True),
         "areas": triangle_areas(points, triangles),
         "spans": np.stack([along.min(axis=1), along.max(axis=1)], axis=1),
     }
@@ -197,18 +211,13 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
     return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
 
 
-def wall_name(number: int) -> str:
-    """What people call a wall or diaphragm."""
-    return WALLS[number] if number < len(WALLS) else f"diaphragm {number - len(WALLS) + 1}"
-
-
 class WallForces(NamedTuple):
     """What one wall carries through a cross-section, at the side towards the tip.
 
     Args:
         axial: force along x in N, positive in tension.
-        shear: force in the wall's plane in N, along y in a flange and along z in a web, of the
-            part beyond the section on the part before it.
+        shear: force in the wall's plane in N, along y in a flange and along z in a web or in any
+            wall steeper than 45°, of the part beyond the section on the part before it.
         moment: of its axial stresses about the section's y-axis in N m, positive where they pull
             at the top.
     """
@@ -230,17 +239,17 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
     stress, row = shell.at(t), shell.row(segment, x)
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
-    for number, name in enumerate(WALLS):
+    for number, name in enumerate(shell.plates[segment]):
         part = row[shell.wall[row] == number]
         width = shell.areas[part] / length
         membrane, bending = stress.membrane[part], stress.bending[part]
         strength = shell.thickness[part] * width
         z, sigma = shell.centroids[part, 2], membrane[:, 0]
-        outward = {"top": 1.0, "bottom": -1.0}.get(name, 0.0)
-        own = outward * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
+        _, across, up = shell.outward[part].mean(axis=0).round(12)
+        own = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
         moment = (strength * z) @ sigma + _within(strength, z, sigma, width.sum())
         # s runs along -z on the right and along -y on the bottom.
-        sense = 1.0 if name in ("top", "left") else -1.0
+        sense = np.sign(up if abs(up) > abs(across) else -across)
         forces[name] = WallForces(
             axial=float(strength @ sigma),
             shear=float(sense * strength @ membrane[:, 2]),
@@ -258,9 +267,10 @@ def _within(strength: Array, z: Array, sigma: npt.NDArray[np.float32], height: f
         sigma: (num_triangles,) in Pa.
         height: of the web in m.
     """
-    at_centroids = strength @ z**2
     if np.ptp(z) < 1.0e-6 * height:
         return 0.0
+    z = z - strength @ z / strength.sum()
+    at_centroids = strength @ z**2
     slope = (strength * z) @ sigma / at_centroids
     return float(slope * (strength.sum() * height**2 / 12.0 - at_centroids))
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from geometry.boom import Material
 from geometry.mesh import mesh_segment, plain_thickness
-from geometry.section import BoxSection
+from geometry.section import Section
 from shell_model.cross_section import Outline
 from shell_model.forms import DRILLING
 from shell_model.verification.benchmarks import AT_END, Indices, X, Y, Z, grid
@@ -131,7 +131,7 @@ class PlainBox:
         length: in m.
     """
 
-    section: BoxSection
+    section: Section
     length: float
 
     def shell(

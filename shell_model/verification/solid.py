@@ -142,7 +142,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
         ValueError: the segment has what the solid does not know.
     """
     section = segment.section
-    assert section is not None
+    assert isinstance(section, BoxSection)
     if segment.masses or segment.collars or segment.diaphragms:
         raise ValueError(f"{segment.name!r} as a solid has plain walls and carries no masses")
     if any(support.stiffness is not None for support in segment.supports):

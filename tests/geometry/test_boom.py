@@ -366,4 +366,4 @@ def test_boxes_that_just_fit_are_taken(paper_boom: Boom) -> None:
     outer, inner = paper_boom.segments
     assert outer.section is not None
     assert inner.section is not None
-    assert outer.section.clear_height_around(inner.section) == pytest.approx(14.0e-3, rel=1e-12)
+    assert outer.section.room_around(inner.section, "z") == pytest.approx(14.0e-3, rel=1e-12)

@@ -12,7 +12,7 @@ import pytest
 
 from geometry.boom import Boom, Collar, Diaphragm, PadSize
 from geometry.grading import Spot, graded_mesh
-from geometry.mesh import WALLS, SegmentMesh, mesh_segment
+from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.section import BoxSection
 from geometry.spots import spots
 
@@ -85,7 +85,7 @@ def test_it_is_fine_at_its_spots_and_coarse_far_from_them(mesh: SegmentMesh) -> 
 def test_lines_stay_whole(mesh: SegmentMesh) -> None:
     edges = {tuple(sorted((t[i], t[i - 1]))) for t in mesh.triangles.tolist() for i in range(3)}
     for name, x in BREAKS.items():
-        for wall in WALLS:
+        for wall in mesh.plates:
             line = mesh.lines[f"{name}:{wall}"]
             ends = mesh.points[line]
             side = BOX.width if wall in ("bottom", "top") else BOX.height

@@ -21,7 +21,6 @@ from hypothesis import strategies as st
 
 from geometry.boom import Collar, Diaphragm
 from geometry.mesh import (
-    WALLS,
     SegmentMesh,
     collar_breaks,
     diaphragm_breaks,
@@ -32,6 +31,7 @@ from geometry.mesh import (
 from geometry.section import BoxSection
 from tests.shell_model.booms import box_segment
 
+WALLS = ("bottom", "right", "top", "left")
 BOX = BoxSection(height=0.4945, width=0.3027, flange=0.00664, web=0.00664)
 BREAKS = {"tail": 0.0, "support-2": 2.0, "station-9": 9.0, "station-10": 10.0, "head": 10.0}
 

@@ -82,7 +82,7 @@ def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> Non
     outer, inner = (segment.section for segment in boom.segments)
     assert outer is not None
     assert inner is not None
-    assert outer.clear_height_around(inner) == pytest.approx(0.014, rel=1e-9)
+    assert outer.room_around(inner, "z") == pytest.approx(0.014, rel=1e-9)
 
 
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(folder: Path) -> None:
@@ -129,8 +129,8 @@ stiffness = 1e13
     assert outer is not None
     assert inner is not None
     assert innermost is not None
-    assert outer.clear_height_around(inner) == pytest.approx(0.014, rel=1e-9)
-    assert inner.clear_height_around(innermost) == pytest.approx(0.008, rel=1e-9)
+    assert outer.room_around(inner, "z") == pytest.approx(0.014, rel=1e-9)
+    assert inner.room_around(innermost, "z") == pytest.approx(0.008, rel=1e-9)
 
 
 def test_a_model_s_own_contact_law_keeps_the_joint_s_clearance() -> None:

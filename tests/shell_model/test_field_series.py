@@ -37,7 +37,10 @@ def fields() -> xr.Dataset:
             "stress_2": (("own_2", "triangle_2", "stress"), 2.0 * stress),
             "state": (("time", "mode"), np.float32([[0, 0], [1, 0], [2, 1], [3, -1]])),
         },
-        coords={"time": [0.0, 0.1, 0.2, 0.3]},
+        coords={
+            "time": [0.0, 0.1, 0.2, 0.3],
+            **{f"plate_{k}": ["bottom", "right", "top", "left"] for k in (1, 2)},
+        },
         attrs={"model": "shell"},
     )
 

@@ -85,7 +85,7 @@ def fields() -> xr.Dataset:
             ),
             "state": (("time", "mode"), state.astype(np.float32)),
         },
-        coords={"time": TIME},
+        coords={"time": TIME, "plate_1": list(outer.plates), "plate_2": list(inner.plates)},
     )
 
 

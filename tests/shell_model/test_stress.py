@@ -15,7 +15,7 @@ import xarray as xr
 from mpi4py import MPI
 
 from geometry.boom import Boom, Diaphragm, Support
-from geometry.mesh import WALLS, SegmentMesh, diaphragm_breaks, mesh_segment
+from geometry.mesh import SegmentMesh, diaphragm_breaks, mesh_segment
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.recovery import gather_stress_modes
@@ -84,7 +84,7 @@ def test_shear_has_the_sign_of_the_way_around() -> None:
     expected = {"top": 1.0, "bottom": -1.0, "right": 0.0, "left": 0.0}
     full = shear * E / (2.0 * (1.0 + NU))
     for wall, sign in expected.items():
-        mine = found[mesh.walls == WALLS.index(wall)]
+        mine = found[mesh.walls == mesh.plates.index(wall)]
         assert mine[:, 2] == pytest.approx(sign * full, abs=1e-5 * full)
         assert np.abs(np.delete(mine, 2, axis=1)).max() < 1e-5 * full
 
@@ -101,11 +101,11 @@ def test_bending_is_that_of_the_outer_face() -> None:
     )
     plane = E * bend / (1.0 - NU**2)
     for wall, side in (("top", 1.0), ("bottom", -1.0)):
-        mine = found[mesh.walls == WALLS.index(wall)]
+        mine = found[mesh.walls == mesh.plates.index(wall)]
         assert mine[:, 0] == pytest.approx(side * plane * 0.5 * BOX.height, rel=1e-4)
         assert mine[:, 3] == pytest.approx(side * plane * 0.5 * BOX.flange, rel=1e-4)
         assert mine[:, 4] == pytest.approx(side * NU * plane * 0.5 * BOX.flange, rel=1e-4)
-    web = mesh.walls == WALLS.index("right")
+    web = mesh.walls == mesh.plates.index("right")
     z = mesh.points[mesh.triangles[web], 2].mean(axis=1)
     assert found[web, 0] == pytest.approx(plane * z, abs=1e-4 * plane * BOX.height)
     assert np.abs(found[web, 3:]).max() < 1e-4 * plane * BOX.flange
@@ -158,7 +158,7 @@ def test_away_from_supports_the_stress_is_that_of_a_beam(cantilever: ShellStress
     extreme = abs(moment) * 0.5 * BOX.height / BOX.second_moment_of_area
     stress = cantilever.at(0.0)
     near = cantilever.near(0, x, 0.1)
-    mean = {w: near[cantilever.wall[near] == i] for i, w in enumerate(WALLS)}
+    mean = {w: near[cantilever.wall[near] == i] for i, w in enumerate(cantilever.plates[0])}
     for wall, side in (("top", 1.0), ("bottom", -1.0)):
         mine = mean[wall]
         average = np.average(stress.membrane[mine, 0], weights=cantilever.areas[mine])

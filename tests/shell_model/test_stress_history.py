@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.mesh import WALLS, mesh_segment
+from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
@@ -27,7 +27,7 @@ def shell() -> ShellStress:
     modes = np.zeros((2, len(mesh.triangles), 6), dtype=np.float32)
     modes[0, :, 0] = 5.0e6 * centroids[:, 2]
     spot = np.abs(centroids - [3.05, 0.05, 0.2]).sum(axis=1)
-    spot[mesh.walls != WALLS.index("top")] = np.inf
+    spot[mesh.walls != mesh.plates.index("top")] = np.inf
     modes[1, spot.argmin(), 3] = 8.0e6
     states = np.stack([np.sin(np.pi * TIME) ** 2, TIME[701] == TIME], axis=1).astype(np.float32)
     still = ShellStress.still(mesh, np.full(len(mesh.triangles), 0.005), modes[:1])
@@ -37,7 +37,9 @@ def shell() -> ShellStress:
         still.thickness,
         still.spans,
         still.segment,
+        still.outward,
         still.wall,
+        still.plates,
         modes=[modes],
         states=[states],
         time=TIME,
