@@ -141,9 +141,9 @@ class Boom:
     """Segments from the base to the tip, the joints between them, and what acts on them.
 
     Raises:
-        BoomError: supports, stations, loads or stops outside the segments, an inner box that
-            does not fit its outer one, a segment that nothing holds, friction without what
-            presses, a boom in space that lacks lateral numbers.
+        BoomError: supports, stations, loads or stops outside the segments, an inner box that does
+            not fit its outer one, a section that does not mirror itself, a segment that nothing
+            holds, friction without what presses, a boom in space that lacks lateral numbers.
     """
 
     segments: tuple[Segment, ...]
@@ -159,6 +159,7 @@ class Boom:
         for number, joint in enumerate(self.joints, start=1):
             _check_joint(f"joint[{number}]", joint, self.segments)
         self._check_order()
+        self._check_mirrors()
         self._check_diaphragms()
         self._check_held()
         if self.spatial:
@@ -265,6 +266,23 @@ class Boom:
                     f"joint[{number}]",
                     f"{inner.name!r} is nearer to the base than {outer.name!r}; exchange inner and "
                     "outer",
+                )
+
+    def _check_mirrors(self) -> None:
+        """Bending along z is a motion of its own; in space that along y and the twist are, too."""
+        for number, segment in enumerate(self.segments, start=1):
+            if segment.section is None:
+                continue
+            where, mirrors = f"segment[{number}].section", segment.section.mirrors
+            if "y" not in mirrors:
+                raise BoomError(
+                    where, "does not mirror itself in y, and would bend sideways under its weight"
+                )
+            if self.spatial and "z" not in mirrors:
+                raise BoomError(
+                    where,
+                    "does not mirror itself in z, and would twist as it bends sideways, which no "
+                    "model in space knows; leave lateral_play out, or make the flanges alike",
                 )
 
     def _check_diaphragms(self) -> None:

@@ -388,7 +388,7 @@ def infer_outer_section(
 
 
 def infer_inner_section(
-    area: float, second_moment_of_area: float, outer: BoxSection, clearance: float
+    area: float, second_moment_of_area: float, outer: Section, clearance: float
 ) -> BoxSection:
     """The uniform-wall box that fills ``outer`` up to the clearance above and below.
 
@@ -402,8 +402,8 @@ def infer_inner_section(
         SectionError: no such box exists, or it is too wide; the way out is an explicit
             section with pads that leave the stated clearance.
     """
-    outside_height = outer.height - outer.flange - 2.0 * clearance
-    widest = outer.width - outer.web
+    high, wide = (outer.face(axis, 1).inside - outer.face(axis, -1).inside for axis in ("z", "y"))
+    outside_height, widest = high - 2.0 * clearance, wide
 
     def box(wall: float) -> BoxSection:
         height = outside_height - wall
@@ -414,7 +414,7 @@ def infer_inner_section(
 
     # With height = H − t and width = A/2t − height, the wall is thickest where the width is
     # down to the wall itself, and thinnest where width + t fills the outer section.
-    thickest = area / (2.0 * max(outside_height, SMALLEST * outer.height))
+    thickest = area / (2.0 * max(outside_height, SMALLEST * high))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))
     walls = np.linspace(thinnest, thickest, 401)[:-1]
@@ -426,9 +426,8 @@ def infer_inner_section(
     if crossing.size == 0:
         raise SectionError(
             f"no uniform-wall box with A = {area:.6g} m² and J = {second_moment_of_area:.6g} m⁴ "
-            f"closes a clearance of {clearance:g} m inside {outer.height:.6g} m x "
-            f"{outer.width:.6g} m x {outer.flange:.6g} m; give the section explicitly: pads then "
-            "take up the difference to the stated clearance"
+            f"closes a clearance of {clearance:g} m in a room of {high:.6g} m x {wide:.6g} m; give "
+            "the section explicitly: pads then take up the difference to the stated clearance"
         )
     first = crossing[0]
     wall = brentq(defect, walls[first], walls[first + 1], xtol=1e-15 * walls[first], rtol=1e-14)

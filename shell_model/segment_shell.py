@@ -13,7 +13,7 @@ import numpy.typing as npt
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.linalg import null_space, qr
+from scipy.linalg import block_diag, null_space, qr
 
 from geometry.boom import Direction, Segment, Support
 from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
@@ -150,8 +150,7 @@ class Shell:
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
         # One rank decides on the basis of what is left, for all.
-        free = self.comm.bcast(null_space(qr(held, mode="r")[0][:6]) if held.size else np.eye(6))
-        return np.asarray(motions @ free)
+        return np.asarray(motions @ self.comm.bcast(_unheld(held)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,6 +256,20 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) 
     space = compat.shell_space(domain)
     forms = shell_forms(space, thickness, segment.material, loaded=plain)
     return Plates(space, thickness, forms, _holds(space, segment, section))
+
+
+def _unheld(held: Array) -> Array:
+    """(6, num_free) orthonormal combinations of rigid motions that leave all of ``held`` at zero.
+
+    Args:
+        held: (num_held, 6) what each motion does to it. Where none slides along x the slide comes
+            first and by itself, since nothing pushes it.
+    """
+    slides = 0 if held[:, 0].any() else 1
+    if held.size == 0:
+        return np.eye(6)
+    others = null_space(qr(held[:, slides:], mode="r")[0][:6])
+    return np.asarray(block_diag(np.eye(slides), others))
 
 
 def free_rows(space: Any, holds: list[Any]) -> npt.NDArray[np.bool_]:

@@ -19,7 +19,12 @@ from geometry.boom import (
     Segment,
     Support,
 )
-from geometry.section import BoxSection, SectionError, infer_inner_section, infer_outer_section
+from geometry.section import (
+    Section,
+    SectionError,
+    infer_inner_section,
+    infer_outer_section,
+)
 from runs.case import actions
 from runs.case.messages import choices
 from runs.case.schema import (
@@ -83,7 +88,7 @@ def _law(
 
 
 def needs_plates(model: Model) -> bool:
-    """Whether a model cannot do without the box sections."""
+    """Whether a model cannot do without the sections."""
     return isinstance(model, ShellTable) or (
         isinstance(model, FiniteElementTable) and model.theory == "timoshenko"
     )
@@ -145,7 +150,7 @@ def _joint(case: Case, index: int) -> Joint:
     )
 
 
-def _segment(case: Case, index: int, section: BoxSection | None) -> Segment:
+def _segment(case: Case, index: int, section: Section | None) -> Segment:
     table = case.segments[index]
     material = Material(**case.material.model_dump())
     mass, second_moment = _beam_numbers(case, index)
@@ -194,7 +199,7 @@ def _in_space(case: Case) -> bool:
     return any(joint.lateral_play is not None for joint in case.joints)
 
 
-def _lateral(table: SegmentTable, material: Material, section: BoxSection | None) -> Lateral | None:
+def _lateral(table: SegmentTable, material: Material, section: Section | None) -> Lateral | None:
     """What bends sideways and twists, given or of the section; None where something is unknown."""
     second_moment, torsion = table.lateral_second_moment_of_area, table.torsion_constant
     polar = table.polar_inertia
@@ -230,7 +235,7 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
     return mass, second_moment
 
 
-def _check_plates(case: Case, index: int, section: BoxSection) -> None:
+def _check_plates(case: Case, index: int, section: Section) -> None:
     """A given section stands alone, and the beam's numbers are its own where a shell is to run."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
@@ -255,16 +260,16 @@ def _missing(index: int, key: str) -> BoomError:
     return BoomError(f"segment[{index + 1}].{key}", f"missing; it is {description}")
 
 
-def _given_section(table: SegmentTable, index: int) -> BoxSection | None:
+def _given_section(table: SegmentTable, index: int) -> Section | None:
     if table.section is None:
         return None
     try:
-        return BoxSection(**table.section.model_dump())
+        return table.section.section()
     except SectionError as error:
         raise BoomError(f"segment[{index + 1}].section", str(error)) from None
 
 
-def _sections(case: Case, joints: Sequence[Joint]) -> list[BoxSection | None]:
+def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
     """Given sections, then those of a given ratio, then those that fill the one around them."""
     sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
@@ -279,7 +284,7 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[BoxSection | None]:
     return sections
 
 
-def _infer(case: Case, index: int, hint: float | tuple[BoxSection, float]) -> BoxSection | None:
+def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
     """A section from its height-to-width ratio, or from the one around it and the clearance.
 
     None where there is none and no model needs it.

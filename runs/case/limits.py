@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What single values of a case file may be, and how many of each there may be."""
+"""What tables and single values of a case file may be, and how many of each there may be."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
+
+
+class Table(BaseModel):
+    """A table of the case file: nothing but its own keys, and not changed once read."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]

@@ -12,13 +12,13 @@ from pydantic.fields import FieldInfo
 
 from runs.case import schema
 from runs.case.limits import NAME
+from runs.case.sections import SHAPES
 from runs.process.shown import shown
 
 _TABLES: Mapping[str, type[BaseModel]] = {
     "time": schema.TimeTable,
     "ensemble": schema.EnsembleTable,
     "material": schema.MaterialTable,
-    "section": schema.SectionTable,
     "supports": schema.SupportTable,
     "masses": schema.MassTable,
     "collars": schema.CollarTable,
@@ -37,6 +37,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "kantorovich": schema.KantorovichTable,
     "finite-element": schema.FiniteElementTable,
     "shell": schema.ShellTable,
+    **SHAPES,
 }
 
 # Names that a message lists of those that would be right.
@@ -95,8 +96,13 @@ def _explain(
         return key, _unknown_key(location)
     if fault in _TYPES:
         what = f"must be {_TYPES[fault]}"
-    elif fault == "union_tag_invalid":
+    elif fault == "union_tag_invalid" and location[0] == "model":
         return f"{key}.kind", f"must be {_kinds()}, got {_shown(value['kind'])}"
+    elif fault == "union_tag_invalid":
+        return (
+            f"{key}.shape",
+            f"must be {choices(list(SHAPES))}, got {_shown(value['shape'])}",
+        )
     elif fault == "greater_than":
         what = f"must be a number greater than {limits['gt']:g}"
     elif fault == "greater_than_equal":
@@ -135,7 +141,7 @@ def _explain(
 
 
 def _key(location: Sequence[int | str]) -> str:
-    """``segment[2].span`` from the schema's path, which counts from zero and names the kind."""
+    """``segment[2].span`` from the schema's path, which counts from zero and names kinds."""
     key = ""
     for step in _without_kind(location):
         key += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if key else step
@@ -146,6 +152,8 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
     steps = list(location)
     if len(steps) > 2 and steps[0] == "model":
         del steps[2]
+    if "section" in steps[:-1]:
+        del steps[steps.index("section") + 1]
     return steps
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
 
 from runs.case.limits import (
@@ -29,14 +29,10 @@ from runs.case.limits import (
     Part,
     Positive,
     StatementId,
+    Table,
     Text,
 )
-
-
-class Table(BaseModel):
-    """A table of the case file: nothing but its own keys, and not changed once read."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+from runs.case.sections import AnySection
 
 
 class TimeTable(Table):
@@ -76,15 +72,6 @@ class MaterialTable(Table):
     density: Positive = Field(description="the density in kg/m^3")
 
 
-class SectionTable(Table):
-    """A box by its wall mid-lines and thicknesses."""
-
-    height: Positive = Field(description="the distance of the flange mid-lines in m")
-    width: Positive = Field(description="the distance of the web mid-lines in m")
-    flange: Positive = Field(description="the thickness of the two flanges in m")
-    web: Positive = Field(description="the thickness of the two webs in m")
-
-
 class SupportTable(Table):
     """A place where the ground holds a segment; in space it holds sideways and in twist too."""
 
@@ -108,11 +95,11 @@ class CollarTable(Table):
     """A doubler around a segment; the walls' mid-surfaces stay where they are."""
 
     span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
-    thickness: Positive = Field(description="the thickness in m that it adds to all four walls")
+    thickness: Positive = Field(description="the thickness in m that it adds to all walls")
 
 
 class DiaphragmTable(Table):
-    """A plate that closes a segment's box, welded to its four walls."""
+    """A plate that closes a segment's box, welded to its walls."""
 
     x: Number = Field(description="the x in m")
     thickness: Positive = Field(description="the thickness in m")
@@ -152,10 +139,10 @@ class SegmentTable(Table):
     height_to_width: Positive | None = Field(
         None, description="the ratio of the mid-lines of a uniform-wall box, to infer its section"
     )
-    section: SectionTable | None = Field(
+    section: AnySection | None = Field(
         None,
-        description="the box; unless given it is inferred from mass and second moment, with "
-        "height_to_width, or with the room in the segment around it",
+        description="the table of the plates; unless given a box is inferred from mass and second "
+        "moment, with height_to_width, or with the room in the segment around it",
     )
     load: Number = Field(
         0.0, description="the uniform load in N/m, positive upwards, applied at t = 0 and kept"

@@ -22,7 +22,8 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom, needs_plates
 from runs.case.messages import BadInput
-from runs.case.schema import Case, SectionTable, tied
+from runs.case.schema import Case, tied
+from runs.case.sections import SectionTable
 from runs.sweep.variation import Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The four families of motions of a box that mirrors itself in y and in z.
+"""The families of motions of a section that mirrors itself in y, in z, or in both.
 
 Mirrored motions stay mirrored: bending along z, bending along y, twisting, and breathing with
-stretching do not know of each other within a segment. A family's motion is known from the quarter
-of the box where y and z are positive: it is that of the quarter with what the family does not do
-held on its cut edges, and its mirrors.
+stretching do not know of each other within a segment that has both mirrors; with that of y alone,
+bending along z breathes and stretches, and bending along y twists. A family's motion is known from
+the part of the section on the positive side of its mirrors, a quarter or a half: it is that of the
+part with what the family does not do held on its cut edges, and its mirrors.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -18,6 +21,7 @@ from scipy.spatial import cKDTree
 
 from dynamics.failure import NumericsError
 from geometry.mesh import SegmentMesh
+from geometry.section import COMPONENT, Direction
 
 Array = npt.NDArray[np.float64]
 
@@ -27,20 +31,25 @@ _ON_PLACE = 1.0e-8
 
 
 class Family(NamedTuple):
-    """1 where a motion is its own image in the mirror of an axis, −1 where it is its opposite."""
+    """1 where a motion is its own image in the mirror of an axis, −1 where it is its opposite.
+
+    0 where the section has no such mirror.
+    """
 
     y: int
     z: int
 
     @property
     def signs(self) -> Array:
-        """(4, 6) what a component of the quarter is times elsewhere.
+        """(4, 6) what a component of the positive part is times elsewhere.
 
         Rows are the quarters (see :func:`quarter_of`), columns the components of the displacement,
         which mirrors as an arrow, then those of the rotation, which mirrors as an axis.
         """
         signs = np.ones((4, 6))
         for axis, parity in ((1, self.y), (2, self.z)):
+            if parity == 0:
+                continue
             image = np.ones(6)
             image[axis] = image[3:][np.arange(3) != axis] = -1.0
             signs[_BEYOND[axis]] *= parity * image
@@ -61,13 +70,29 @@ BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
     Family(-1, 1),
     Family(-1, -1),
 )
-FAMILIES: Final = (BREATHING, ALONG_Z, ALONG_Y, TWISTING)
 
 
-def quarter_of(places: Array) -> npt.NDArray[np.int64]:
-    """(num_places,) 1 at negative y, 2 at negative z, 3 at both, 0 at neither."""
-    near = _near(places)
-    return np.asarray(1 * (places[:, 1] < -near) + 2 * (places[:, 2] < -near), dtype=np.int64)
+def families(mirrors: Sequence[Direction]) -> list[Family]:
+    """Those of a section with these mirrors."""
+    parities = ((1, -1) if axis in mirrors else (0,) for axis in COMPONENT)
+    return [Family(*parity) for parity in product(*parities)]
+
+
+def quarter_of(places: Array, mirrors: Sequence[Direction]) -> npt.NDArray[np.int64]:
+    """(num_places,) 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
+
+    Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
+    """
+    beyond = [COMPONENT[axis] * (places[:, COMPONENT[axis]] < -_near(places)) for axis in mirrors]
+    return np.asarray(sum(beyond, np.zeros(len(places))), dtype=np.int64)
+
+
+def folded(places: Array, mirrors: Sequence[Direction]) -> Array:
+    """(num_places, 3) the images of places (num_places, 3) on the positive side of the mirrors."""
+    images = places.copy()
+    for axis in mirrors:
+        images[:, COMPONENT[axis]] = np.abs(images[:, COMPONENT[axis]])
+    return images
 
 
 def on_plane(places: Array, axis: int) -> npt.NDArray[np.bool_]:
@@ -83,29 +108,30 @@ def matches(places: Array, among: Array) -> npt.NDArray[np.int64] | None:
     return np.asarray(number, dtype=np.int64)
 
 
-def quarter_mesh(mesh: SegmentMesh, thickness: Array) -> SegmentMesh:
-    """The part of a mesh at positive y and z.
+def quarter_mesh(mesh: SegmentMesh, thickness: Array, mirrors: Sequence[Direction]) -> SegmentMesh:
+    """The part of a mesh on the positive side of the mirrors.
 
     Args:
         mesh: of a segment.
         thickness: (num_triangles,) in m.
+        mirrors: of its section.
 
     Raises:
         NumericsError: the mesh or its thickness is not its own image.
     """
     ours = _sorted(mesh.triangles, thickness)
-    for axis in (1, 2):
+    for axis in mirrors:
         mirror = np.ones(3)
-        mirror[axis] = -1.0
+        mirror[COMPONENT[axis]] = -1.0
         partner = matches(mesh.points * mirror, mesh.points)
         if partner is None:
-            raise NumericsError("a segment's mesh is not its own mirror image in y and in z")
+            raise NumericsError(f"a segment's mesh is not its own mirror image in {axis}")
         images = _sorted(partner[mesh.triangles], thickness)
         if not all(np.array_equal(own, image) for own, image in zip(ours, images, strict=True)):
-            raise NumericsError("a segment's shell is not its own mirror image in y and in z")
-    mine = (quarter_of(mesh.points) == 0)[mesh.triangles].all(axis=1)
-    if 4 * mine.sum() != mine.size:
-        raise NumericsError("a segment's mesh has triangles that cross the planes y = 0 or z = 0")
+            raise NumericsError(f"a segment's shell is not its own mirror image in {axis}")
+    mine = (quarter_of(mesh.points, mirrors) == 0)[mesh.triangles].all(axis=1)
+    if 2 ** len(mirrors) * mine.sum() != mine.size:
+        raise NumericsError("a segment's mesh has triangles that cross its mirrors")
     points, triangles = np.unique(mesh.triangles[mine], return_inverse=True)
     return replace(
         mesh,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The families of a segment's motions, each as a quarter shell on one rank.
+"""The families of a segment's motions, each as a quarter, or half, of its shell on one rank.
 
-A family's matrices are those of a quarter of the segment, so they are small, a motion cannot drift
+A family's matrices are those of a part of the segment, so they are small, a motion cannot drift
 into another family, and the numbers are the same to the last bit whichever rank computes them:
 what ranks exchange are forces and shapes, taken apart and put together by sums of fixed order.
 Round-off that depended on the number of ranks would not do, since contact amplifies the last bit.
@@ -9,7 +9,7 @@ Round-off that depended on the number of ranks would not do, since contact ampli
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -22,11 +22,13 @@ from scipy.sparse import csr_array
 
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh, plate_thickness
+from geometry.section import COMPONENT, Direction
 from shell_model.contact.attachments import Attached
 from shell_model.reduction.agreement import together
 from shell_model.reduction.mirror import (
-    FAMILIES,
     Family,
+    families,
+    folded,
     matches,
     on_plane,
     quarter_mesh,
@@ -74,13 +76,15 @@ class Job:
     Args:
         family: of the motions.
         segment: the whole one.
-        mesh: of its quarter.
-        forces, readings: (num_rows, num_columns) on the quarter's rows, images added up.
-        springs, masses: of the segment, on the quarter's rows.
+        mirrors: of its section.
+        mesh: of its quarter, or half.
+        forces, readings: (num_rows, num_columns) on that part's rows, images added up.
+        springs, masses: of the segment, on these rows.
     """
 
     family: Family
     segment: Segment
+    mirrors: Sequence[Direction]
     mesh: SegmentMesh
     forces: Array
     readings: Array
@@ -94,7 +98,7 @@ class Job:
             *quarter.holds,
             *(
                 hold(quarter.space, part, component, partial(on_plane, axis=axis))
-                for axis in (1, 2)
+                for axis in (COMPONENT[mirror] for mirror in self.mirrors)
                 for part, component in self.family.held(axis)
             ),
         ]
@@ -102,7 +106,9 @@ class Job:
         rotation_nodes, rotation_dofs = owned_nodes(quarter.space, 1)
         return Shell(
             comm=MPI.COMM_SELF,
-            matrices=_Compact(MPI.COMM_SELF, quarter, holds, self.springs, self.masses, 4.0),
+            matrices=_Compact(
+                MPI.COMM_SELF, quarter, holds, self.springs, self.masses, 2.0 ** len(self.mirrors)
+            ),
             free=free_rows(quarter.space, holds),
             springs=self.springs,
             nodes=nodes,
@@ -118,11 +124,11 @@ class _Rows(NamedTuple):
 
     Args:
         component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
-        in_mirror: (2, num_rows) whether they lie in the mirror of y, and of z.
+        in_mirrors: (2, num_rows) whether they lie in the plane y = 0, and in z = 0.
     """
 
     component: Indices
-    in_mirror: npt.NDArray[np.bool_]
+    in_mirrors: npt.NDArray[np.bool_]
 
 
 class Folding:
@@ -136,7 +142,7 @@ class Folding:
     """
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._shell, self._comm = shell, shell.comm
+        self._shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
         self._mesh = together(self._comm, lambda: _quarter_mesh(shell))
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         quarter: list[tuple[Array, Indices]] = []
@@ -147,13 +153,13 @@ class Folding:
         first, _ = shell.owned
         self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int32)
         for part, (nodes, dofs) in enumerate(parts):
-            gathered = self._comm.gather(np.column_stack([nodes[:, 0], np.abs(nodes[:, 1:])]))
+            gathered = self._comm.gather(folded(nodes, self._mirrors))
             found: Sequence[Any] = []
             if gathered is not None:
                 places, rows = quarter[part]
                 found = [rows[matches(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(found)
-            self._quarter[dofs - first] = quarter_of(nodes)[:, None]
+            self._quarter[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = _components(part)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
@@ -169,7 +175,7 @@ class Folding:
             return []
         images = [self._images(entries) for entries in gathered if entries is not None]
         jobs = []
-        for family in FAMILIES:
+        for family in families(self._mirrors):
             signs = family.signs[:, self._quarter_rows.component]
             forces, read, springs, masses = (_added_up(image, signs) for image in images)
             if forces.any():
@@ -177,7 +183,8 @@ class Folding:
                     Attached(springs, shell.springs.factors),
                     Attached(masses, shell.masses.factors),
                 )
-                jobs.append(Job(family, shell.segment, self._mesh, forces, read, *attached))
+                part = shell.segment, self._mirrors, self._mesh
+                jobs.append(Job(family, *part, forces, read, *attached))
         return jobs
 
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
@@ -212,12 +219,13 @@ class Folding:
 
     def _images(self, gathered: list[_Entries]) -> Array:
         """(4, num_rows, num_columns) a block in each quarter; half in each of what lies between."""
-        in_mirror = self._quarter_rows.in_mirror
-        images = np.zeros((4, in_mirror.shape[1], gathered[0].columns))
+        in_mirrors = self._quarter_rows.in_mirrors
+        images = np.zeros((4, self._quarter_rows.component.size, gathered[0].columns))
         for entries in gathered:
             images[entries.quarter, entries.row, entries.column] = entries.value
-        for beyond, within in zip(_IMAGES, in_mirror, strict=True):
-            for here, there in beyond:
+        for axis in self._mirrors:
+            within = in_mirrors[COMPONENT[axis] - 1]
+            for here, there in _IMAGES[axis]:
                 images[here, within] *= 0.5
                 images[there, within] = images[here, within]
         return images
@@ -233,14 +241,18 @@ class _Entries(NamedTuple):
     columns: int
 
 
-# Quarters that meet in the mirror of y, and in that of z.
-_IMAGES = (((0, 1), (2, 3)), ((0, 2), (1, 3)))
+# Quarters that meet in the mirror of an axis.
+_IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
+    "y": ((0, 1), (2, 3)),
+    "z": ((0, 2), (1, 3)),
+}
 
 
 def _quarter_mesh(shell: SegmentShell) -> SegmentMesh | None:
     if shell.mesh is None:
         return None
-    return quarter_mesh(shell.mesh, plate_thickness(shell.segment, shell.mesh))
+    thickness = plate_thickness(shell.segment, shell.mesh)
+    return quarter_mesh(shell.mesh, thickness, shell.section.mirrors)
 
 
 def _components(part: int) -> Indices:
@@ -253,7 +265,7 @@ def _rows_of(quarter: Sequence[tuple[Array, Indices]]) -> _Rows:
     for part, (places, rows) in enumerate(quarter):
         found.component[rows] = _components(part)
         for axis in (1, 2):
-            found.in_mirror[axis - 1, rows] = on_plane(places, axis)[:, None]
+            found.in_mirrors[axis - 1, rows] = on_plane(places, axis)[:, None]
     return found
 
 

@@ -190,8 +190,8 @@ def test_no_uniform_box_closes_a_clearance_of_14_mm() -> None:
     outer = infer_outer_section(PAPER_AREAS[0], PAPER_SECOND_MOMENTS[0], 494.5 / 302.7)
     message = (
         "no uniform-wall box with A = 0.00701529 m² and J = 0.00021829 m⁴ closes a clearance of "
-        "0.014 m inside 0.494478 m x 0.302686 m x 0.00664457 m; give the section explicitly: "
-        "pads then take up the difference to the stated clearance"
+        "0.014 m in a room of 0.487833 m x 0.296042 m; give the section explicitly: pads then take "
+        "up the difference to the stated clearance"
     )
     with pytest.raises(SectionError, match=f"^{re.escape(message)}$"):
         infer_inner_section(PAPER_AREAS[1], PAPER_SECOND_MOMENTS[1], outer, 14.0e-3)

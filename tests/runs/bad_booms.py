@@ -159,8 +159,8 @@ NUMBERS = {
         "play = 0.014",
         "play = 0.028",
         "segment[2].section: no uniform-wall box with A = 0.00701529 m² and J = 0.00021829 m⁴ "
-        "closes a clearance of 0.014 m inside 0.488874 m x 0.325916 m x 0.00650084 m; give the "
-        "section explicitly: pads then take up the difference to the stated clearance",
+        "closes a clearance of 0.014 m in a room of 0.482373 m x 0.319415 m; give the section "
+        "explicitly: pads then take up the difference to the stated clearance",
     ),
     "walls that fill the box": (
         "height_to_width = 1.5",

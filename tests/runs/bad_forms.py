@@ -29,7 +29,22 @@ FORMS = {
     "unknown key in a section": (
         "height_to_width = 1.5",
         "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065, wall = 2 }",
-        "segment[1].section.wall: unknown key; known ones are height, width, flange, web",
+        "segment[1].section.wall: unknown key; known ones are shape, height, width, flange, web",
+    ),
+    "shape that is none": (
+        "height_to_width = 1.5",
+        "section = { shape = 'star', height = 0.49 }",
+        "segment[1].section.shape: must be 'box' or 'unequal box', got 'star'",
+    ),
+    "missing key of a shape": (
+        "height_to_width = 1.5",
+        "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }",
+        "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
+    ),
+    "section that is no table": (
+        "height_to_width = 1.5",
+        "section = 3",
+        "segment[1].section: must be a table, got 3",
     ),
     "support that is a text": (
         "supports = [0.0, 2.0]",

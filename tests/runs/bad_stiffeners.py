@@ -56,7 +56,7 @@ STIFFENERS = {
         "height_to_width = 1.5",
         "height_to_width = 1.5\ncollars = [{ span = [1.0, 2.0] }]",
         "segment[1].collars[1].thickness: missing; it is the thickness in m that it adds to all "
-        "four walls",
+        "walls",
     ),
     "an unknown key of a collar": (
         "height_to_width = 1.5",

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Lateral, Material, Segment, Support
-from geometry.section import BoxSection, infer_inner_section, infer_outer_section
+from geometry.section import BoxSection, Section, infer_inner_section, infer_outer_section
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 HELD = (Support(0.0), Support(2.0))
@@ -19,7 +19,7 @@ def box_segment(
     name: str,
     start: float,
     end: float,
-    section: BoxSection,
+    section: Section,
     load: float = 0.0,
     supports: tuple[Support, ...] = (),
     lateral_load: float = 0.0,

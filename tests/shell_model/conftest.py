@@ -15,13 +15,15 @@ from mpi4py import MPI
 
 from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
-from geometry.section import BoxSection
+from geometry.section import BoxSection, Section
+from geometry.unequal_box import UnequalBox
 from shell_model.cross_section import Row
 from shell_model.reduction.segment import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)
+UNEQUAL = UnequalBox(0.4889, 0.3259, top=0.010, bottom=0.005, right=0.0065, left=0.0065)
 
 
 @cache
@@ -30,7 +32,7 @@ def box_shell(
     length: float = 10.0,
     supports: tuple[Support, ...] = (),
     masses: tuple[PointMass, ...] = (),
-    section: BoxSection = BOX,
+    section: Section = BOX,
 ) -> SegmentShell:
     """A box on [0, length], of the outer segment's plates unless others are given."""
     segment = replace(box_segment("box", 0.0, length, section, supports=supports), masses=masses)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motions fall into four families that a box's shell keeps apart."""
+"""Motions fall into families that a shell keeps apart: four of a box, two of one mirror."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -18,20 +18,21 @@ from geometry.mesh import (
     diaphragm_breaks,
     mesh_segment,
 )
-from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, FAMILIES, TWISTING, Family
+from geometry.section import Section
+from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
 from shell_model.reduction.symmetry import Folding, Job
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import HELD, box_segment
-from tests.shell_model.conftest import BOX
+from tests.shell_model.conftest import BOX, UNEQUAL
 
 Shells = Callable[..., SegmentShell]
 
 
-def _laden() -> SegmentShell:
+def _laden(section: Section) -> SegmentShell:
     """A box with everything that a segment may have."""
     segment = replace(
-        box_segment("box", 0.0, 10.0, BOX),
+        box_segment("box", 0.0, 10.0, section),
         supports=(Support(0.0, stiffness=1.0e6), Support(2.0)),
         masses=(PointMass(10.0, 70.0),),
         collars=(Collar(4.0, 5.0, 0.004),),
@@ -39,7 +40,7 @@ def _laden() -> SegmentShell:
     )
     breaks = {"start": 0.0, "support": 2.0, "end": 10.0}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
-    mesh = mesh_segment(BOX, breaks, 0.5, closed=tuple(diaphragm_breaks(segment)))
+    mesh = mesh_segment(section, breaks, 0.5, closed=tuple(diaphragm_breaks(segment)))
     return assemble_segment(MPI.COMM_WORLD, segment, mesh)
 
 
@@ -50,13 +51,22 @@ def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
     return folding, folding.jobs(force, force)
 
 
-def test_rigid_motions_belong_to_their_families(box_shell: Shells) -> None:
+@pytest.mark.parametrize(
+    ("section", "own"),
+    [
+        (BOX, {BREATHING: [0], ALONG_Z: [2, 4], ALONG_Y: [1, 5], TWISTING: [3]}),
+        (UNEQUAL, {Family(1, 0): [0, 2, 4], Family(-1, 0): [1, 3, 5]}),
+    ],
+    ids=["box", "unequal"],
+)
+def test_rigid_motions_belong_to_their_families(
+    box_shell: Shells, section: Section, own: Mapping[Family, list[int]]
+) -> None:
     """Reference: analytic. Slides along x, y, z, then turns about them."""
-    shell = box_shell(0.5)
+    shell = box_shell(0.5, section=section)
     motions = shell.rigid_motions()
-    own = {BREATHING: [0], ALONG_Z: [2, 4], ALONG_Y: [1, 5], TWISTING: [3]}
     folding, jobs = _everything(shell)
-    assert [job.family for job in jobs] == list(FAMILIES)
+    assert [job.family for job in jobs] == list(own)
     for job in jobs:
         found = folding.unfold(job.shell().rigid_motions(), job.family, 0)
         expected = motions[:, own[job.family]]
@@ -65,12 +75,17 @@ def test_rigid_motions_belong_to_their_families(box_shell: Shells) -> None:
         assert expected @ combination == pytest.approx(found, abs=1.0e-12)
 
 
-@pytest.mark.parametrize("kind", ["held", "laden"])
+@pytest.mark.parametrize("kind", ["held", "laden", "unequal"])
 def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
     """Reference: other code, the whole shell. The forces that it needs for a family's motion are
     the quarter's in that family, and none in the others.
     """
-    shell = box_shell(0.5, supports=HELD) if kind == "held" else _laden()
+    shells = {
+        "held": lambda: box_shell(0.5, supports=HELD),
+        "laden": lambda: _laden(BOX),
+        "unequal": lambda: _laden(UNEQUAL),
+    }
+    shell = shells[kind]()
     folding, jobs = _everything(shell)
     for job in jobs:
         quarter = job.shell()
@@ -87,9 +102,10 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
             assert np.abs(off).max() < 1.0e-12 * np.abs(expected).max()
 
 
-def test_forces_do_the_same_work_on_the_quarters(box_shell: Shells) -> None:
+@pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])
+def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Section) -> None:
     """Reference: analytic. The families make up every force."""
-    shell = box_shell(0.5, supports=HELD)
+    shell = box_shell(0.5, supports=HELD, section=section)
     folding = Folding(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
     total, parts = np.zeros(2), np.zeros(2)
@@ -119,6 +135,7 @@ def test_what_a_family_does_not_do_is_held_in_the_mirrors() -> None:
     """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
     assert Family(1, -1).held(1) == [(0, 1), (1, 0), (1, 2)]
     assert Family(1, -1).held(2) == [(0, 0), (0, 1), (1, 2)]
+    assert Family(1, 0).held(1) == Family(1, -1).held(1)
 
 
 def _shifted(mesh: SegmentMesh) -> SegmentMesh:
@@ -146,6 +163,6 @@ def test_refuses_a_mesh_that_is_no_mirror_image(
 ) -> None:
     mesh = spoil(mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5))
     shell = assemble_segment(MPI.COMM_WORLD, box_segment("box", 0.0, 10.0, BOX), mesh)
-    message = f"^a segment's {what} is not its own mirror image in y and in z$"
+    message = f"^a segment's {what} is not its own mirror image in y$"
     with pytest.raises(NumericsError, match=message):
         Folding(shell)

@@ -21,7 +21,7 @@ from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
-from tests.shell_model.conftest import BOX
+from tests.shell_model.conftest import BOX, UNEQUAL
 
 Array = npt.NDArray[np.float64]
 
@@ -184,6 +184,24 @@ def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
     assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=1e-3 * abs(top))
     assert top == pytest.approx(-forces["bottom"].axial, rel=1e-3)
     assert abs(forces["top"].shear) < 1e-2 * shear
+
+
+@pytest.mark.slow
+def test_walls_of_unequal_flanges_carry_what_equilibrium_asks() -> None:
+    """Reference: analytic. As above, about the centroid; the thicker flange has less stress."""
+    segment = box_segment("box", 0.0, 10.0, UNEQUAL, 100.0, (Support(0.0, kind="clamped"),))
+    _, shell = at_rest(Boom((segment,), ()), 0.2)
+    forces = wall_forces(shell, 0.0, 0, 5.01)
+    row = shell.row(0, 5.01)
+    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
+    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
+    shear = forces["left"].shear + forces["right"].shear
+    assert shear == pytest.approx(100.0 * arm, rel=0.02)
+    top = forces["top"].axial
+    assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=2e-3 * abs(top))
+    stresses = [forces[p.name].axial / (p.length * p.thickness) for p in UNEQUAL.plates[::2]]
+    middles = [plate.middle[1] for plate in UNEQUAL.plates[::2]]
+    assert stresses[0] / stresses[1] == pytest.approx(middles[0] / middles[1], rel=5e-3)
 
 
 @pytest.mark.slow

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A box whose walls differ: its centroid, its properties about it, its faces, what it refuses."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from geometry.boom import Boom, BoomError
+from geometry.section import BoxSection
+from geometry.unequal_box import UnequalBox
+
+# Outside 0.41 m wide, from -0.31 to 0.32 m; hole 0.39 m wide, from -0.29 to 0.28 m.
+BOX = UnequalBox(height=0.60, width=0.40, top=0.04, bottom=0.02, right=0.01, left=0.01)
+OUTER, INNER = (0.41, -0.31, 0.32), (0.39, -0.29, 0.28)
+
+
+def test_properties_worked_by_hand() -> None:
+    """Reference: analytic, by hand. The outer rectangle less the inner one, with Steiner's part."""
+    areas = [width * (top - bottom) for width, bottom, top in (OUTER, INNER)]
+    middles = [0.5 * (bottom + top) for _, bottom, top in (OUTER, INNER)]
+    area = areas[0] - areas[1]
+    z = (areas[0] * middles[0] - areas[1] * middles[1]) / area
+    assert BOX.area == pytest.approx(area, rel=1e-12)
+    assert BOX.centroid == pytest.approx((0.0, z), rel=1e-12, abs=1e-15)
+    own = [width * (top - bottom) ** 3 / 12.0 for width, bottom, top in (OUTER, INNER)]
+    parts = [i + a * (middle - z) ** 2 for i, a, middle in zip(own, areas, middles, strict=True)]
+    assert BOX.second_moment_of_area == pytest.approx(parts[0] - parts[1], rel=1e-12)
+    aside = (0.63 * 0.41**3 - 0.57 * 0.39**3) / 12.0
+    assert BOX.lateral_second_moment_of_area == pytest.approx(aside, rel=1e-12)
+    assert BOX.polar_second_moment_of_area == pytest.approx(parts[0] - parts[1] + aside, rel=1e-12)
+    # 4 (0.24 m²)² over 2 · 0.6/0.01 + 0.4/0.04 + 0.4/0.02 = 150
+    assert BOX.torsion_constant == pytest.approx(0.2304 / 150.0, rel=1e-12)
+    assert BOX.shear_area == pytest.approx(0.012, rel=1e-12)
+    assert BOX.lateral_shear_area == pytest.approx(0.024, rel=1e-12)
+    assert BOX.perimeter == pytest.approx(2.0, rel=1e-12)
+    assert BOX.enclosed_area == pytest.approx(0.24, rel=1e-12)
+
+
+def test_properties_against_integration_over_the_plane() -> None:
+    """Reference: other code, scipy's adaptive quadrature over the rectangle less its hole."""
+
+    def moment(power: int) -> float:
+        total = 0.0
+        for sign, (width, bottom, top) in ((1.0, OUTER), (-1.0, INNER)):
+            value, _ = dblquad(
+                lambda z, _: (z - BOX.centroid[1]) ** power,
+                -0.5 * width, 0.5 * width, bottom, top, epsabs=1e-14, epsrel=1e-13,
+            )  # fmt: skip
+            total += sign * value
+        return total
+
+    assert BOX.area == pytest.approx(moment(0), rel=1e-11)
+    assert moment(1) == pytest.approx(0.0, abs=1e-13)
+    assert BOX.second_moment_of_area == pytest.approx(moment(2), rel=1e-11)
+
+
+def test_with_equal_walls_it_is_the_box() -> None:
+    """Reference: other code, the box's own formulas."""
+    box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
+    same = UnequalBox(0.60, 0.40, 0.04, 0.04, 0.01, 0.01)
+    for name in (
+        "area", "second_moment_of_area", "lateral_second_moment_of_area", "torsion_constant",
+        "shear_area", "lateral_shear_area",
+    ):  # fmt: skip
+        assert getattr(same, name) == pytest.approx(getattr(box, name), rel=1e-13), name
+    assert (same.plates, same.faces, same.mirrors) == (box.plates, box.faces, box.mirrors)
+    for direction in ("y", "z"):
+        assert same.carriers(direction) == box.carriers(direction)
+
+
+def test_on_its_side() -> None:
+    """Reference: analytic, y and z exchanged."""
+    side = BOX.turned()
+    assert side.second_moment_of_area == BOX.lateral_second_moment_of_area
+    assert side.lateral_second_moment_of_area == BOX.second_moment_of_area
+    assert side.centroid == BOX.centroid[::-1]
+    assert (BOX.mirrors, side.mirrors) == (("y",), ("z",))
+    assert side.turned() == BOX
+
+
+def test_faces_count_from_the_centroid() -> None:
+    """Reference: analytic. The outer surfaces are 0.63 m apart, the inner ones 0.57 m."""
+    z = BOX.centroid[1]
+    top, bottom = BOX.face("z", 1), BOX.face("z", -1)
+    assert (top.outside, bottom.outside) == pytest.approx((0.32 - z, -0.31 - z), rel=1e-12)
+    assert (top.inside, bottom.inside) == pytest.approx((0.28 - z, -0.29 - z), rel=1e-12)
+    inner = BoxSection(height=0.53, width=0.30, flange=0.02, web=0.02)
+    assert BOX.room_around(inner, "z") == pytest.approx(0.02, rel=1e-12)
+    assert BOX.offset_of(inner, "z") == pytest.approx(-0.005 - z, rel=1e-12)
+    assert inner.offset_of(inner, "z") == 0.0
+
+
+def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None:
+    """Reference: analytic. The parts sum to one, and their resultant is in the centroid."""
+    carriers = BOX.carriers("y")
+    assert sum(part for _, part in carriers) == pytest.approx(1.0, rel=1e-15)
+    arms = [part * BOX.plates[number].middle[1] for number, part in carriers]
+    assert sum(arms) == pytest.approx(0.0, abs=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"top": 0.0}, "top must be a positive number of m, got 0.0"),
+        (
+            {"top": 0.7, "bottom": 0.5},
+            "flanges of 0.7 m and 0.5 m leave no room in a box 0.6 m high; they must be thinner",
+        ),
+        (
+            {"left": 0.8},
+            "webs of 0.01 m and 0.8 m leave no room in a box 0.4 m wide; they must be thinner",
+        ),
+    ],
+)
+def test_refuses_what_is_no_box(change: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        replace(BOX, **change)
+
+
+def test_a_boom_refuses_sections_that_bend_sideways(paper_boom: Boom, spatial_boom: Boom) -> None:
+    crooked = UnequalBox(0.45, 0.25, 0.006, 0.006, 0.006, 0.005)
+    message = (
+        "segment[2].section: does not mirror itself in y, and would bend sideways under its weight"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _with_inner(paper_boom, crooked)
+    message = (
+        "segment[2].section: does not mirror itself in z, and would twist as it bends sideways, "
+        "which no model in space knows; leave lateral_play out, or make the flanges alike"
+    )
+    unequal = UnequalBox(0.45, 0.25, 0.008, 0.005, 0.005, 0.005)
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _with_inner(spatial_boom, unequal)
+    assert _with_inner(paper_boom, unequal).segments[1].section is unequal
+
+
+def _with_inner(boom: Boom, section: UnequalBox) -> Boom:
+    outer, inner = boom.segments
+    return replace(boom, segments=(outer, replace(inner, section=section)))
+
+
+def test_places_on_plates() -> None:
+    """Reference: analytic. Ends and middles are on them, the middle of the section is not."""
+    places = np.array([place for plate in BOX.plates for place in (plate.start, plate.middle)])
+    assert BOX.on_plates(places).all()
+    assert not BOX.on_plates(np.vstack([[0.0, 0.0], 1.001 * places])).any()
