@@ -120,6 +120,45 @@ class Trajectory:
         )
         return cls(data, states)
 
+    @classmethod
+    def of_states(
+        cls, system: GapSystem, time: Array, states: Array, velocities: Array
+    ) -> Trajectory:
+        """What an integrator of one's own has found, of a system without losses.
+
+        Forces are those at the output times, and first contact is told to an output step.
+
+        Args:
+            system: under constant loads, all of them in ``load``.
+            time: (num_times,) in s, evenly spaced.
+            states, velocities: (num_times, num_modes) a and ȧ.
+        """
+        gaps = states @ system.rows.T
+        forces = np.zeros(gaps.shape)
+        energies = np.zeros((time.size, len(ENERGIES)))
+        energies[:, 0] = 0.5 * (velocities**2).sum(axis=1)
+        energies[:, 1] = 0.5 * states**2 @ system.omega2
+        energies[:, 3] = (states - states[0]) @ system.load
+        for row, law in enumerate(system.laws):
+            forces[:, row] = law.force(gaps[:, row])
+            energies[:, 2] += law.energy(gaps[:, row])
+        pressed = forces != 0.0
+        touching = pressed.any(axis=1)
+        return cls.record(
+            system,
+            time=time,
+            states=states,
+            energies=energies,
+            row_gaps=gaps,
+            row_forces=forces,
+            row_peaks=forces,
+            row_frictions=np.zeros((time.size, 0)),
+            step=float(time[1] - time[0]),
+            steps=time.size - 1,
+            first_contact=float(time[np.argmax(touching)]) if touching.any() else np.nan,
+            contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
+        )
+
     @property
     def time(self) -> Array:
         """(num_times,) in s."""

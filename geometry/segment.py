@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 from geometry.section import Section
 
@@ -146,6 +146,48 @@ class Segment:
     lateral: Lateral | None = None
     collars: tuple[Collar, ...] = ()
     diaphragms: tuple[Diaphragm, ...] = ()
+
+    @classmethod
+    def of_section(
+        cls,
+        name: str,
+        start: float,
+        end: float,
+        material: Material,
+        section: Section,
+        **others: Any,
+    ) -> Segment:
+        """A segment whose beam numbers are those of its plates, in space as in the plane.
+
+        >>> import protractile as pt
+        >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+        >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.01)
+        >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, load=-100.0)
+        >>> round(arm.mass_per_length, 6)
+        109.9
+
+        Args:
+            name, start, end, material, section, others: as of :class:`Segment`.
+        """
+        density, second_moment = material.density, section.second_moment_of_area
+        sideways = section.lateral_second_moment_of_area
+        lateral = Lateral(
+            second_moment_of_area=sideways,
+            rotary_inertia=density * sideways,
+            torsion_constant=section.torsion_constant,
+            polar_inertia=density * section.polar_second_moment_of_area,
+        )
+        return cls(
+            name,
+            start,
+            end,
+            material,
+            mass_per_length=section.mass_per_length(density),
+            second_moment_of_area=second_moment,
+            rotary_inertia=density * second_moment,
+            section=section,
+            **{"lateral": lateral, **others},
+        )
 
     @property
     def length(self) -> float:

@@ -46,13 +46,14 @@ class Place:
     steps: tuple[str | int, ...]
     name: str
 
-    def put(self, tables: Tables, number: float) -> None:
+    def put(self, tables: Tables, value: Any) -> None:
         """Set it, tables that are not given made on the way."""
         here: Any = tables
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
         # A whole number fits keys of both kinds.
-        here[self.steps[-1]] = int(number) if number.is_integer() else number
+        whole = isinstance(value, float) and value.is_integer()
+        here[self.steps[-1]] = int(value) if whole else value
 
     @property
     def shapes_sections(self) -> bool:
@@ -105,14 +106,9 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
             raise BadInput(file, option, "given twice; give all its values at once")
         if key.split(".")[0].split("[")[0] == "ensemble":
             raise BadInput(file, option, "a sweep runs no ensembles; leave it out")
-        steps = [_STEP.fullmatch(step) for step in key.split(".")]
         try:
-            path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
-            if len(path) < len(steps):
-                raise _Unplaced("not understood; give a key such as joint[1].play")
-            places = tuple(_places(tables, path, Place((), "")))
-            variations.append(Variation(key, _values(numbers), places))
-        except _Unplaced as reason:
+            variations.append(Variation(key, _values(numbers), find(key, tables)))
+        except Unplaced as reason:
             raise BadInput(file, option, str(reason)) from None
     num_points = math.prod(len(variation.values) for variation in variations)
     if num_points > MOST_POINTS:
@@ -138,8 +134,21 @@ def unit_of(place: Place, case: Case) -> str:
     return str(units.pop()) if len(units) == 1 else ""
 
 
-class _Unplaced(Exception):
-    """Why an option has no place in the case, or no values."""
+class Unplaced(Exception):
+    """Why a key has no place in the case, or an option no values."""
+
+
+def find(key: str, tables: Tables) -> tuple[Place, ...]:
+    """The places of a case that a key means.
+
+    Raises:
+        Unplaced: there are none.
+    """
+    steps = [_STEP.fullmatch(step) for step in key.split(".")]
+    path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
+    if len(path) < len(steps):
+        raise Unplaced("not understood; give a key such as joint[1].play")
+    return tuple(_places(tables, path, Place((), "")))
 
 
 def _places(
@@ -151,7 +160,7 @@ def _places(
         return
     (name, number), rest = path[0], path[1:]
     if not isinstance(here, Mapping):
-        raise _Unplaced(f"{before.name} is not a table; end the key there")
+        raise Unplaced(f"{before.name} is not a table; end the key there")
     found = here.get(name)
     place = Place((*before.steps, name), f"{before.name}.{name}" if before.name else name)
     if found is None:
@@ -160,12 +169,12 @@ def _places(
         return
     tables = isinstance(found, list) and not _are_numbers(found)
     if tables and not found:
-        raise _Unplaced(f"the case has no {place.name}; there is nothing to vary")
+        raise Unplaced(f"the case has no {place.name}; there is nothing to vary")
     if isinstance(number, int):
         if not isinstance(found, list):
-            raise _Unplaced(f"{place.name} is not a list; leave out [{number}]")
+            raise Unplaced(f"{place.name} is not a list; leave out [{number}]")
         if not 1 <= number <= len(found):
-            raise _Unplaced(
+            raise Unplaced(
                 f"the case has no {place.name}[{number}], its last one is "
                 f"{place.name}[{len(found)}]"
             )
@@ -186,20 +195,20 @@ def _are_numbers(values: Sequence[Any]) -> bool:
 def _values(text: str) -> tuple[float, ...]:
     parts = [part.strip() for part in text.split(":")]
     if len(parts) == 3 and not _WHOLE.fullmatch(parts[2]):
-        raise _Unplaced(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
+        raise Unplaced(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
     if len(parts) == 3:
         start, stop, count = _number(parts[0]), _number(parts[1]), int(parts[2])
         if not 2 <= count <= MOST_POINTS:
-            raise _Unplaced(f"COUNT must be from 2 to {MOST_POINTS}, got {count}")
+            raise Unplaced(f"COUNT must be from 2 to {MOST_POINTS}, got {count}")
         numbers = [float(f"{x:.{_DIGITS}g}") for x in np.linspace(start, stop, count)]
     elif len(parts) == 1:
         numbers = [_number(part) for part in text.split(",")]
     else:
-        raise _Unplaced(f"{text!r} is not understood; {_REMEDY}")
+        raise Unplaced(f"{text!r} is not understood; {_REMEDY}")
     if len(numbers) == 1:
-        raise _Unplaced("one value varies nothing; give two or more")
+        raise Unplaced("one value varies nothing; give two or more")
     if len(set(numbers)) < len(numbers):
-        raise _Unplaced(f"a value is given twice in {text!r}; give each once")
+        raise Unplaced(f"a value is given twice in {text!r}; give each once")
     return tuple(sorted(numbers))
 
 
@@ -209,5 +218,5 @@ def _number(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise _Unplaced(f"must be finite numbers, got {text.strip()!r}; {_REMEDY}")
+        raise Unplaced(f"must be finite numbers, got {text.strip()!r}; {_REMEDY}")
     return number

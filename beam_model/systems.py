@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""From a boom to its gap system in one call, for booms that no case file declares."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.kantorovich import Base, kantorovich_segment
+from beam_model.segment_model import gap_system
+from dynamics.contact import ContactLaw, PowerContact
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+
+
+def joint_laws(boom: Boom) -> list[ContactLaw]:
+    """The power law along z that each joint of a boom states."""
+    return [
+        PowerContact(joint.stiffness, joint.exponent, joint.clearance, joint.stiffness_below)
+        for joint in boom.joints
+    ]
+
+
+def lateral_joint_laws(boom: Boom) -> list[ContactLaw]:
+    """The same along y, as stiff on both sides; none for a flat boom."""
+    return [
+        PowerContact(joint.stiffness, joint.exponent, joint.lateral_clearance)
+        for joint in boom.joints
+        if joint.lateral_clearance is not None
+    ]
+
+
+def finite_element_system(
+    boom: Boom,
+    element_length: float = 0.5,
+    theory: Theory = "euler-bernoulli",
+    laws: Sequence[ContactLaw] | None = None,
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    """A boom by beam finite elements.
+
+    >>> import protractile as pt
+    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
+    >>> wall = pt.Support(0.0, "clamped")
+    >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
+    >>> system = pt.finite_element_system(pt.Boom((arm,), ()))
+    >>> print(f"{system.frequencies[0]:.3f} Hz")
+    4.724 Hz
+
+    Args:
+        boom: flat or in space.
+        element_length: largest length of an element in m.
+        theory: ``timoshenko`` needs the segments' sections.
+        laws: one for each joint, along z; :func:`joint_laws` unless given.
+        rotary_inertia: keep I_p of (3).
+
+    Raises:
+        BoomError: the boom lacks what the theory needs.
+    """
+    models = [
+        finite_element_segment(
+            segment, element_length, boom.stations_of(number), theory, rotary_inertia
+        )
+        for number, segment in enumerate(boom.segments)
+    ]
+    return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))
+
+
+def kantorovich_system(
+    boom: Boom,
+    terms: Sequence[int],
+    base: Base = "complete",
+    laws: Sequence[ContactLaw] | None = None,
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    """A boom by Kantorovich series.
+
+    >>> import protractile as pt
+    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
+    >>> wall = pt.Support(0.0, "clamped")
+    >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
+    >>> system = pt.kantorovich_system(pt.Boom((arm,), ()), terms=[8])
+    >>> print(f"{system.frequencies[0]:.3f} Hz")
+    4.724 Hz
+
+    Args:
+        boom: flat or in space.
+        terms: number of functions of each segment.
+        base: which reading of (29) and (31).
+        laws: one for each joint, along z; :func:`joint_laws` unless given.
+        rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
+
+    Raises:
+        BoomError: the boom has what the base cannot take.
+    """
+    models = [
+        kantorovich_segment(segment, count, base, rotary_inertia)
+        for segment, count in zip(boom.segments, terms, strict=True)
+    ]
+    return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))

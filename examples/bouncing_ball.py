@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A ball on a springy floor: a gap system of one's own, moved from contact to contact."""
+
+import numpy as np
+
+import protractile as pt
+
+HEIGHT, GRAVITY, STIFFNESS = 0.5, 9.81, 1.0e6
+
+
+def fall() -> pt.Trajectory:
+    """One second of a ball of 1 kg, let go at rest."""
+    ball = pt.GapSystem(
+        omega2=np.array([0.0]),
+        load=np.array([-GRAVITY]),
+        rows=np.array([[1.0]]),
+        laws=[pt.PowerContact(STIFFNESS, 1.0, clearance=0.0).lower()],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"height": pt.Observer(np.array([1.0]))},
+    )
+    return pt.simulate(ball, 1.0, 1.0e-3, position=[HEIGHT], integrator=pt.Events())
+
+
+if __name__ == "__main__":
+    motion = fall()
+    print(f"touches at {motion.first_contact:.6f} s, energy within {motion.energy_residual:.1e}")
+    motion.data["height"].plot()

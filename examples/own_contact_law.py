@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A contact law of one's own, a rubber stop F = k p + c p³, and a mass that runs into it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import protractile as pt
+
+
+@dataclass(frozen=True, slots=True)
+class RubberStop(pt.ContactLaw):
+    """Linear at first, then ever stiffer; above the gap alone."""
+
+    linear: float
+    cubic: float
+    clearance: float
+    damping: float = 0.0
+
+    @property
+    def terms(self) -> tuple[pt.Term, ...]:
+        powers = (self.linear, 1.0), (self.cubic, 3.0)
+        return tuple(pt.Term(1.0, k, self.clearance, n) for k, n in powers)
+
+    def one_sided(self, side: int) -> "RubberStop | None":
+        return self if side > 0 else None
+
+    def shared(self, weight: float) -> "RubberStop":
+        return replace(self, linear=weight * self.linear, cubic=weight * self.cubic)
+
+    def behind(self, clearance: float) -> "RubberStop":
+        return replace(self, clearance=clearance)
+
+
+def strike(law: pt.ContactLaw, speed: float) -> pt.Trajectory:
+    """A free mass of 1 kg at a speed in m/s."""
+    one, place = np.ones(1), np.array([0])
+    mass = pt.GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], {})
+    return pt.simulate(mass, 0.1, velocity=[speed])

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sweep in Python: how fast a mass leaves a stop whose damping is meant for a restitution."""
+
+import numpy as np
+
+import protractile as pt
+
+SPEED = 2.0
+
+
+def rebound(restitution: float) -> float:
+    """Speed after the impact over speed before it."""
+    damping = pt.restitution_damping(restitution, SPEED)
+    law = pt.PowerContact(1.0e6, 1.5, clearance=0.01, damping=damping).upper()
+    one, place = np.ones(1), np.array([0])
+    seen = {"place": pt.Observer(one)}
+    mass = pt.GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], seen)
+    path = pt.simulate(mass, 0.1, 1.0e-4, velocity=[SPEED]).data["place"].values
+    return float((path[-2] - path[-1]) / (1.0e-4 * SPEED))
+
+
+if __name__ == "__main__":
+    for asked in np.linspace(0.2, 1.0, 5):
+        print(f"{asked:.1f}: {rebound(asked):.4f}")

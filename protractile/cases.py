@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cases from Python: load one, change it, run it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from pydantic import ValidationError
+
+from runs.case import reading
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.pipeline.results import Results
+from runs.pipeline.run import run_case as run_models
+from runs.sweep.variation import Unplaced, find
+
+# How messages call a case that has left its file.
+_CASE = "case"
+
+
+def load_case(path: str | Path) -> Case:
+    """Read and check a case file.
+
+    >>> import protractile as pt
+    >>> case = pt.load_case(pt.CASES / "paper.toml")
+    >>> [segment.name for segment in case.segments]
+    ['outer', 'inner']
+
+    Args:
+        path: of the file; those in ``CASES`` come with the program.
+
+    Raises:
+        BadInput: the file cannot be read, or what it says cannot be.
+    """
+    return reading.load(str(path))
+
+
+def change(case: Case, **values: Any) -> Case:
+    """The case with some of its values changed, checked as if its file had said so.
+
+    >>> import protractile as pt
+    >>> case = pt.load_case(pt.CASES / "paper.toml")
+    >>> case = pt.change(case, **{"joint.play": 0.02, "time.duration": 1.0})
+    >>> case.joints[0].play, case.time.duration
+    (0.02, 1.0)
+
+    Args:
+        case: which stays as it is.
+        values: by key, as ``protractile sweep --vary`` has them: ``joint[1].play``, or
+            ``joint.play`` of all joints.
+
+    Raises:
+        BadInput: a key that the case cannot have, or a value that cannot be.
+    """
+    tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    for key, value in values.items():
+        try:
+            for place in find(key, tables):
+                place.put(tables, value)
+        except Unplaced as reason:
+            raise BadInput(_CASE, key, str(reason)) from None
+    try:
+        changed = Case.model_validate(tables)
+    except ValidationError as error:
+        raise BadInput.from_validation(_CASE, error) from None
+    reading.check(changed, _CASE)
+    return changed
+
+
+def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
+    """Run the models of a case in this process, nothing written but the user's cache of shells.
+
+    >>> import protractile as pt
+    >>> case = pt.load_case(pt.CASES / "coarse.toml")
+    >>> results = pt.run_case(case, models=["kantorovich-4"])
+    >>> results.trajectories["tip"].dims
+    ('model', 'time')
+
+    Args:
+        case: of :func:`load_case` or :func:`change`.
+        models: their names; all unless given.
+
+    Returns:
+        The results. ``results.trajectories["tip"].plot.line(x="time")`` draws the tips; a model
+        that cannot be computed is in ``summary["failures"]``, with the reason.
+
+    Raises:
+        BadInput: a model that the case does not know.
+        NumericsError: no model can be computed.
+    """
+    chosen = reading.select(case, _CASE, models)
+    comm = None
+    if any(model.kind == "shell" for model in chosen.models):
+        from mpi4py import MPI
+
+        comm = MPI.COMM_SELF
+    with TemporaryDirectory() as meshes:
+        run = run_models(chosen, _CASE, comm, Path(meshes), _say_nothing, Cache.of_user())
+    assert run is not None
+    return run.results
+
+
+def _say_nothing(model: str, stage: str, part: float) -> None:
+    """A notebook has no progress to show."""

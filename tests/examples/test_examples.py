@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The examples of a notebook's length give the numbers that they should."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import protractile as pt
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture
+def example(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The module that a test is about, as if run where it stands."""
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    yield import_module(request.param)
+    for path in EXAMPLES.glob("*.py"):
+        sys.modules.pop(path.stem, None)
+
+
+def of(name: str) -> pytest.MarkDecorator:
+    return pytest.mark.parametrize("example", [name], indirect=True)
+
+
+@of("bouncing_ball")
+def test_a_ball_bounces(example: ModuleType) -> None:
+    """Reference: analytic. A fall lasts √(2h/g), a contact (2/ω)(π − atan(v ω/g))."""
+    motion = example.fall()
+    fall = np.sqrt(2.0 * example.HEIGHT / example.GRAVITY)
+    omega = np.sqrt(example.STIFFNESS)
+    contact = 2.0 / omega * (np.pi - np.arctan(fall * omega))
+    assert motion.first_contact == pytest.approx(fall, rel=1e-9)
+    height = motion.data["height"].interp(time=2.0 * fall + contact, method="quadratic")
+    assert float(height) == pytest.approx(example.HEIGHT, rel=1e-6)
+    assert motion.energy_residual < 1e-9
+
+
+@of("change_a_case")
+def test_a_changed_case_is_that_of_a_changed_file(example: ModuleType, tmp_path: Path) -> None:
+    """Reference: other code path, a case file with the number in it."""
+    text = (pt.CASES / "coarse.toml").read_text("utf-8")
+    file = tmp_path / "case.toml"
+    file.write_text(text.replace("play = 0.014", "play = 0.007"), "utf-8")
+    expected = pt.run_case(pt.load_case(file), models=["kantorovich-5"])
+    found = example.run(0.007)
+    np.testing.assert_array_equal(found.trajectories["tip"], expected.trajectories["tip"])
+    assert found.summary["models"]["kantorovich-5"]["first_contact"] < 0.1
+
+
+@of("boom_in_python")
+def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
+    """Reference: analytic. A uniform load q moves a free uniform beam by q t²/2m, unbent."""
+    mass = example.boom().segments[1].mass_per_length
+    expected = np.sqrt(2.0 * example.CLEARANCE * mass / -example.LOAD)
+    motion = example.move()
+    assert motion.first_contact == pytest.approx(expected, rel=1e-4)
+    assert motion.energy_residual < 1e-3
+
+
+@of("what_play_adds")
+def test_play_turns_the_fly(example: ModuleType) -> None:
+    """Reference: analytic. The boom is statically determinate: the fly rises by Δ at 6 m, sinks by
+    Δ at 8 m, and so by 7 Δ at 14 m; contacts give way by less than a thousandth of it."""
+    added = example.deflection(tied=False) - example.deflection(tied=True)
+    assert added == pytest.approx(-7.0 * 5.0e-3, rel=2e-3)
+
+
+@of("own_contact_law")
+def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
+    """Reference: analytic. ½ m v² = ½ k p² + ¼ c p⁴ at the deepest."""
+    law, speed = example.RubberStop(1.0e5, 1.0e9, 0.01), 3.0
+    depth = np.sqrt((np.sqrt(law.linear**2 + 2.0 * law.cubic * speed**2) - law.linear) / law.cubic)
+    motion = example.strike(law, speed)
+    peak = float(motion.data["contact_force_peak"].max())
+    assert peak == pytest.approx(law.linear * depth + law.cubic * depth**3, rel=1e-3)
+    assert motion.energy_residual < 1e-4
+
+
+@of("own_integrator")
+def test_another_integrator_finds_the_same(example: ModuleType) -> None:
+    """Reference: other code, the motion from contact to contact; before chaos parts the two."""
+    system = pt.GapSystem(
+        omega2=np.array([4.0, 31.0]),
+        load=np.array([2.0, 3.0]),
+        rows=np.array([[0.8, -0.6]]),
+        laws=[pt.PowerContact(1.0e4, 2.0, clearance=0.02)],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"tip": pt.Observer(np.array([1.0, 0.4]))},
+    )
+    other = pt.simulate(system, 2.0, 1e-2, integrator=example.RungeKutta())
+    ours = pt.simulate(system, 2.0, 1e-2, integrator=pt.Events())
+    assert ours.data.attrs["contact_changes"] >= 2
+    np.testing.assert_allclose(other.data["tip"], ours.data["tip"], atol=1e-6)
+    assert other.first_contact == pytest.approx(ours.first_contact, abs=1e-2)
+    assert other.energy_residual < 1e-6
+    ensemble = pt.integrate_ensemble(
+        pt.Motion(system, 1.0, 1e-2), 2, 1e-3, 7, "load", example.RungeKutta()
+    )
+    np.testing.assert_allclose(ensemble["tip"][0], other.data["tip"][:101], atol=1e-9)
+
+
+@of("sweep")
+def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
+    """Reference: analytic, the restitution that the damping is made for."""
+    for asked in (0.3, 0.7, 1.0):
+        assert example.rebound(asked) == pytest.approx(asked, abs=2e-3)
