@@ -238,10 +238,7 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """Transfinite patches of a diaphragm, one in each corner; gives their surfaces."""
     geo = gmsh.model.geo
     plates, count = section.plates, len(ring.points)
-    low, high = (
-        [end(plate.start[axis] for plate in plates) for axis in (0, 1)] for end in (min, max)
-    )
-    middle = geo.addPoint(x, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
+    middle = geo.addPoint(x, 0.5 * sum(section.reach("y")), 0.5 * sum(section.reach("z")))
     spokes = {}
     for j in range(1, count, 2):
         spokes[j] = geo.addLine(ring.points[j], middle)

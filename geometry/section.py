@@ -190,10 +190,15 @@ class Section(Protocol):
         """Mass of a unit of length in kg/m, for a density in kg/m³."""
         return density * self.area
 
+    def reach(self, direction: Direction) -> tuple[float, float]:
+        """The lowest and the highest coordinate of the mid-lines along a direction, in m."""
+        reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
+        return min(reached), max(reached)
+
     def size(self, direction: Direction) -> float:
         """How far the mid-lines reach along a direction, from end to end, in m."""
-        reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
-        return max(reached) - min(reached)
+        low, high = self.reach(direction)
+        return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
         """The one with this outward normal; of ``side`` the sign alone counts."""

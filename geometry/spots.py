@@ -84,7 +84,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
 
 def _reached(section: Section, axis: Direction) -> tuple[float, float]:
     """Coordinates in m of the section's ends along an axis, on the positive side of a mirror."""
-    low, high = section.face(axis, -1).offset, section.face(axis, 1).offset
+    low, high = section.reach(axis)
     return (0.0 if axis in section.mirrors else low), high
 
 

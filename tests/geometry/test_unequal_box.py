@@ -9,8 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import dblquad
+from scipy.spatial import cKDTree
 
 from geometry.boom import Boom, BoomError
+from geometry.mesh import mesh_segment, plain_thickness
 from geometry.section import BoxSection
 from geometry.unequal_box import UnequalBox
 
@@ -142,6 +144,24 @@ def test_a_boom_refuses_sections_that_bend_sideways(paper_boom: Boom, spatial_bo
 def _with_inner(boom: Boom, section: UnequalBox) -> Boom:
     outer, inner = boom.segments
     return replace(boom, segments=(outer, replace(inner, section=section)))
+
+
+def test_each_wall_of_its_mesh_has_its_place_area_and_thickness() -> None:
+    """Reference: analytic. The mesh is its own image in y; a diaphragm fills the box."""
+    mesh = mesh_segment(BOX, {"start": 0.0, "end": 2.0}, 0.1, closed=("end",))
+    corners = mesh.points[mesh.triangles]
+    areas = 0.5 * np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    thickness = plain_thickness(BOX, mesh)
+    for number, plate in enumerate(BOX.plates):
+        mine = mesh.walls == number
+        assert plate.distance(corners[mine].reshape(-1, 3)[:, 1:]).max() < 1e-14
+        assert areas[mine].sum() == pytest.approx(2.0 * plate.length, rel=1e-12)
+        assert (thickness[mine] == plate.thickness).all()
+    assert areas[~mesh.on_walls].sum() == pytest.approx(BOX.enclosed_area, rel=1e-12)
+    mirrored = mesh.points * [1.0, -1.0, 1.0]
+    assert cKDTree(mesh.points).query(mirrored)[0].max() < 1e-12
 
 
 def test_places_on_plates() -> None:
