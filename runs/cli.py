@@ -323,10 +323,9 @@ def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
         BadInput: a shell is asked for, and what it takes is not installed.
     """
     from runs.case.messages import BadInput
-    from runs.case.schema import ShellTable
 
     for number, model in enumerate(case.models, start=1):
-        if isinstance(model, ShellTable):
+        if model.meshed:
             try:
                 import_module("shell_model.boom_shell")
                 from mpi4py import MPI

@@ -43,8 +43,10 @@ from runs.benchmarks.generic_solvers import (
 from runs.benchmarks.timing import NOISE, by_turns, shown
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import Case, KantorovichTable, ShellTable
-from runs.pipeline.models import beam_system, reduce_shell
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case
+from runs.pipeline.models import build, workshop
 from runs.report.tables import TextTable, wide_console, write
 
 PAPER = CASES / "paper.toml"
@@ -128,8 +130,7 @@ class Method:
 def five_terms(case: Case) -> GapSystem:
     """The paper's five-term series."""
     model = next(m for m in case.models if m.name == "kantorovich-5")
-    assert isinstance(model, KantorovichTable)
-    return beam_system(case, build_boom(case), model)
+    return build(case, build_boom(case), model).system
 
 
 def compare(
@@ -327,7 +328,7 @@ def ensembles(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
 
 def _shell_system(case: Case) -> GapSystem | None:
     """The case's shell, reduced; None without one, or without FEniCSx."""
-    models = [model for model in case.models if isinstance(model, ShellTable)]
+    models = of_kind(ShellTable, case.models)
     try:
         mpi = import_module("mpi4py.MPI")
         import_module("shell_model.boom_shell")
@@ -338,7 +339,7 @@ def _shell_system(case: Case) -> GapSystem | None:
     with TemporaryDirectory() as folder:
         meshes = Path(folder) / "meshes"
         boom = build_boom(case)
-        reduced = reduce_shell(case, boom, models[0], mpi.COMM_SELF, meshes, lambda *_: None)
+        reduced = build(case, boom, models[0], workshop(mpi.COMM_SELF, meshes))
     return reduced.system
 
 

@@ -28,7 +28,8 @@ from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
-from runs.case.schema import ShellTable
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
 from runs.report.tables import TextTable, wide_console, write
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
@@ -222,7 +223,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED[name]))
     boom = build_boom(case)
-    model = next(model for model in case.models if isinstance(model, ShellTable))
+    model = of_kind(ShellTable, case.models)[0]
     options = ShellOptions(float(size), contact_line=model.contact_line)
     idle = comm.allreduce(_peak())
     peaks: dict[str, float] = {}

@@ -26,16 +26,10 @@ from geometry.section import (
     infer_outer_section,
 )
 from runs.case import actions
+from runs.case.kinds.model import Joined
 from runs.case.messages import choices
-from runs.case.schema import (
-    Case,
-    ContactTable,
-    FiniteElementTable,
-    JointTable,
-    Model,
-    SegmentTable,
-    ShellTable,
-)
+from runs.case.schema import Case, JointTable, Model, SegmentTable
+from runs.case.table import ContactTable
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -53,6 +47,11 @@ def build_boom(case: Case) -> Boom:
     sections = _sections(case, joints)
     segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
     return Boom(segments, joints, actions.loads(case, segments), actions.stops(case, segments))
+
+
+def joined(case: Case, boom: Boom, model: Model) -> Joined:
+    """The boom of a case with the contacts of its joints, as a model sees them."""
+    return Joined(boom, contact_laws(case, model), lateral_laws(case, model))
 
 
 def contact_laws(case: Case, model: Model) -> list[ContactLaw]:
@@ -85,13 +84,6 @@ def _law(
     blow = table.restitution
     damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
     return PowerContact(stiffness, exponent, clearance, below, damping)
-
-
-def needs_plates(model: Model) -> bool:
-    """Whether a model cannot do without the sections."""
-    return isinstance(model, ShellTable) or (
-        isinstance(model, FiniteElementTable) and model.theory == "timoshenko"
-    )
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
@@ -241,7 +233,7 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
         raise BoomError(f"{where}.height_to_width", "the section is given; leave one of them out")
-    if not any(isinstance(model, ShellTable) for model in case.models):
+    if not any(model.meshed for model in case.models):
         return
     for key, given, own in (
         ("mass_per_length", table.mass_per_length, section.mass_per_length(case.material.density)),
@@ -296,6 +288,6 @@ def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Secti
             return infer_inner_section(area, second_moment, *hint)
         return infer_outer_section(area, second_moment, hint)
     except SectionError as error:
-        if any(needs_plates(model) for model in case.models):
+        if any(model.needs_plates for model in case.models):
             raise BoomError(f"segment[{index + 1}].section", str(error)) from None
         return None

@@ -11,8 +11,10 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from runs.case import schema
+from runs.case.kinds import KINDS
 from runs.case.limits import NAME
 from runs.case.sections import SHAPES
+from runs.case.table import ContactTable, RestitutionTable
 from runs.process.shown import shown
 
 _TABLES: Mapping[str, type[BaseModel]] = {
@@ -24,20 +26,18 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "collars": schema.CollarTable,
     "diaphragms": schema.DiaphragmTable,
     "segment": schema.SegmentTable,
-    "restitution": schema.RestitutionTable,
+    "restitution": RestitutionTable,
     "pad": schema.PadTable,
     "joint": schema.JointTable,
-    "contact": schema.ContactTable,
+    "contact": ContactTable,
     "stop": schema.StopTable,
     "load": schema.LoadTable,
     "payload": schema.PayloadTable,
     "base": schema.BaseTable,
     "start": schema.StartTable,
     "damping": schema.DampingTable,
-    "kantorovich": schema.KantorovichTable,
-    "finite-element": schema.FiniteElementTable,
-    "shell": schema.ShellTable,
     **SHAPES,
+    **KINDS,
 }
 
 # Names that a message lists of those that would be right.
@@ -180,7 +180,7 @@ def _unknown_key(location: Sequence[int | str]) -> str:
 
 
 def _kinds() -> str:
-    return choices(["kantorovich", "finite-element", "shell"])
+    return choices(list(KINDS))
 
 
 def _shown(value: Any) -> str:

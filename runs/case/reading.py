@@ -12,22 +12,18 @@ from typing import TypeVar
 import numpy as np
 from pydantic import ValidationError
 
-from beam_model.kantorovich import bending_basis
 from geometry.boom import Boom, BoomError
-from runs.case.build import build_boom, check_names, needs_plates
+from runs.case.build import build_boom, check_names, joined
+from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, MOST_TIMES
 from runs.case.messages import BadInput, choices
 from runs.case.schema import (
     Case,
     EnsembleTable,
-    FiniteElementTable,
     HistoryTable,
-    KantorovichTable,
     Model,
-    ShellTable,
     TimeTable,
 )
-from runs.case.shell_contact import check_contact
 from runs.case.user_files import read_text
 from runs.process.shown import shown
 
@@ -35,12 +31,6 @@ from runs.process.shown import shown
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
-
-# A dense eigenproblem of more elements, or a factorisation of more triangles, is a slip of the pen.
-MOST_ELEMENTS = 5_000
-# Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
-MOST_TERMS = 60
-MOST_TRIANGLES = 20_000_000
 
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
@@ -117,7 +107,7 @@ def select(
                 path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
             )
         try:
-            _check_mesh_size("--mesh-size", mesh_size, build_boom(case))
+            check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         except BoomError as error:
             raise BadInput(path, error.where, error.what) from None
         chosen = _with_shells(
@@ -146,12 +136,9 @@ def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
     """The models with the shells changed as an option says."""
-    if not any(isinstance(model, ShellTable) for model in models):
+    if not any(model.meshed for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
-    return tuple(
-        model.model_copy(update=update) if isinstance(model, ShellTable) else model
-        for model in models
-    )
+    return tuple(model.model_copy(update=update) if model.meshed else model for model in models)
 
 
 def _read(path: str) -> dict[str, object]:
@@ -259,66 +246,8 @@ def _check_models(case: Case, boom: Boom) -> None:
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
-        if isinstance(model, KantorovichTable) and max(model.terms) > MOST_TERMS:
-            raise BoomError(
-                f"{where}.terms",
-                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
-                f"{list(model.terms)}; use finite elements",
-            )
-        if isinstance(model, KantorovichTable) and len(model.terms) != len(boom.segments):
-            raise BoomError(
-                f"{where}.terms",
-                f"must have one number for each of the {len(boom.segments)} segments, got "
-                f"{list(model.terms)}",
-            )
-        if isinstance(model, KantorovichTable):
-            for segment, terms in zip(boom.segments, model.terms, strict=True):
-                try:
-                    bending_basis(segment, terms, model.base)
-                except BoomError as error:
-                    raise BoomError(f"{where}.base", error.what) from None
-        if isinstance(model, FiniteElementTable) and model.tied and model.contact:
-            raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
-        if isinstance(model, FiniteElementTable):
-            length = max(segment.length for segment in boom.segments)
-            if length / model.element_length > MOST_ELEMENTS:
-                raise BoomError(
-                    f"{where}.element_length",
-                    f"{model.element_length:g} m makes more than {MOST_ELEMENTS} elements of a "
-                    f"segment; it must be at least {length / MOST_ELEMENTS:.3g} m",
-                )
-        if needs_plates(model):
-            for i, segment in enumerate(boom.segments, start=1):
-                if segment.section is None:
-                    raise BoomError(
-                        f"segment[{i}].section",
-                        f"missing, and {model.name!r} needs it; give section or height_to_width",
-                    )
-        if isinstance(model, ShellTable):
-            _check_mesh_size(f"{where}.mesh_size", model.mesh_size, boom)
-            check_contact(where, case, boom, model)
-            for i, segment in enumerate(boom.segments, start=1):
-                if segment.viscous_damping > 0.0:
-                    raise BoomError(
-                        f"segment[{i}].viscous_damping",
-                        f"the shell {model.name!r} has none; leave it out, or run beams alone",
-                    )
+        model.check(where, joined(case, boom, model))
     _check_step("time.step", case.time.step, case.time)
-
-
-def _check_mesh_size(where: str, size: float, boom: Boom) -> None:
-    surface = sum(
-        segment.section.perimeter * segment.length
-        for segment in boom.segments
-        if segment.section is not None
-    )
-    smallest = float(np.sqrt(2.0 * surface / MOST_TRIANGLES))
-    if size < smallest:
-        raise BoomError(
-            where,
-            f"{size:g} m makes more than {MOST_TRIANGLES:.0e} triangles; it must be at least "
-            f"{smallest:.3g} m",
-        )
 
 
 def _check_step(where: str, step: float | None, time: TimeTable) -> None:

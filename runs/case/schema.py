@@ -6,23 +6,22 @@ The descriptions are what the JSON Schema shows, and what the message for a miss
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 from pydantic import BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
 
+from runs.case.kinds import KINDS
+from runs.case.kinds.model import ModelTable
 from runs.case.limits import (
     MOST_MEMBERS,
     MOST_MODELS,
     MOST_SEGMENTS,
     MOST_STATIONS,
     MOST_TIMES,
-    ContactTolerance,
-    Count,
     Exponent,
     Few,
     Flag,
-    Modes,
     Name,
     NotNegative,
     Number,
@@ -33,6 +32,7 @@ from runs.case.limits import (
     Text,
 )
 from runs.case.sections import AnySection
+from runs.case.table import RestitutionTable
 
 
 class TimeTable(Table):
@@ -177,15 +177,6 @@ class SegmentTable(Table):
     )
 
 
-class RestitutionTable(Table):
-    """How much of its speed a blow gives back."""
-
-    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = Field(
-        description="the coefficient of restitution"
-    )
-    speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
-
-
 class PadTable(Table):
     """A slide pad in a corner: a patch of the inner segment's wall."""
 
@@ -243,19 +234,6 @@ class JointTable(Table):
         None,
         description="the length along x in m on which stations press the corners, as long as a "
         "slide pad, which shells alone heed; a tenth of the overlap unless given",
-    )
-
-
-class ContactTable(Table):
-    """The contact law that one model uses in all joints, instead of the joints' own."""
-
-    stiffness: Positive = Field(description="the contact stiffness in N/m^n")
-    stiffness_below: NotNegative | None = Field(
-        None, description="the contact stiffness in N/m^n below; the same as above unless given"
-    )
-    exponent: Exponent = Field(description="the exponent n of the contact law")
-    restitution: RestitutionTable | None = Field(
-        None, description="the table of the contact's own damping; none unless given"
     )
 
 
@@ -348,93 +326,10 @@ class DampingTable(Table):
     stiffness: NotNegative = Field(0.0, description="Rayleigh's factor of the stiffness in s")
 
 
-class ModelTable(Table):
-    """What every kind of model has."""
-
-    name: Name = Field(description="what the results call the model")
-    contact: ContactTable | None = Field(
-        None, description="the model's own contact law; the joints' unless given"
-    )
-    step: Positive | None = Field(
-        None, description="the model's own step of the integrator in s; the case's unless given"
-    )
-
-
-class KantorovichTable(ModelTable):
-    """The semi-discrete Ritz series of the paper."""
-
-    kind: Literal["kantorovich"] = Field(description="the kind of model")
-    terms: Annotated[tuple[Count, ...], Few] = Field(
-        description="the number of functions of each segment, from the base to the tip"
-    )
-    base: Literal["as printed", "pinned", "complete"] = Field(
-        "as printed",
-        description="the reading of the functions: as printed, with zero slope at the base; "
-        "pinned, with a free one; complete, where the inner segment bends freely too",
-    )
-    rotary_inertia: Flag = Field(False, description="whether the rotary inertia is kept")
-
-
-class FiniteElementTable(ModelTable):
-    """Beam finite elements."""
-
-    kind: Literal["finite-element"] = Field(description="the kind of model")
-    element_length: Positive = Field(0.5, description="the length of an element in m, at most")
-    theory: Literal["euler-bernoulli", "timoshenko"] = Field(
-        "euler-bernoulli", description="the beam theory"
-    )
-    rotary_inertia: Flag = Field(True, description="whether the rotary inertia is kept")
-    tied: Flag = Field(
-        False, description="whether the segments deflect alike at the stations, without play"
-    )
-
-
-class ShellTable(ModelTable):
-    """Flat facet shells on the folded box, reduced to the contact's inputs."""
-
-    kind: Literal["shell"] = Field(description="the kind of model")
-    mesh_size: Positive = Field(
-        0.1, description="the edge length of the triangles in m, far from all that presses"
-    )
-    contact_tolerance: ContactTolerance = Field(
-        0.01,
-        description="the relative error of how much pressed walls give way, which makes the mesh "
-        "finer there, or 'any' for a uniform mesh",
-    )
-    modes: Modes | None = Field(
-        None,
-        description="the number of coordinates of each segment, at most, or 'auto' for as many as "
-        "the tolerance asks; unless given, those of three moments at four frequencies, which "
-        "answer the contacts within about 1e-8",
-    )
-    tolerance: Part = Field(
-        1.0e-6,
-        description="with modes = 'auto', the largest relative error with which the reduced shell "
-        "answers the forces of contacts and loads",
-    )
-    contact_line: Literal["near webs", "across", "surface"] = Field(
-        "near webs",
-        description="where the walls of the segments touch: at the stations near the webs or "
-        "across the flanges, or over the surface of the whole overlap",
-    )
-    surface_stiffness: Positive | None = Field(
-        None,
-        description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
-        "side; that of all the joint's stations over the area unless given",
-    )
-    surface_points: tuple[Count, Count] | None = Field(
-        None,
-        description="the number of contact points along the overlap, and across each half of a "
-        "wall; 8 and 4 unless given",
-    )
-
-
-Model = Annotated[KantorovichTable | FiniteElementTable | ShellTable, Field(discriminator="kind")]
-
-
-def tied(model: Model) -> bool:
-    """Whether a model's segments are joined without play."""
-    return isinstance(model, FiniteElementTable) and model.tied
+if TYPE_CHECKING:
+    Model = ModelTable
+else:
+    Model = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
 
 
 class Case(Table):

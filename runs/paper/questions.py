@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable, tied
+from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.model import of_kind
+from runs.case.schema import Case, Model
 
 Array = npt.NDArray[np.float64]
 
@@ -109,23 +111,21 @@ class Run:
         return self.one(
             "beam-fe",
             lambda model: (
-                isinstance(model, FiniteElementTable)
-                and not model.tied
-                and model.theory == "euler-bernoulli"
+                not model.play_free and getattr(model, "theory", None) == "euler-bernoulli"
             ),
         )
 
     def shell(self) -> Model:
         """The shell."""
-        return self.one("shell", lambda model: isinstance(model, ShellTable))
+        return self.one("shell", lambda model: model.meshed)
 
     def play_free(self) -> Model:
         """The beam model without play."""
-        return self.one("beam-fe-tied", tied)
+        return self.one("beam-fe-tied", lambda model: model.play_free)
 
     def with_play(self) -> list[Model]:
         """All models whose segments can touch, two at least."""
-        models = [model for model in self.case.models if not tied(model)]
+        models = [model for model in self.case.models if not model.play_free]
         if len(models) < 2:
             raise Lacking("It takes two models with play to compare.")
         return models
@@ -148,7 +148,7 @@ class Run:
 
 def terms(model: Model) -> tuple[int, ...]:
     """The numbers of a series' functions; none for other models."""
-    return model.terms if isinstance(model, KantorovichTable) else ()
+    return next((series.terms for series in of_kind(KantorovichTable, [model])), ())
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:

@@ -15,7 +15,9 @@ import numpy.typing as npt
 from beam_model.kantorovich import Base
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import perturbations
-from runs.case.schema import Case, KantorovichTable
+from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.model import of_kind
+from runs.case.schema import Case
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
@@ -96,7 +98,7 @@ class Reading:
         models = tuple(
             model.model_copy(
                 update={"contact": None}
-                | ({"base": self.base} if isinstance(model, KantorovichTable) else {})
+                | ({"base": self.base} if of_kind(KantorovichTable, [model]) else {})
             )
             for model in paper.models
             if model.name in MODELS

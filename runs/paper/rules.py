@@ -16,7 +16,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import t as student
 
-from runs.case.schema import Case, KantorovichTable, Model, tied
+from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.model import of_kind
+from runs.case.schema import Case, Model
 from runs.paper.parting import apart_at_the_end, peaks_apart
 from runs.paper.questions import Lacking, Run, options
 from runs.paper.statements import STATEMENTS, Finding
@@ -190,7 +192,7 @@ def _s5(run: Run) -> Finding:
     """
     run.without_friction()
     without = run.first_peak(run.play_free())
-    models = [model for model in run.case.models if not tied(model)]
+    models = [model for model in run.case.models if not model.play_free]
     if not models:
         raise Lacking("The case has no model with play.")
     ratio, name = min((run.first_peak(model) / without, model.name) for model in models)
@@ -299,7 +301,7 @@ def _s9(run: Run) -> Finding:
     their contact law alone, with another exponent n. Threshold: 5 %, less than what the models
     of S4 are apart. The stiffness may differ too, since its unit depends on n.
     """
-    untied = [model for model in run.case.models if not tied(model)]
+    untied = [model for model in run.case.models if not model.play_free]
     differences = [
         (abs(run.first_peak(a) / run.first_peak(b) - 1.0), a.name, b.name)
         for a, b in combinations(untied, 2)
@@ -356,7 +358,7 @@ def _s11(run: Run) -> Finding:
     if count < SEGMENTS:
         raise Lacking(f"This case has {count} segments; it takes the case of three segments.")
     series = max(
-        (model for model in run.case.models if isinstance(model, KantorovichTable)),
+        of_kind(KantorovichTable, run.case.models),
         key=lambda model: sum(model.terms),
         default=None,
     )

@@ -19,7 +19,7 @@ from dynamics.predictability.comparison import (
     Pointwise,
     compare,
 )
-from runs.case.schema import Case, Model, ShellTable, tied
+from runs.case.schema import Case, Model
 from runs.pipeline.known import known
 
 # Differences over a whole run are told until here, too, in s.
@@ -39,8 +39,8 @@ def rubs(case: Case) -> bool:
 
 def reference_of(models: Iterable[Model]) -> str | None:
     """The model that the others are held against: the last shell, else the last with play."""
-    with_play = [model for model in models if not tied(model)]
-    shells = [model for model in with_play if isinstance(model, ShellTable)]
+    with_play = [model for model in models if not model.play_free]
+    shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
     return candidates[-1].name if candidates else None
 

@@ -21,8 +21,8 @@ from dynamics.step import contact_step
 from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
-from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
-from runs.pipeline.models import beam_system
+from runs.case.schema import Case, Model
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 
 # What runs without being asked twice, in bytes and in s.
@@ -42,20 +42,6 @@ _OF_MEMBER = 22.0
 _ROUGH_STEP, _SMOOTH_STEP = (0.7e-6, 1.7e-8), (0.1e-6, 1.5e-9)
 # Motions of a measurement of horizons.
 _HORIZONS = 24
-
-# Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n².
-_EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
-# A beam of more coordinates is estimated by a coarser one.
-_BUILT = 400
-
-# Coordinates of a shell for each of its segments unless given, in the plane and in space.
-_FLAT, _SPATIAL = 60, 210
-# Dofs of a shell for each square of the mesh size; bytes for a dof, for a coordinate of it; s.
-_DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
-# How many times as many dofs a graded mesh has, at corners and at pads.
-_GRADED, _PADDED = 2.0, 4.0
-# Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
-_ELEMENTS, _SHORTER = 20, 10.0
 
 # Points of a sweep that are estimated; the others are taken to be like them.
 _SAMPLE = 20
@@ -77,27 +63,10 @@ class Cost:
         return Cost(self.memory + other.memory, self.seconds + other.seconds)
 
 
-@dataclass(frozen=True, slots=True)
-class _StandIn:
-    """The beam whose steps tell those of a model.
-
-    Args:
-        beam: quickly built.
-        coordinates: of the model itself.
-        shorter: than the beam's its steps are, as a factor.
-        before: what it takes before it moves.
-    """
-
-    beam: KantorovichTable | FiniteElementTable
-    coordinates: int
-    shorter: float = 1.0
-    before: Cost = Cost(0.0, 0.0)
-
-
 def of_run(case: Case) -> Cost:
     """What a run of a checked case takes."""
     boom = build_boom(case)
-    shell = any(isinstance(model, ShellTable) for model in case.models)
+    shell = any(model.meshed for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
     # What overflows is found when it is run.
     with np.errstate(all="ignore"):
@@ -130,12 +99,13 @@ def refuse_large(cost: Cost, file: str) -> None:
 
 
 def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
-    stand_in = _stand_in(model, boom)
+    stand_in = model.stand_in(boom)
+    before = Cost(stand_in.memory, stand_in.seconds)
     try:
-        motion = Plan.of(beam_system(case, boom, stand_in.beam), case, stand_in.beam).motion
+        motion = Plan.of(build(case, boom, stand_in.beam).system, case, stand_in.beam).motion
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         # The run ends with it, and says so.
-        return stand_in.before
+        return before
     system, time = motion.system, case.time
     step = model.step or time.step
     if step is None:
@@ -146,7 +116,7 @@ def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
     outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
     each, of_coordinate = _ROUGH_STEP if _is_rough(system) else _SMOOTH_STEP
-    return stand_in.before + Cost(
+    return before + Cost(
         8.0 * outputs * (numbers + _OF_MEMBER * members),
         outputs * _WRITING + motions * time.duration / step * (each + of_coordinate * coordinates),
     )
@@ -156,49 +126,3 @@ def _is_rough(system: GapSystem) -> bool:
     """Whether every step is made by itself, however far the segments are apart."""
     lossy = any(law.damping > 0.0 for law in system.laws)
     return lossy or bool(system.frictions) or bool(system.excitations)
-
-
-def _stand_in(model: Model, boom: Boom) -> _StandIn:
-    if isinstance(model, KantorovichTable):
-        return _StandIn(model, sum(model.terms) * (3 if boom.spatial else 1))
-    if isinstance(model, ShellTable):
-        return _of_shell(model, boom)
-    of_node = 5 if boom.spatial else 2
-    nodes = sum(
-        np.ceil(segment.length / model.element_length) + 1 + len(boom.stations_of(number))
-        for number, segment in enumerate(boom.segments)
-    )
-    coordinates = int(of_node * nodes)
-    before = Cost(8.0 * _EIGEN_ROOM * coordinates**2, _EIGEN_TIME * coordinates**3)
-    coarser = max(1.0, coordinates / _BUILT)
-    # The highest frequency of bending goes with the inverse square of the length.
-    beam = model.model_copy(update={"element_length": coarser * model.element_length})
-    return _StandIn(beam, coordinates, coarser**2, before)
-
-
-def _of_shell(model: ShellTable, boom: Boom) -> _StandIn:
-    area = sum(
-        segment.section.perimeter * segment.length
-        for segment in boom.segments
-        if segment.section is not None
-    )
-    padded = any(joint.pad is not None for joint in boom.joints)
-    graded = 1.0 if model.contact_tolerance == "any" else _PADDED if padded else _GRADED
-    dofs = graded * _DOFS * area / model.mesh_size**2
-    usual = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
-    coordinates = usual
-    if isinstance(model.modes, int):
-        coordinates = min(usual, model.modes * len(boom.segments))
-    longest = max(segment.length for segment in boom.segments)
-    beam = FiniteElementTable(
-        name=model.name,
-        kind="finite-element",
-        contact=model.contact,
-        step=model.step,
-        element_length=longest / _ELEMENTS,
-        theory="timoshenko",
-        rotary_inertia=True,
-        tied=False,
-    )
-    memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
-    return _StandIn(beam, coordinates, _SHORTER, Cost(memory, _REDUCTION * dofs))

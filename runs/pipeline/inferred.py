@@ -14,9 +14,9 @@ from dynamics.failure import NumericsError
 from geometry.boom import Boom, Joint
 from runs.case import actions
 from runs.case.build import build_boom, contact_laws
-from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.case.schema import Case, Model
 from runs.pipeline.estimates import of_run
-from runs.pipeline.models import beam_system, damped, joint_stations
+from runs.pipeline.models import build, damped, joint_stations
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
@@ -113,10 +113,9 @@ def _friction(joint: Joint) -> str:
 def _models(case: Case) -> Table:
     table = Table("model", "kind", "", "contact (k in N/mⁿ)")
     for model in case.models:
-        tied = isinstance(model, FiniteElementTable) and model.tied
         laws = {str(law) for law in contact_laws(case, model)}
-        contact = "tied" if tied else "; ".join(sorted(laws))
-        table.add_row(model.name, model.kind, _resolution(model), contact)
+        contact = "tied" if model.play_free else "; ".join(sorted(laws))
+        table.add_row(model.name, model.kind, model.describe(), contact)
     return table
 
 
@@ -127,33 +126,18 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
     for model in case.models if any(given) else ():
         # A shell would have to be computed first.
-        beam = _beam_like(model) if isinstance(model, ShellTable) else model
-        name = model.name if beam is model else f"{model.name}, as beam elements"
+        beam = model.stand_in(boom).beam if model.meshed else model
+        name = f"{model.name}, as beam elements" if model.meshed else model.name
         table.add_row(name, *islice(_ratios(case, boom, beam), SHOWN_MODES))
     return table
 
 
-def _ratios(case: Case, boom: Boom, model: KantorovichTable | FiniteElementTable) -> list[str]:
+def _ratios(case: Case, boom: Boom, model: Model) -> list[str]:
     try:
         with np.errstate(all="ignore"):
-            system = damped(actions.start(beam_system(case, boom, model), case)[0], case)
+            system = damped(actions.start(build(case, boom, model).system, case)[0], case)
             found = pressed_ratios(system, joint_stations(system, case))
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         return ["cannot be computed"]
     both = zip(*found, strict=True)
     return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
-
-
-def _beam_like(shell: ShellTable) -> FiniteElementTable:
-    """Beam elements in the place of a shell."""
-    given = {"kind": "finite-element", "theory": "timoshenko", "name": shell.name}
-    return FiniteElementTable.model_validate(given | {"contact": shell.contact})
-
-
-def _resolution(model: Model) -> str:
-    if isinstance(model, KantorovichTable):
-        return f"terms {' + '.join(map(str, model.terms))}, base {model.base}"
-    if isinstance(model, FiniteElementTable):
-        return f"{model.theory}, elements of {model.element_length:g} m"
-    assert isinstance(model, ShellTable)
-    return f"mesh {model.mesh_size:g} m, contact {model.contact_line}"

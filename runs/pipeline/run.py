@@ -21,7 +21,8 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.schema import Case, Model, ShellTable
+from runs.case.kinds.model import Built
+from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
 from runs.folder.finished import Finished, finished
 from runs.folder.versions import versions
@@ -29,7 +30,7 @@ from runs.pipeline import members
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.known import known
-from runs.pipeline.models import beam_system, reduce_shell
+from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results, label
 from runs.pipeline.shell_output import ShellOutput
@@ -182,33 +183,26 @@ def _run_model(
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
-    reduced = None
-    if isinstance(model, ShellTable):
-        assert comm is not None
+    if model.meshed or first_rank:
+        tools = None if comm is None else workshop(comm, mesh_folder, stages.tell, cache)
         try:
-            reduced = reduce_shell(case, boom, model, comm, mesh_folder, stages.tell, cache)
+            built = build(case, boom, model, tools)
         except _NUMERICS as error:
-            if comm.size == 1:
+            if comm is None or comm.size == 1 or not model.meshed:
                 raise
             raise _SharedFailure(_reason(error)) from error
-        system, num_dofs = reduced.system, reduced.num_dofs
-        stages.seconds |= reduced.seconds
-    elif first_rank:
-        with stages.stage("build"):
-            system = beam_system(case, boom, model)
-        num_dofs = system.num_modes
+        stages.seconds |= built.seconds
     with members.workers(comm if case.ensemble else None) as executor:
         if not first_rank:
             return None
         alone = case.model_copy(
             update={"models": (model,), "title": "", "statements": (), "demand": ()}
         )
+        system = built.system
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
         moving = Stages(model.name, progress)
-        moved = finished(
-            kept, content, lambda: _move(system, num_dofs, model, case, cutoff, executor, moving)
-        )
-    summary = moved.summary
+        moved = finished(kept, content, lambda: _move(built, model, case, cutoff, executor, moving))
+    summary, reduced = moved.summary, built.shell
     # Those of a motion that is kept are what it has taken.
     stages.seconds |= summary["seconds"]
     summary["seconds"] = stages.seconds
@@ -224,8 +218,7 @@ def _run_model(
 
 
 def _move(
-    system: GapSystem,
-    num_dofs: int,
+    built: Built,
     model: Model,
     case: Case,
     cutoff: float | None,
@@ -233,11 +226,11 @@ def _move(
     stages: Stages,
 ) -> Finished:
     """The motion of a model; where its energy leaves its bound, in half the step, and a quarter."""
-    plan = Plan.of(system, case, model)
+    plan = Plan.of(built.system, case, model)
     refused: list[str] = []
     while True:
         try:
-            moved = _move_at(plan, num_dofs, model, case, cutoff, executor, stages)
+            moved = _move_at(plan, built.num_dofs, model, case, cutoff, executor, stages)
         except StepTooLong as error:
             if len(refused) == HALVINGS:
                 raise

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 
 from runs.case import toml
-from runs.case.schema import tied
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Figure
@@ -51,7 +50,7 @@ def render(
     ]
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary["models"])
-    strokes = theme.strokes(names, [m.name for m in results.case.models if tied(m)])
+    strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
     return page(
         "report.html",
         title=results.case.title,

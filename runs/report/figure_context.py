@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
-from runs.case.schema import tied
 from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.report import theme
@@ -62,7 +61,7 @@ class Pen:
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
         self.models = [str(name) for name in self.data["model"].values]
-        self.play_free = [model.name for model in results.case.models if tied(model)]
+        self.play_free = [model.name for model in results.case.models if model.play_free]
         self.with_play = [name for name in self.models if name not in self.play_free]
         self.strokes = theme.strokes(self.models, self.play_free)
 

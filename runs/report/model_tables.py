@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from dynamics.predictability.horizon import SHARES
-from runs.case.schema import tied
 from runs.pipeline.comparisons import reference_of, rubs
 from runs.pipeline.results import Results
 from runs.report.tables import TextTable
@@ -144,7 +143,7 @@ def step_table(results: Results) -> TextTable:
 def law_table(results: Results) -> TextTable | None:
     """The contact law of each joint in each model with play, and the first peak it leads to."""
     joints = [joint for joint in results.case.joints if not joint.tied]
-    models = [model for model in results.ran if not tied(model)]
+    models = [model for model in results.ran if not model.play_free]
     if not joints or not models:
         return None
     rows = []

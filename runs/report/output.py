@@ -16,7 +16,6 @@ import xarray as xr
 
 from runs.case import toml
 from runs.case.messages import BadInput
-from runs.case.schema import ShellTable
 from runs.case.user_files import check_left
 from runs.folder.files import beside, whole
 from runs.pipeline.results import (
@@ -99,7 +98,7 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
     _write_csv(results.trajectories, folder / "trajectories.csv")
     _write_text(folder / CASE, toml.dumps(results.case))
-    shells = [model for model in results.case.models if isinstance(model, ShellTable)]
+    shells = [model for model in results.case.models if model.meshed]
     for name, shell in run.shells.items():
         prefix = f"{name}-" if len(shells) > 1 else ""
         shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from runs.case.schema import ShellTable
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
 from runs.pipeline.results import Results
 from runs.report.figure_context import MILLI, Figure
 from shell_model.pictures.rendering import ANIMATED, ANIMATION, SHOWN, TITLES, telling_instants
@@ -34,7 +35,7 @@ def describe(results: Results, path: Path) -> Figure:
         path: as :func:`shell_model.pictures.rendering.render_snapshots` names it, with the shell's
             name before it where the case has several.
     """
-    lines = {m.name: m.contact_line for m in results.case.models if isinstance(m, ShellTable)}
+    lines = {m.name: m.contact_line for m in of_kind(ShellTable, results.case.models)}
     shells = list(lines)
     several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
     model = max(several, key=len) if len(shells) > 1 and several else shells[0]

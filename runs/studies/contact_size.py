@@ -20,13 +20,12 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.case.build import build_boom, contact_laws
-from runs.case.schema import Case, ShellTable
-from runs.pipeline.models import shell_options
+from runs.case.schema import Case
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO
-from runs.studies.motions import finer, friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
 from runs.studies.working_load import OUTPUT_STEP, PHASE
@@ -90,8 +89,8 @@ def squeezed(contact: Contact, part: float) -> Array:
     from shell_model.contact.rows import contacts_and_frictions
 
     boom = build_boom(contact.case)
-    model = finer(_shell(contact.case), part)
-    options = shell_options(model)
+    model = finer(shell_of(contact.case), part)
+    options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
     laws = contact_laws(contact.case, model)
     rows, _ = contacts_and_frictions(
@@ -105,7 +104,7 @@ def squeezed(contact: Contact, part: float) -> Array:
 
 def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     """The tip's first peak in m under each load, on the default mesh."""
-    model = finer(_shell(contact.case), sizes.default)
+    model = finer(shell_of(contact.case), sizes.default)
     system = gap_system(contact.case, build_boom(contact.case), model)
     step = contact_step(system, OUTPUT_STEP, phase=PHASE)
     return [
@@ -249,9 +248,3 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             for one in found
         },
     )
-
-
-def _shell(case: Case) -> ShellTable:
-    shell = model_of(case, "shell")
-    assert isinstance(shell, ShellTable)
-    return shell

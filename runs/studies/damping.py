@@ -19,7 +19,6 @@ from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import ShellTable
 from runs.report.tables import TextTable
 from runs.report.theme import number
 from runs.studies.motions import gap_system, model_of
@@ -173,6 +172,6 @@ def study(tell: Callable[[str], None]) -> Study:
 def _system(path: Path, name: str) -> GapSystem:
     case = case_file.load(str(path))
     model = model_of(case, name)
-    if isinstance(model, ShellTable):
+    if model.meshed:
         model = model.model_copy(update={"mesh_size": MESH_SIZE})
     return gap_system(case, build_boom(case), model)

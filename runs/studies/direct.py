@@ -19,11 +19,11 @@ from mpi4py import MPI
 
 from dynamics.energy import ENERGY_BOUND
 from runs.case.build import build_boom, contact_laws
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from runs.pipeline.motion import Plan
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
-from runs.studies.motions import friction_case, gap_system, loaded, model_of
+from runs.studies.motions import friction_case, gap_system, loaded, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Plot, Proof, Study
 
@@ -129,10 +129,7 @@ def compare(
     time = case.time.model_copy(update={"duration": sizes.duration})
     case = case.model_copy(update={"time": time})
     boom = build_boom(case)
-    model = model_of(case, "shell").model_copy(
-        update={"mesh_size": sizes.mesh, "contact_tolerance": "any"}
-    )
-    assert isinstance(model, ShellTable)
+    model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
     laws = contact_laws(case, model)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
     larger = KrylovOptions(sizes.shifts, sizes.moments)

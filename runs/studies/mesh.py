@@ -13,12 +13,12 @@ from scipy.signal import find_peaks
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from runs.pipeline.motion import Plan
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
-from runs.studies.motions import finer, friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, shell_of
 from runs.studies.study import Plot, Proof, Study
 
 Array = npt.NDArray[np.float64]
@@ -79,8 +79,7 @@ def measure(case: Case, sizes: Sizes, tell: Callable[[str], None]) -> list[Quant
     time = case.time.model_copy(update={"duration": sizes.duration})
     case = case.model_copy(update={"time": time})
     boom = build_boom(case)
-    shell = model_of(case, "shell")
-    assert isinstance(shell, ShellTable)
+    shell = shell_of(case)
     results: list[Mapping[tuple[str, str], float]] = []
     for part in sizes.meshes:
         tell(f"edges x {part:g}")

@@ -21,8 +21,10 @@ from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import Case, Model, ShellTable
-from runs.pipeline.models import beam_system, reduce_shell
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case, Model
+from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 
 Array = npt.NDArray[np.float64]
@@ -51,13 +53,17 @@ def model_of(case: Case, name: str) -> Model:
     return next(model for model in case.models if model.name == name)
 
 
+def shell_of(case: Case) -> ShellTable:
+    """The shell by the name that the cases give it."""
+    (shell,) = of_kind(ShellTable, [model_of(case, "shell")])
+    return shell
+
+
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
-    if not isinstance(model, ShellTable):
-        return beam_system(case, boom, model)
     with TemporaryDirectory(prefix="protractile-") as scratch:
         folder = Path(scratch) / model.name
-        return reduce_shell(case, boom, model, MPI.COMM_SELF, folder, lambda *_: None).system
+        return build(case, boom, model, workshop(MPI.COMM_SELF, folder)).system
 
 
 def finer(shell: ShellTable, part: float) -> ShellTable:

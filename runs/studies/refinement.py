@@ -8,7 +8,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from runs.case.schema import Case, FiniteElementTable, KantorovichTable, Model, ShellTable
+from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case, Model
 from runs.report.tables import TextTable
 from runs.report.theme import number
 from runs.studies.motions import finer, friction_case, model_of, trajectories
@@ -155,15 +158,14 @@ def _with_step(model: Model, step: float) -> Model:
 
 
 def _with_terms(model: Model, terms: float) -> Model:
-    assert isinstance(model, KantorovichTable)
-    return model.model_copy(update={"terms": (round(terms),) * len(model.terms)})
+    (series,) = of_kind(KantorovichTable, [model])
+    return series.model_copy(update={"terms": (round(terms),) * len(series.terms)})
 
 
 def _with_elements(model: Model, length: float) -> Model:
-    assert isinstance(model, FiniteElementTable)
     return model.model_copy(update={"element_length": length})
 
 
 def _with_mesh(model: Model, size: float) -> Model:
-    assert isinstance(model, ShellTable)
-    return finer(model, size / model.mesh_size)
+    (shell,) = of_kind(ShellTable, [model])
+    return finer(shell, size / shell.mesh_size)

@@ -19,10 +19,11 @@ from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
-from runs.case.schema import Case, ShellTable
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
-from runs.studies.motions import friction_case, gap_system, model_of
+from runs.studies.motions import friction_case, gap_system, model_of, shell_of
 from runs.studies.pads import flexibility_table, pad_proofs, with_pads
 from runs.studies.study import Plot, Proof, Study
 
@@ -158,8 +159,7 @@ def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
 
 
 def _shell(case: Case, sizes: Sizes) -> ShellTable:
-    shell = model_of(case, "shell")
-    assert isinstance(shell, ShellTable)
+    shell = shell_of(case)
     return shell.model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
 
 

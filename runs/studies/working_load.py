@@ -25,12 +25,12 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.case.build import build_boom
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from runs.report.tables import TextTable
 from runs.report.theme import fixed, number
 from runs.studies.grid_convergence import GridConvergence
 from runs.studies.mesh import RATIO, peak_heights
-from runs.studies.motions import finer, friction_case, gap_system, model_of
+from runs.studies.motions import finer, friction_case, gap_system, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Proof, Study
 
@@ -153,8 +153,7 @@ def in_space(case: Case) -> Case:
 
 
 def _systems(case: Case, sizes: Sizes) -> list[GapSystem]:
-    shell = model_of(case, "shell")
-    assert isinstance(shell, ShellTable)
+    shell = shell_of(case)
     boom = build_boom(case)
     return [gap_system(case, boom, finer(shell, part)) for part in sizes.meshes]
 

@@ -20,9 +20,9 @@ from pydantic import ValidationError
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.build import build_boom, needs_plates
+from runs.case.build import build_boom
 from runs.case.messages import BadInput
-from runs.case.schema import Case, tied
+from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.sweep.variation import Tables, Variation, parse, unit_of
 
@@ -106,7 +106,7 @@ def plan(
     _check_influence(file, variations, points)
     first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
     units = [unit_of(variation.places[0], first) for variation in variations]
-    play_free = [model.name for model in points[0].case.models if tied(model)]
+    play_free = [model.name for model in points[0].case.models if model.play_free]
     return Plan(file, whole.title, variations, units, play_free, points)
 
 
@@ -149,7 +149,7 @@ def _inferred(case: Case) -> Plates:
 def _hold(case: Case, plates: Plates) -> Case:
     """The case with inferred plates written into it, or with none to infer where none matter."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
-    matter = in_space or any(needs_plates(model) for model in case.models)
+    matter = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(
         segment
         if plate is None

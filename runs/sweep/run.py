@@ -28,7 +28,7 @@ from pydantic import TypeAdapter
 from dynamics.failure import NumericsError
 from runs.case import toml
 from runs.case.messages import BadInput
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from runs.case.user_files import check_left
 from runs.folder.cache import Cache, Files, key
 from runs.folder.versions import program
@@ -194,7 +194,7 @@ def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
     outcome = Outcome({}, {})
     for model in case.models:
         comm = None
-        if isinstance(model, ShellTable):
+        if model.meshed:
             from mpi4py import MPI
 
             comm = MPI.COMM_SELF

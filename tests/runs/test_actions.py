@@ -12,9 +12,9 @@ from dynamics.excitation import Ramp, Sine, Step, Table
 from dynamics.integrators import Events
 from runs.case import reading as case_file
 from runs.case.build import build_boom
+from runs.case.kinds.finite_element import FiniteElementTable
 from runs.case.messages import BadInput
-from runs.case.schema import FiniteElementTable
-from runs.pipeline.models import beam_system
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
@@ -198,7 +198,7 @@ def test_constant_loads_go_from_contact_to_contact(tmp_path: Path) -> None:
     case = case_file.load(str(path))
     (model,) = case.models
     assert isinstance(model, FiniteElementTable)
-    plan = Plan.of(beam_system(case, build_boom(case), model), case, model)
+    plan = Plan.of(build(case, build_boom(case), model).system, case, model)
     assert isinstance(plan.integrator, Events)
     expected = (900.0 - 500.0 * 9.80665) * plan.motion.system.observers["tip"].row
     np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)

@@ -12,9 +12,10 @@ import pytest
 from runs import CASES
 from runs.case import toml
 from runs.case.build import build_boom, contact_laws
+from runs.case.kinds.shell import ShellTable
 from runs.case.messages import BadInput
 from runs.case.reading import load, select
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.coarse_case import COARSE
 

@@ -13,7 +13,7 @@ import pytest
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.models import beam_system
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 
 HEAD = """
@@ -125,7 +125,7 @@ def test_a_pressed_boom_keeps_its_ledger(tmp_path: Path, boom: str, damping: str
     path.write_text(HEAD + boom + f"[damping]\n{damping}\n", encoding="utf-8")
     case = case_file.load(str(path))
     (model,) = case.models
-    plan = Plan.of(beam_system(case, build_boom(case), model), case, model)
+    plan = Plan.of(build(case, build_boom(case), model).system, case, model)
     run = plan.trajectory(lambda part: None)
     assert run.energy_residual < 1e-4
     loss = np.diff(run.data["damping_loss"].values)

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beam_model.segment_model import gap_system
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
 from runs.paper.rules import judge
-from runs.pipeline.models import beam_system
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
@@ -134,9 +134,9 @@ def test_wall_times_are_this_run_s_but_for_the_motion(monkeypatch: pytest.Monkey
 
     def build(*arguments: Any) -> GapSystem:
         sleep(1.0 + first["build"])
-        return beam_system(*arguments)
+        return gap_system(*arguments)
 
-    monkeypatch.setattr("runs.pipeline.run.beam_system", build)
+    monkeypatch.setattr("runs.case.kinds.model.gap_system", build)
     second = seconds()
     assert second["motion"] == first["motion"]
     assert second["build"] > 1.0 + first["build"]

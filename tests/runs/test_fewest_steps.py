@@ -17,7 +17,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.pipeline.fewest_steps import PEAKS, steps_for_peaks
 from runs.pipeline.members import slow_below
-from runs.pipeline.models import beam_system
+from runs.pipeline.models import build
 
 PAPER = CASES / "paper.toml"
 STEP = 1.0e-3
@@ -32,7 +32,7 @@ def five_terms() -> tuple[GapSystem, float]:
     assert model.kind == "kantorovich"
     cutoff = slow_below(boom, case.time)
     assert cutoff is not None
-    return beam_system(case, boom, model), cutoff
+    return build(case, boom, model).system, cutoff
 
 
 def peaks_of(system: GapSystem, cutoff: float, spread: float) -> dict[str, Any]:

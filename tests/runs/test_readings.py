@@ -14,8 +14,9 @@ from rich.console import Console
 from dynamics.contact import PowerContact
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
+from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.messages import BadInput
-from runs.case.schema import Case, KantorovichTable
+from runs.case.schema import Case
 from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
 from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
 from runs.report.verdict import Judgement

@@ -16,10 +16,10 @@ from mpi4py import MPI
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import Case, ShellTable
+from runs.case.schema import Case
 from runs.folder import records
 from runs.folder.cache import Cache
-from runs.pipeline.models import reduce_shell
+from runs.pipeline.models import build, workshop
 from runs.process.shown import shown
 from shell_model.boom_shell import ReducedShell
 
@@ -32,10 +32,10 @@ def case() -> Case:
 
 
 def reduce(case: Case, cache: Cache | None, folder: Path) -> ReducedShell:
-    model = case.models[0]
-    assert isinstance(model, ShellTable)
-    boom = build_boom(case)
-    return reduce_shell(case, boom, model, MPI.COMM_SELF, folder, lambda *_: None, cache)
+    tools = workshop(MPI.COMM_SELF, folder, cache=cache)
+    shell = build(case, build_boom(case), case.models[0], tools).shell
+    assert shell is not None
+    return shell
 
 
 def test_a_second_run_skips_mesh_and_reduction(case: Case, tmp_path: Path) -> None:

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Kantorovich series as a kind of model."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from beam_model.component import SegmentModel
+from beam_model.kantorovich import bending_basis, kantorovich_segment
+from geometry.boom import Boom, BoomError
+from runs.case.kinds.model import BeamTable, Joined, StandIn
+from runs.case.limits import Count, Few, Flag
+
+# Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
+MOST_TERMS = 60
+
+
+class KantorovichTable(BeamTable):
+    """The semi-discrete Ritz series of the paper."""
+
+    kind: Literal["kantorovich"] = Field(description="the kind of model")
+    terms: Annotated[tuple[Count, ...], Few] = Field(
+        description="the number of functions of each segment, from the base to the tip"
+    )
+    base: Literal["as printed", "pinned", "complete"] = Field(
+        "as printed",
+        description="the reading of the functions: as printed, with zero slope at the base; "
+        "pinned, with a free one; complete, where the inner segment bends freely too",
+    )
+    rotary_inertia: Flag = Field(False, description="whether the rotary inertia is kept")
+
+    def check(self, where: str, joined: Joined) -> None:
+        segments = joined.boom.segments
+        if max(self.terms) > MOST_TERMS:
+            raise BoomError(
+                f"{where}.terms",
+                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
+                f"{list(self.terms)}; use finite elements",
+            )
+        if len(self.terms) != len(segments):
+            raise BoomError(
+                f"{where}.terms",
+                f"must have one number for each of the {len(segments)} segments, got "
+                f"{list(self.terms)}",
+            )
+        for segment, terms in zip(segments, self.terms, strict=True):
+            try:
+                bending_basis(segment, terms, self.base)
+            except BoomError as error:
+                raise BoomError(f"{where}.base", error.what) from None
+        super().check(where, joined)
+
+    def describe(self) -> str:
+        return f"terms {' + '.join(map(str, self.terms))}, base {self.base}"
+
+    def segments(self, boom: Boom) -> list[SegmentModel]:
+        return [
+            kantorovich_segment(segment, terms, self.base, self.rotary_inertia)
+            for segment, terms in zip(boom.segments, self.terms, strict=True)
+        ]
+
+    def stand_in(self, boom: Boom) -> StandIn:
+        return StandIn(self, sum(self.terms) * (3 if boom.spatial else 1))

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a kind of model is: its table in the case file, and all that anyone asks of it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from pydantic import Field
+
+from beam_model.component import SegmentModel
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import ContactLaw
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom, BoomError
+from runs.case.limits import Name, Positive
+from runs.case.table import ContactTable, Table
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from shell_model.boom_shell import ReducedShell
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """The boom of a case, and the contact laws of its joints as one model sees them.
+
+    Args:
+        boom: of the case.
+        laws: one for each joint, along z.
+        lateral_laws: one for each joint, along y; none for a flat boom.
+    """
+
+    boom: Boom
+    laws: Sequence[ContactLaw]
+    lateral_laws: Sequence[ContactLaw]
+
+
+@dataclass(frozen=True, slots=True)
+class Workshop:
+    """What a model on a mesh is made with.
+
+    Args:
+        comm: the ranks that share the work.
+        mesh_folder: where gmsh's files go, ``SEGMENT.msh``.
+        tell: told the stage and the part of it that is done.
+        remember: gives what has been computed of the same content before, or computes it.
+    """
+
+    comm: MPI.Comm
+    mesh_folder: Path
+    tell: Callable[[str, float], None]
+    remember: Callable[[Sequence[Any], Callable[[], ReducedShell]], ReducedShell]
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """A model before it moves.
+
+    Args:
+        system: of all segments.
+        num_dofs: before any reduction.
+        seconds: wall time of each stage.
+        shell: what a reduced shell has beyond its system.
+    """
+
+    system: GapSystem
+    num_dofs: int
+    seconds: dict[str, float] = field(default_factory=dict)
+    shell: ReducedShell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StandIn:
+    """The beam whose steps tell those of a model before it is built.
+
+    Args:
+        beam: quickly built.
+        coordinates: of the model itself.
+        shorter: than the beam's its steps are, as a factor.
+        memory, seconds: bytes and s that it takes before it moves.
+    """
+
+    beam: ModelTable
+    coordinates: int
+    shorter: float = 1.0
+    memory: float = 0.0
+    seconds: float = 0.0
+
+
+class ModelTable(Table):
+    """What every kind of model has."""
+
+    name: Name = Field(description="what the results call the model")
+    contact: ContactTable | None = Field(
+        None, description="the model's own contact law; the joints' unless given"
+    )
+    step: Positive | None = Field(
+        None, description="the model's own step of the integrator in s; the case's unless given"
+    )
+    kind: str = Field(description="the kind of model")
+
+    # Whether it has a mesh of the plates: it takes FEniCSx and a workshop, and leaves fields.
+    meshed: ClassVar[bool] = False
+
+    @property
+    def needs_plates(self) -> bool:
+        """Whether it cannot do without the sections of the segments."""
+        return self.meshed
+
+    @property
+    def play_free(self) -> bool:
+        """Whether its segments are joined without play."""
+        return False
+
+    def check(self, where: str, joined: Joined) -> None:
+        """Whether it can be a model of this boom.
+
+        Args:
+            where: its key, ``model[2]`` say.
+            joined: the boom and its contacts.
+
+        Raises:
+            BoomError: it cannot.
+        """
+        for number, segment in enumerate(joined.boom.segments, start=1):
+            if self.needs_plates and segment.section is None:
+                raise BoomError(
+                    f"segment[{number}].section",
+                    f"missing, and {self.name!r} needs it; give section or height_to_width",
+                )
+
+    @abstractmethod
+    def describe(self) -> str:
+        """How finely, in the few words of a table."""
+
+    @abstractmethod
+    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+        """Its gap system. Collective where it is meshed.
+
+        Args:
+            joined: the boom and its contacts.
+            workshop: for a meshed one.
+
+        Raises:
+            BoomError: the boom lacks what the model needs.
+        """
+
+    @abstractmethod
+    def stand_in(self, boom: Boom) -> StandIn:
+        """What tells how long it takes to move."""
+
+
+class BeamTable(ModelTable):
+    """A kind whose segments are beams, or as simple as beams."""
+
+    @abstractmethod
+    def segments(self, boom: Boom) -> list[SegmentModel]:
+        """Each segment in coordinates of its own."""
+
+    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+        start = perf_counter()
+        segments = self.segments(joined.boom)
+        if self.play_free:
+            system = tied_system(joined.boom, segments)
+        else:
+            system = gap_system(joined.boom, segments, joined.laws, joined.lateral_laws)
+        return Built(system, system.num_modes, {"build": perf_counter() - start})
+
+
+_Kind = TypeVar("_Kind", bound=ModelTable)
+
+
+def of_kind(kind: type[_Kind], models: Iterable[ModelTable]) -> list[_Kind]:
+    """Those models that are of one kind, for what is about this kind alone."""
+    return [model for model in models if isinstance(model, kind)]

@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells as a kind of model: on a mesh of the plates. FEniCSx is imported to build one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from geometry.boom import Boom, BoomError
+from runs.case.kinds.finite_element import FiniteElementTable
+from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
+from runs.case.limits import ContactTolerance, Count, Modes, Part, Positive
+
+if TYPE_CHECKING:
+    from shell_model.boom_shell import ShellOptions
+    from shell_model.reduction.krylov import KrylovOptions
+
+# A factorisation of more triangles is a slip of the pen.
+MOST_TRIANGLES = 20_000_000
+# Every point of a surface is an input of the reduction and a row of the time loop.
+MOST_POINTS = 256
+
+# Coordinates for each segment unless given, in the plane and in space.
+_FLAT, _SPATIAL = 60, 210
+# Dofs for each square of the mesh size; bytes for a dof, for a coordinate of it; s. Measured.
+_DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
+# How many times as many dofs a graded mesh has, at corners and at pads.
+_GRADED, _PADDED = 2.0, 4.0
+# Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
+_ELEMENTS, _SHORTER = 20, 10.0
+
+
+class ShellTable(ModelTable):
+    """Flat facet shells on the folded box, reduced to the contact's inputs."""
+
+    meshed: ClassVar[bool] = True
+
+    kind: Literal["shell"] = Field(description="the kind of model")
+    mesh_size: Positive = Field(
+        0.1, description="the edge length of the triangles in m, far from all that presses"
+    )
+    contact_tolerance: ContactTolerance = Field(
+        0.01,
+        description="the relative error of how much pressed walls give way, which makes the mesh "
+        "finer there, or 'any' for a uniform mesh",
+    )
+    modes: Modes | None = Field(
+        None,
+        description="the number of coordinates of each segment, at most, or 'auto' for as many as "
+        "the tolerance asks; unless given, those of three moments at four frequencies, which "
+        "answer the contacts within about 1e-8",
+    )
+    tolerance: Part = Field(
+        1.0e-6,
+        description="with modes = 'auto', the largest relative error with which the reduced shell "
+        "answers the forces of contacts and loads",
+    )
+    contact_line: Literal["near webs", "across", "surface"] = Field(
+        "near webs",
+        description="where the walls of the segments touch: at the stations near the webs or "
+        "across the flanges, or over the surface of the whole overlap",
+    )
+    surface_stiffness: Positive | None = Field(
+        None,
+        description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
+        "side; that of all the joint's stations over the area unless given",
+    )
+    surface_points: tuple[Count, Count] | None = Field(
+        None,
+        description="the number of contact points along the overlap, and across each half of a "
+        "wall; 8 and 4 unless given",
+    )
+
+    def check(self, where: str, joined: Joined) -> None:
+        super().check(where, joined)
+        check_mesh_size(f"{where}.mesh_size", self.mesh_size, joined.boom)
+        self._check_contact(where, joined)
+        for number, segment in enumerate(joined.boom.segments, start=1):
+            if segment.viscous_damping > 0.0:
+                raise BoomError(
+                    f"segment[{number}].viscous_damping",
+                    f"the shell {self.name!r} has none; leave it out, or run beams alone",
+                )
+
+    def describe(self) -> str:
+        return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
+
+    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+        from shell_model.boom_shell import reduce_boom
+
+        assert workshop is not None
+        comm, folder = workshop.comm, workshop.mesh_folder
+        if comm.rank == 0:
+            folder.mkdir(parents=True)
+        boom, laws, lateral = joined.boom, joined.laws, joined.lateral_laws
+        options = self.options()
+        there = replace(options, mesh_folder=folder)
+        shell = workshop.remember(
+            (boom, laws, lateral, options),
+            partial(reduce_boom, boom, laws, there, comm, workshop.tell, lateral),
+        )
+        return Built(shell.system, shell.num_dofs, shell.seconds, shell)
+
+    def options(self) -> ShellOptions:
+        """How a boom becomes such shells."""
+        from shell_model.boom_shell import ShellOptions
+        from shell_model.contact.surface import POINTS, SurfaceOptions
+
+        return ShellOptions(
+            mesh_size=self.mesh_size,
+            contact_line=self.contact_line,
+            surface=SurfaceOptions(self.surface_points or POINTS, self.surface_stiffness),
+            krylov=self._krylov(),
+            contact_tolerance=None if self.contact_tolerance == "any" else self.contact_tolerance,
+        )
+
+    def stand_in(self, boom: Boom) -> StandIn:
+        padded = any(joint.pad is not None for joint in boom.joints)
+        graded = 1.0 if self.contact_tolerance == "any" else _PADDED if padded else _GRADED
+        dofs = graded * _DOFS * _surface(boom) / self.mesh_size**2
+        coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
+        if isinstance(self.modes, int):
+            coordinates = min(coordinates, self.modes * len(boom.segments))
+        beam = FiniteElementTable(
+            name=self.name,
+            kind="finite-element",
+            contact=self.contact,
+            step=self.step,
+            element_length=max(segment.length for segment in boom.segments) / _ELEMENTS,
+            theory="timoshenko",
+            rotary_inertia=True,
+            tied=False,
+        )
+        memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
+        return StandIn(beam, coordinates, _SHORTER, memory, _REDUCTION * dofs)
+
+    def _krylov(self) -> KrylovOptions:
+        from shell_model.reduction.krylov import KrylovOptions
+
+        if self.modes == "auto":
+            return KrylovOptions(tolerance=self.tolerance)
+        return KrylovOptions(most=self.modes)
+
+    def _check_contact(self, where: str, joined: Joined) -> None:
+        """A line that does not suit the boom, keys of another one."""
+        line = self.contact_line
+        if joined.boom.spatial and line == "across":
+            raise BoomError(
+                f"{where}.contact_line",
+                "'across' is for a flat boom; in space the segments touch 'near webs' or by "
+                "'surface'",
+            )
+        for number, joint in enumerate(joined.boom.joints, start=1):
+            if joint.pad is not None and line != "near webs":
+                raise BoomError(
+                    f"{where}.contact_line",
+                    f"{line!r} leaves no place to the pads of joint[{number}]; give 'near webs', "
+                    "or leave pad out",
+                )
+        if line == "surface":
+            self._check_surface(where, joined)
+            return
+        for key in ("surface_stiffness", "surface_points"):
+            if getattr(self, key) is not None:
+                raise BoomError(
+                    f"{where}.{key}",
+                    f"the segments touch at their stations, {line!r}; leave it out, or give "
+                    "contact_line = 'surface'",
+                )
+
+    def _check_surface(self, where: str, joined: Joined) -> None:
+        """Too many points, one stiffness for several laws."""
+        if self.surface_points is not None:
+            along, across = self.surface_points
+            if along * across > MOST_POINTS:
+                raise BoomError(
+                    f"{where}.surface_points",
+                    f"{along} times {across} points on half a wall are more than {MOST_POINTS}, "
+                    "which a reduced model can bear; give fewer",
+                )
+        laws = [*joined.laws, *joined.lateral_laws]
+        exponents = sorted({term.exponent for law in laws for term in law.terms})
+        if self.surface_stiffness is not None and len(exponents) > 1:
+            raise BoomError(
+                f"{where}.surface_stiffness",
+                f"its unit depends on the exponent, and the joints have {exponents[0]:g} and "
+                f"{exponents[-1]:g}; leave it out, or give the model its own contact",
+            )
+
+
+def check_mesh_size(where: str, size: float, boom: Boom) -> None:
+    """Whether a mesh can be so fine.
+
+    Args:
+        where: the key.
+        size: edge length in m.
+        boom: that is meshed.
+
+    Raises:
+        BoomError: too many triangles.
+    """
+    smallest = float(np.sqrt(2.0 * _surface(boom) / MOST_TRIANGLES))
+    if size < smallest:
+        raise BoomError(
+            where,
+            f"{size:g} m makes more than {MOST_TRIANGLES:.0e} triangles; it must be at least "
+            f"{smallest:.3g} m",
+        )
+
+
+def _surface(boom: Boom) -> float:
+    """Of all walls in m²."""
+    return sum(
+        segment.section.perimeter * segment.length
+        for segment in boom.segments
+        if segment.section is not None
+    )
