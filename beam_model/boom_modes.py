@@ -119,7 +119,7 @@ def _ties(boom: Boom, group: Sequence[int], components: Sequence[Component]) -> 
                     k = group.index(segment)
                     parts[k] = sign * components[k].at(x)
                 rows.append(np.concatenate(parts))
-    return np.array(rows).reshape(-1, sum(len(component.load) for component in components))
+    return np.array(rows).reshape(len(rows), sum(len(c.load) for c in components))
 
 
 def _group_modes(components: Sequence[Component], ties: Array) -> Modes:

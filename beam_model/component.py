@@ -57,7 +57,9 @@ class Modes(NamedTuple):
 
 
 def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """All natural modes of (K, M), rigid ones with ω² exactly 0."""
+    """All natural modes of (K, M), rigid ones with ω² exactly 0; none of what cannot move."""
+    if not mass.size:
+        return Modes(np.zeros(0), np.zeros((0, 0)))
     # A common scale per coordinate: rotations and deflections differ by orders of magnitude.
     scale = 1.0 / np.sqrt(np.diag(mass))
     scales = np.outer(scale, scale)
