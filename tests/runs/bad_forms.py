@@ -75,7 +75,7 @@ FORMS = {
     "missing kind": (
         'kind = "shell"\n',
         "",
-        "model[6].kind: missing; give 'kantorovich', 'finite-element' or 'shell'",
+        "model[6].kind: missing; give 'kantorovich', 'finite-element', 'shell' or 'rigid'",
     ),
     "missing section": (
         "height_to_width = 1.5\n",
@@ -136,7 +136,7 @@ FORMS = {
     "unknown kind": (
         'kind = "shell"',
         'kind = "plate"',
-        "model[6].kind: must be 'kantorovich', 'finite-element' or 'shell', got 'plate'",
+        "model[6].kind: must be 'kantorovich', 'finite-element', 'shell' or 'rigid', got 'plate'",
     ),
     "unknown option": (
         'contact_line = "near webs"',

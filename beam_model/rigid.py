@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Segments as rigid bodies: they move with their mass and inertia, and only what holds them gives
+way.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beam_model.component import Component, Motion, SegmentModel
+from beam_model.kantorovich import kantorovich_bending, kantorovich_twist
+from geometry.boom import Segment
+
+
+def rigid_segment(segment: Segment) -> SegmentModel:
+    """A segment that moves, and in space turns about its axis, without bending or twisting.
+
+    These are the straight lines among the polynomials that its supports admit. Springs of elastic
+    supports and point masses act on them; where rigid supports leave none, nothing moves.
+    """
+    bends, turns = freedom(segment)
+    components: dict[Motion, Component] = {"z": _moving(segment, bends)}
+    if segment.lateral is not None:
+        components["y"] = _moving(segment.turned(), bends)
+        components["twist"] = kantorovich_twist(segment, turns) if turns else _held()
+    return SegmentModel(components)
+
+
+def freedom(segment: Segment) -> tuple[int, int]:
+    """How many motions rigid supports leave to a rigid segment in one plane, and about its axis."""
+    held = sum(
+        2 if support.kind == "clamped" else 1
+        for support in segment.supports
+        if support.stiffness is None
+    )
+    return max(0, 2 - held), segment.rigid_twists
+
+
+def _moving(segment: Segment, motions: int) -> Component:
+    if motions == 0:
+        return _held()
+    return kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
+
+
+def _held() -> Component:
+    none, empty = np.zeros(0), np.zeros((0, 0))
+    return Component(empty, empty, empty, none, none, lambda x: none, rigid_modes=0)

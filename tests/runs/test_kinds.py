@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The kinds of models as a case file gives them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from runs.case import reading as case_file
+from runs.case.kinds import KINDS
+from runs.case.messages import BadInput
+from runs.pipeline.run import run_case
+from tests.runs.coarse_case import COARSE
+from tests.runs.test_actions import CANTILEVER
+
+RIGID = '[[model]]\nname = "bodies"\nkind = "rigid"\n'
+
+
+def test_each_kind_is_listed_by_the_name_in_its_table() -> None:
+    names = [get_args(table.model_fields["kind"].annotation) for table in KINDS.values()]
+    assert names == [(name,) for name in KINDS]
+
+
+def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
+    """Reference: analytic, free fall q/m of the inner segment across the clearance Δ."""
+    path = tmp_path / "case.toml"
+    text = COARSE.partition("[[model]]")[0] + RIGID
+    path.write_text(text, encoding="utf-8")
+    finished = run_case(case_file.load(str(path)), "", None, tmp_path, lambda *_: None)
+    assert finished is not None
+    summary = finished.results.summary["models"]["bodies"]
+    assert (summary["kind"], summary["degrees_of_freedom"]) == ("rigid", 2)
+    assert summary["energy_residual"] < 1e-5
+    # A uniform load on a free body turns it nowhere.
+    assert summary["first_contact"] == pytest.approx(np.sqrt(2.0 * 7.0e-3 / 1.0), abs=1e-5)
+
+
+def test_rigid_segments_that_cannot_move_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(CANTILEVER + RIGID, encoding="utf-8")
+    with pytest.raises(BadInput) as error:
+        case_file.load(str(path))
+    assert str(error.value) == (
+        f"{path}: model[1].kind: every segment is held, and no rigid one could move; give another "
+        "kind, or elastic supports"
+    )
