@@ -212,7 +212,8 @@ class PowerContact(ContactLaw):
         return replace(self, clearance=clearance)
 
     def __str__(self) -> str:
-        return f"k {self.stiffness:g}, n {self.exponent:g}"
+        below = "" if self.below == self.stiffness else f", {self.below:g} below"
+        return f"k {self.stiffness:g}{below}, n {self.exponent:g}"
 
 
 def contact_terms(laws: Sequence[ContactLaw]) -> Terms:

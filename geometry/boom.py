@@ -63,8 +63,9 @@ class Joint:
         outer, inner: positions of the two in ``Boom.segments``.
         stations: x at which they may touch, rising.
         clearance: Δ in m each way, half the play.
-        stiffness: k of (4) in N/mⁿ when the inner segment presses up.
-        stiffness_below: k when it presses down.
+        stiffness: k of (4) in N/mⁿ when the inner segment presses up, for models that are given
+            no laws.
+        stiffness_below: k when it presses down; the same unless given.
         exponent: n of (4).
         lateral_clearance: Δ along y in m each way; None in a flat boom.
         friction: μ of (28), and of (10) and (11) in space.
@@ -79,9 +80,9 @@ class Joint:
     inner: int
     stations: tuple[float, ...]
     clearance: float
-    stiffness: float
-    stiffness_below: float
-    exponent: float
+    stiffness: float = 0.0
+    stiffness_below: float | None = None
+    exponent: float = 1.0
     lateral_clearance: float | None = None
     friction: float = 0.0
     normal_forces: tuple[float, ...] = ()

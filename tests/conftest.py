@@ -71,9 +71,6 @@ def paper_boom(steel: Material) -> Boom:
         inner=1,
         stations=(9.0, 10.0),
         clearance=7.0e-3,
-        stiffness=1.0e13,
-        stiffness_below=1.0e13,
-        exponent=2.0,
     )
     return Boom((outer, inner), (joint,))
 

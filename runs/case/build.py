@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from dynamics.contact import ContactLaw
 from geometry.boom import (
     Boom,
     BoomError,
     Collar,
     Diaphragm,
+    Direction,
     Joint,
     Lateral,
     Material,
@@ -28,8 +29,7 @@ from geometry.section import (
 from runs.case import actions
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
-from runs.case.schema import Case, JointTable, Model, SegmentTable
-from runs.case.table import ContactTable
+from runs.case.schema import Case, Model, SegmentTable
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -51,39 +51,16 @@ def build_boom(case: Case) -> Boom:
 
 def joined(case: Case, boom: Boom, model: Model) -> Joined:
     """The boom of a case with the contacts of its joints, as a model sees them."""
-    return Joined(boom, contact_laws(case, model), lateral_laws(case, model))
+    lateral = contact_laws(case, model, "y") if boom.spatial else []
+    return Joined(boom, contact_laws(case, model), lateral)
 
 
-def contact_laws(case: Case, model: Model) -> list[ContactLaw]:
-    """The contact law of each joint along z, as a model sees it."""
+def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[ContactLaw]:
+    """The contact law of each joint along one direction, as a model sees it."""
+    own = model.contact
     return [
-        _law(law, 0.5 * joint.play, law.stiffness, law.stiffness_below, law.exponent)
-        for joint, law in ((joint, model.contact or joint) for joint in case.joints)
+        joint.law(direction) if own is None else own.law(joint, direction) for joint in case.joints
     ]
-
-
-def lateral_laws(case: Case, model: Model) -> list[ContactLaw]:
-    """The same along y; none for a flat boom."""
-    laws = []
-    for joint in case.joints:
-        if joint.lateral_play is not None:
-            law = model.contact or joint
-            stiffness = law.stiffness if model.contact else joint.lateral_stiffness or law.stiffness
-            exponent = law.exponent if model.contact else joint.lateral_exponent or law.exponent
-            laws.append(_law(law, 0.5 * joint.lateral_play, stiffness, None, exponent))
-    return laws
-
-
-def _law(
-    table: JointTable | ContactTable,
-    clearance: float,
-    stiffness: float,
-    below: float | None,
-    exponent: float,
-) -> ContactLaw:
-    blow = table.restitution
-    damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
-    return PowerContact(stiffness, exponent, clearance, below, damping)
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
@@ -128,11 +105,6 @@ def _joint(case: Case, index: int) -> Joint:
         inner=names.index(table.inner),
         stations=table.stations,
         clearance=0.5 * table.play,
-        stiffness=table.stiffness,
-        stiffness_below=(
-            table.stiffness if table.stiffness_below is None else table.stiffness_below
-        ),
-        exponent=table.exponent,
         lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
         friction=table.friction,
         normal_forces=table.normal_forces,

@@ -10,11 +10,10 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from runs.case import schema
+from runs.case import contact, schema
 from runs.case.kinds import KINDS
 from runs.case.limits import NAME
 from runs.case.sections import SHAPES
-from runs.case.table import ContactTable, RestitutionTable
 from runs.process.shown import shown
 
 _TABLES: Mapping[str, type[BaseModel]] = {
@@ -26,10 +25,10 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "collars": schema.CollarTable,
     "diaphragms": schema.DiaphragmTable,
     "segment": schema.SegmentTable,
-    "restitution": RestitutionTable,
-    "pad": schema.PadTable,
-    "joint": schema.JointTable,
-    "contact": ContactTable,
+    "restitution": contact.RestitutionTable,
+    "pad": contact.PadTable,
+    "joint": contact.JointTable,
+    "contact": contact.ContactTable,
     "stop": schema.StopTable,
     "load": schema.LoadTable,
     "payload": schema.PayloadTable,

@@ -35,6 +35,9 @@ History = TypeVar("History", bound=HistoryTable)
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
+# Columns of a CSV file.
+_OF_HISTORY = "time in s and factor"
+
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
 
@@ -184,8 +187,10 @@ def _read_tables(case: Case, path: str) -> Case:
     )
 
 
-def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
-    remedy = "give a CSV file of two columns without a heading, time in s and factor"
+def _pairs(
+    path: str, key: str, file: str, columns: str = _OF_HISTORY
+) -> tuple[tuple[float, float], ...]:
+    remedy = f"give a CSV file of two columns without a heading, {columns}"
     place = Path(path).parent / file
     name = f"'{shown(file)}'"
     try:
@@ -202,8 +207,9 @@ def _pairs(path: str, key: str, file: str) -> tuple[tuple[float, float], ...]:
     if len(pairs) < 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
         raise BadInput(path, key, f"{name} has other columns, or one line alone; {remedy}")
     if (np.diff(pairs[:, 0]) <= 0.0).any():
-        raise BadInput(path, key, f"the times in {name} must rise")
-    return tuple((float(t), float(factor)) for t, factor in pairs)
+        first, _, _ = columns.partition(" ")
+        raise BadInput(path, key, f"the {first}s in {name} must rise")
+    return tuple((float(x), float(y)) for x, y in pairs)
 
 
 def _unreadable(error: Exception) -> tuple[str, str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 from pydantic import BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
 
+from runs.case.contact import JointTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
 from runs.case.limits import (
@@ -32,7 +33,6 @@ from runs.case.limits import (
     Text,
 )
 from runs.case.sections import AnySection
-from runs.case.table import RestitutionTable
 
 
 class TimeTable(Table):
@@ -174,66 +174,6 @@ class SegmentTable(Table):
     )
     diaphragms: Annotated[tuple[DiaphragmTable, ...], Few] = Field(
         (), description="the plates that close the box, which only shells have, mass and all"
-    )
-
-
-class PadTable(Table):
-    """A slide pad in a corner: a patch of the inner segment's wall."""
-
-    length: Positive = Field(description="the length along x in m")
-    width: Positive = Field(description="the width from the corner inwards in m")
-
-
-class JointTable(Table):
-    """Where an inner segment slides in an outer one, with play."""
-
-    outer: str = Field(description="the name of the outer segment")
-    inner: str = Field(description="the name of the inner segment")
-    stations: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
-        description="the x in m at which the two may touch, rising"
-    )
-    play: NotNegative = Field(description="the play in m, the clearance above and below together")
-    stiffness: Positive = Field(
-        description="the contact stiffness in N/m^n where the inner segment presses up"
-    )
-    stiffness_below: NotNegative | None = Field(
-        None,
-        description="the contact stiffness in N/m^n where the inner segment presses down; the "
-        "same as above unless given",
-    )
-    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
-    restitution: RestitutionTable | None = Field(
-        None, description="the table of the contact's own damping; none unless given"
-    )
-    friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
-    normal_forces: Annotated[tuple[NotNegative, ...], Few] = Field(
-        (),
-        description="the forces in N that press the segments at each station for the friction; in "
-        "space the contact forces of the other plane do unless given",
-    )
-    lateral_play: NotNegative | None = Field(
-        None,
-        description="the play to the sides in m, left and right together; with it the boom moves "
-        "in space",
-    )
-    lateral_stiffness: Positive | None = Field(
-        None, description="the contact stiffness to the sides in N/m^n; the same unless given"
-    )
-    lateral_exponent: Exponent | None = Field(
-        None, description="the exponent n to the sides; the same unless given"
-    )
-    tied: Flag = Field(
-        False, description="whether the two deflect alike at the stations, without play"
-    )
-    pad: PadTable | None = Field(
-        None,
-        description="the table of the slide pads' size, which shells alone heed; the corners of "
-        "the boxes along contact_length unless given",
-    )
-    contact_length: Positive | None = Field(
-        None,
-        description="the length along x in m on which stations press the corners, as long as a "
-        "slide pad, which shells alone heed; a tenth of the overlap unless given",
     )
 
 

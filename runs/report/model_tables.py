@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dynamics.predictability.horizon import SHARES
+from runs.case.build import contact_laws
 from runs.pipeline.comparisons import reference_of, rubs
 from runs.pipeline.results import Results
 from runs.report.tables import TextTable
@@ -142,32 +143,20 @@ def step_table(results: Results) -> TextTable:
 
 def law_table(results: Results) -> TextTable | None:
     """The contact law of each joint in each model with play, and the first peak it leads to."""
-    joints = [joint for joint in results.case.joints if not joint.tied]
     models = [model for model in results.ran if not model.play_free]
-    if not joints or not models:
-        return None
     rows = []
     for model in models:
         peak = results.summary["models"][model.name]["first_peak"]["tip"][1]
-        for joint in joints:
-            law = model.contact or joint
-            below = law.stiffness if law.stiffness_below is None else law.stiffness_below
-            rows.append(
-                (
-                    model.name,
-                    f"{joint.inner} in {joint.outer}",
-                    fixed(0.5 * MILLI * joint.play, 1),
-                    number(law.stiffness),
-                    number(below),
-                    f"{law.exponent:g}",
-                    fixed(peak, 1, MILLI),
-                )
-            )
-    headings = (
-        "model", "joint", "clearance\nmm", "stiffness\nN/mⁿ", "below\nN/mⁿ", "exponent n",
-        "first tip peak\nmm",
-    )  # fmt: skip
-    notes = ("Force = stiffness · penetrationⁿ, beyond the clearance each way.",)
+        laws = contact_laws(results.case, model)
+        for joint, law in zip(results.case.joints, laws, strict=True):
+            if not joint.tied:
+                where = f"{joint.inner} in {joint.outer}"
+                clearance = fixed(0.5 * MILLI * joint.play, 1)
+                rows.append((model.name, where, clearance, str(law), fixed(peak, 1, MILLI)))
+    headings = "model", "joint", "clearance\nmm", "law\nk in N/mⁿ", "first tip peak\nmm"
+    notes = ("Force = k · penetrationⁿ, beyond the clearance each way.",)
+    if not rows:
+        return None
     return TextTable("Contact laws", headings, rows, notes, name="laws", statements=("S9",))
 
 

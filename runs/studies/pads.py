@@ -13,7 +13,8 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.contact_places import Patch, pads, patch
 from runs.case.build import build_boom
-from runs.case.schema import Case, PadTable
+from runs.case.contact import PadTable
+from runs.case.schema import Case
 from runs.report.tables import TextTable
 from runs.studies.motions import SLOW, compliance, gap_system, model_of
 from runs.studies.study import Proof

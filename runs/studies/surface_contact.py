@@ -18,7 +18,7 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
-from runs.case.build import build_boom
+from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.report.tables import TextTable
@@ -303,9 +303,8 @@ def _proofs(case: Case, system: GapSystem) -> list[Proof]:
     start, end = build_boom(case).overlap(joint)
     law = system.laws[0]
     whole = _upper_stiffness(system)
-    contact = model_of(case, "shell").contact
-    assert contact is not None
-    n, k = contact.exponent, contact.stiffness * len(joint.stations)
+    upper, _ = contact_laws(case, model_of(case, "shell"))[0].terms
+    n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:
         """Of the inner segment this high at its tail, beyond the play, and rising so."""

@@ -19,8 +19,8 @@ from dynamics.trajectory import Trajectory
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
+from runs.case.contact import ContactTable
 from runs.case.schema import Case
-from runs.case.table import ContactTable
 from runs.paper.rules import PEAK_SCATTER, judge
 from runs.paper.statements import STATEMENTS
 from runs.pipeline.results import Results

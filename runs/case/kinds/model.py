@@ -17,8 +17,8 @@ from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
-from runs.case.limits import Name, Positive
-from runs.case.table import ContactTable, Table
+from runs.case.contact import ContactTable
+from runs.case.limits import Name, Positive, Table
 
 if TYPE_CHECKING:
     from mpi4py import MPI

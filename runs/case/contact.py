@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How segments touch, as a case file says it: joints, and the contact law of one model."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from geometry.boom import Direction
+from runs.case.limits import (
+    MOST_STATIONS,
+    Exponent,
+    Few,
+    Flag,
+    NotNegative,
+    Number,
+    Positive,
+    Table,
+)
+
+
+class RestitutionTable(Table):
+    """How much of its speed a blow gives back."""
+
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = Field(
+        description="the coefficient of restitution"
+    )
+    speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
+
+
+class PadTable(Table):
+    """A slide pad in a corner: a patch of the inner segment's wall."""
+
+    length: Positive = Field(description="the length along x in m")
+    width: Positive = Field(description="the width from the corner inwards in m")
+
+
+class JointTable(Table):
+    """Where an inner segment slides in an outer one, with play."""
+
+    outer: str = Field(description="the name of the outer segment")
+    inner: str = Field(description="the name of the inner segment")
+    stations: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
+        description="the x in m at which the two may touch, rising"
+    )
+    play: NotNegative = Field(description="the play in m, the clearance above and below together")
+    stiffness: Positive = Field(
+        description="the contact stiffness in N/m^n where the inner segment presses up"
+    )
+    stiffness_below: NotNegative | None = Field(
+        None,
+        description="the contact stiffness in N/m^n where the inner segment presses down; the "
+        "same as above unless given",
+    )
+    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+    friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
+    normal_forces: Annotated[tuple[NotNegative, ...], Few] = Field(
+        (),
+        description="the forces in N that press the segments at each station for the friction; in "
+        "space the contact forces of the other plane do unless given",
+    )
+    lateral_play: NotNegative | None = Field(
+        None,
+        description="the play to the sides in m, left and right together; with it the boom moves "
+        "in space",
+    )
+    lateral_stiffness: Positive | None = Field(
+        None, description="the contact stiffness to the sides in N/m^n; the same unless given"
+    )
+    lateral_exponent: Exponent | None = Field(
+        None, description="the exponent n to the sides; the same unless given"
+    )
+    tied: Flag = Field(
+        False, description="whether the two deflect alike at the stations, without play"
+    )
+    pad: PadTable | None = Field(
+        None,
+        description="the table of the slide pads' size, which shells alone heed; the corners of "
+        "the boxes along contact_length unless given",
+    )
+    contact_length: Positive | None = Field(
+        None,
+        description="the length along x in m on which stations press the corners, as long as a "
+        "slide pad, which shells alone heed; a tenth of the overlap unless given",
+    )
+
+    def law(self, direction: Direction) -> ContactLaw:
+        """The contact law of each station along z, or in space along y."""
+        if direction == "z":
+            return _law(self, 0.5 * self.play, self.stiffness, self.stiffness_below, self.exponent)
+        assert self.lateral_play is not None
+        return _law(
+            self,
+            0.5 * self.lateral_play,
+            self.lateral_stiffness or self.stiffness,
+            None,
+            self.lateral_exponent or self.exponent,
+        )
+
+
+class ContactTable(Table):
+    """The contact law that one model uses in all joints, instead of the joints' own."""
+
+    stiffness: Positive = Field(description="the contact stiffness in N/m^n")
+    stiffness_below: NotNegative | None = Field(
+        None, description="the contact stiffness in N/m^n below; the same as above unless given"
+    )
+    exponent: Exponent = Field(description="the exponent n of the contact law")
+    restitution: RestitutionTable | None = Field(
+        None, description="the table of the contact's own damping; none unless given"
+    )
+
+    def law(self, joint: JointTable, direction: Direction) -> ContactLaw:
+        """As that of a joint, with its play."""
+        below = self.stiffness_below if direction == "z" else None
+        clearance = joint.law(direction).clearance
+        return _law(self, clearance, self.stiffness, below, self.exponent)
+
+
+def _law(
+    table: JointTable | ContactTable,
+    clearance: float,
+    stiffness: float,
+    below: float | None,
+    exponent: float,
+) -> ContactLaw:
+    blow = table.restitution
+    damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
+    return PowerContact(stiffness, exponent, clearance, below, damping)
