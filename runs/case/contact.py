@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, ValidationInfo
+from pydantic_core import PydanticCustomError
 
 from dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from dynamics.contact_table import TableContact
 from geometry.boom import Direction
 from runs.case.limits import (
     MOST_STATIONS,
@@ -18,7 +21,50 @@ from runs.case.limits import (
     Number,
     Positive,
     Table,
+    Text,
 )
+
+# Each is a term of every row in every step of the time loop.
+MOST_POINTS = 1000
+
+
+def table_law(
+    points: Sequence[tuple[float, float]], clearance: float = 0.0, damping: float = 0.0
+) -> TableContact:
+    """A contact that follows pairs of a penetration in m and a force in N.
+
+    Raises:
+        ValueError: no contact can be like that.
+    """
+    depths, forces = zip(*points, strict=True)
+    return TableContact(depths, forces, clearance, damping)
+
+
+def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+    try:
+        table_law(points)
+    except ValueError as error:
+        raise PydanticCustomError("unsuitable", "{what}", {"what": str(error)}) from None
+    return points
+
+
+def _beside_table(given: float | None, info: ValidationInfo) -> float | None:
+    """A power law has a stiffness, and a table has none."""
+    table = next((key for key in ("force_table", "force_file") if info.data.get(key)), None)
+    if given is not None and table is not None:
+        what = f"{table} is given; leave one of them out"
+        raise PydanticCustomError("unsuitable", "{what}", {"what": what})
+    if given is None and table is None and info.field_name == "stiffness":
+        raise PydanticCustomError("missing", "missing")
+    return given
+
+
+Forces = Annotated[
+    tuple[tuple[Number, Number], ...],
+    Field(min_length=1, max_length=MOST_POINTS),
+    AfterValidator(_check_points),
+]
+OrTable = Annotated[Positive | None, AfterValidator(_beside_table)]
 
 
 class RestitutionTable(Table):
@@ -46,10 +92,20 @@ class JointTable(Table):
         description="the x in m at which the two may touch, rising"
     )
     play: NotNegative = Field(description="the play in m, the clearance above and below together")
-    stiffness: Positive = Field(
-        description="the contact stiffness in N/m^n where the inner segment presses up"
+    force_table: Forces | None = Field(
+        None,
+        description="pairs of a penetration in m and a force in N, straight lines between them "
+        "from 0 on, instead of stiffness and exponent",
     )
-    stiffness_below: NotNegative | None = Field(
+    force_file: Text | None = Field(
+        None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+    stiffness: OrTable = Field(
+        None,
+        validate_default=True,
+        description="the contact stiffness in N/m^n where the inner segment presses up",
+    )
+    stiffness_below: Annotated[NotNegative | None, AfterValidator(_beside_table)] = Field(
         None,
         description="the contact stiffness in N/m^n where the inner segment presses down; the "
         "same as above unless given",
@@ -106,11 +162,19 @@ class JointTable(Table):
 class ContactTable(Table):
     """The contact law that one model uses in all joints, instead of the joints' own."""
 
-    stiffness: Positive = Field(description="the contact stiffness in N/m^n")
-    stiffness_below: NotNegative | None = Field(
+    force_table: Forces | None = Field(
+        None, description="pairs of a penetration in m and a force in N, instead of the two below"
+    )
+    force_file: Text | None = Field(
+        None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+    stiffness: OrTable = Field(
+        None, validate_default=True, description="the contact stiffness in N/m^n"
+    )
+    stiffness_below: Annotated[NotNegative | None, AfterValidator(_beside_table)] = Field(
         None, description="the contact stiffness in N/m^n below; the same as above unless given"
     )
-    exponent: Exponent = Field(description="the exponent n of the contact law")
+    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
     restitution: RestitutionTable | None = Field(
         None, description="the table of the contact's own damping; none unless given"
     )
@@ -125,10 +189,13 @@ class ContactTable(Table):
 def _law(
     table: JointTable | ContactTable,
     clearance: float,
-    stiffness: float,
+    stiffness: float | None,
     below: float | None,
     exponent: float,
 ) -> ContactLaw:
     blow = table.restitution
     damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
+    if stiffness is None:
+        assert table.force_table is not None
+        return table_law(table.force_table, clearance, damping)
     return PowerContact(stiffness, exponent, clearance, below, damping)

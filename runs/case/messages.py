@@ -116,6 +116,8 @@ def _explain(
         what = f"must be a number from {limits['least']} to below 1, or 'any'"
     elif fault == "literal_error":
         what = f"must be {limits['expected']}"
+    elif fault == "unsuitable":
+        return key, str(limits["what"])
     elif fault == "too_short":
         return key, "empty; give at least one"
     elif fault == "too_long" and limits["max_length"] == 2:

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 
 from geometry.boom import Boom, BoomError
 from runs.case.build import build_boom, check_names, joined
+from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, MOST_TIMES
 from runs.case.messages import BadInput, choices
@@ -31,12 +32,13 @@ from runs.process.shown import shown
 MOST_OUTPUTS = 10_000_000
 
 History = TypeVar("History", bound=HistoryTable)
+Law = TypeVar("Law", JointTable, ContactTable)
 
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
 # Columns of a CSV file.
-_OF_HISTORY = "time in s and factor"
+_OF_HISTORY, _OF_LAW = "time in s and factor", "penetration in m and force in N"
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
@@ -182,8 +184,30 @@ def _read_tables(case: Case, path: str) -> Case:
             for i, history in enumerate(histories, start=1)
         )
 
+    def contact(key: str, table: Law) -> Law:
+        if table.force_file is None:
+            return table
+        points = _pairs(path, f"{key}.force_file", table.force_file, _OF_LAW)
+        try:
+            table_law(points)
+        except ValueError as error:
+            raise BadInput(path, f"{key}.force_file", str(error)) from None
+        return table.model_copy(update={"force_file": None, "force_table": points})
+
+    joints = [contact(f"joint[{i}]", joint) for i, joint in enumerate(case.joints, start=1)]
+    models = [
+        model
+        if model.contact is None
+        else model.model_copy(update={"contact": contact(f"model[{i}].contact", model.contact)})
+        for i, model in enumerate(case.models, start=1)
+    ]
     return case.model_copy(
-        update={"loads": standing("load", case.loads), "base": standing("base", case.base)}
+        update={
+            "joints": tuple(joints),
+            "models": tuple(models),
+            "loads": standing("load", case.loads),
+            "base": standing("base", case.base),
+        }
     )
 
 

@@ -63,8 +63,8 @@ FORMS = {
     ),
     "missing key of a law": (
         CONTACT,
-        "contact = { stiffness = 1e9 }",
-        "model[3].contact.exponent: missing; it is the exponent n of the contact law",
+        "contact = { exponent = 1.0 }",
+        "model[3].contact.stiffness: missing; it is the contact stiffness in N/m^n",
     ),
     "missing mass": (
         "mass_per_length = 55.07\n",

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Contact laws that a case file gives as tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.build import build_boom, contact_laws
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.pipeline.models import build
+from runs.pipeline.motion import Plan
+from tests.runs.coarse_case import COARSE
+
+LAW = "stiffness = 1e13\nexponent = 2.0\n"
+# Penetrations of up to 0.5 mm, by 5 µm.
+DEPTHS = np.linspace(0.0, 5.0e-4, 101)[1:]
+POINTS = [[float(p), float(1e13 * p**2)] for p in DEPTHS]
+
+
+def case_with(folder: Path, law: str) -> Case:
+    path = folder / "case.toml"
+    assert COARSE.count(LAW) == 1
+    path.write_text(COARSE.replace(LAW, law), encoding="utf-8")
+    return case_file.load(str(path))
+
+
+def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
+    """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most."""
+    case = case_with(tmp_path, f"force_table = {POINTS}\n")
+    (law,) = contact_laws(case, case.models[0])
+    power = PowerContact(1e13, 2.0, 7.0e-3)
+    y = np.concatenate([[-1.0], [1.0]]) * (7.0e-3 + np.linspace(0.0, 5.0e-4, 999)[:, None])
+    above = np.abs(law.force(y)) - np.abs(power.force(y))
+    assert -1e-6 < above.min() < 1e-6
+    assert above.max() == pytest.approx(0.25 * 1e13 * (5.0e-6) ** 2, rel=1e-2)
+    assert case_file.load(str(write(tmp_path, toml.dumps(case)))) == case
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "again.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_it_moves_as_the_law_that_it_samples(tmp_path: Path) -> None:
+    """Reference: the power law itself; chords are 60 N off where the contacts press by 10 kN."""
+    tips = []
+    for law in (LAW, f"force_table = {POINTS}\n"):
+        case = case_with(tmp_path, law)
+        boom, model = build_boom(case), case.models[1]
+        motion = Plan.of(build(case, boom, model).system, case, model)
+        tips.append(motion.trajectory(lambda part: None).data["tip"].values[:450])
+    assert np.abs(tips[1] - tips[0]).max() < 1e-3 * np.ptp(tips[0])
+
+
+def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
+    lines = "".join(f"{p!r}, {force!r}\n" for p, force in POINTS)
+    (tmp_path / "pad.csv").write_text(f"# m, N\n{lines}", encoding="utf-8")
+    inline = case_with(tmp_path, f"force_table = {POINTS}\n")
+    assert case_with(tmp_path, 'force_file = "pad.csv"\n') == inline
+    path = tmp_path / "own.toml"
+    own = COARSE.partition("contact = {")
+    path.write_text(
+        own[0] + 'contact = { force_file = "pad.csv" }' + own[2].partition("}")[2], encoding="utf-8"
+    )
+    case = case_file.load(str(path))
+    (law,) = contact_laws(case, case.models[2])
+    (same,) = contact_laws(inline, inline.models[2].model_copy(update={"contact": None}))
+    assert law == same
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        ("exponent = 2.0", "joint[1].stiffness: missing; it is the contact stiffness in N/m^n "
+         "where the inner segment presses up"),
+        ("force_table = [[1e-3, 2.0]]\nstiffness = 1e9",
+         "joint[1].stiffness: force_table is given; leave one of them out"),
+        ("force_table = [[1e-3, 2.0]]\nstiffness_below = 0.0",
+         "joint[1].stiffness_below: force_table is given; leave one of them out"),
+        ("force_table = []", "joint[1].force_table: empty; give at least one"),
+        ("force_table = [[0.0, 0.0], [1e-3, 2.0]]",
+         "joint[1].force_table: depths must be finite and rise from above 0"),
+        ("force_table = [[1e-3, 2.0], [2e-3, 1.0]]",
+         "joint[1].force_table: forces must be positive, and must not fall at the end"),
+        ("force_table = [[1e-3]]",
+         "joint[1].force_table[1]: must be a list of two numbers, got [0.001]"),
+        ('force_file = "words.csv"', "joint[1].force_file: 'words.csv' holds other than numbers; "
+         "give a CSV file of two columns without a heading, penetration in m and force in N"),
+        ('force_file = "back.csv"',
+         "joint[1].force_file: the penetrations in 'back.csv' must rise"),
+        ('force_file = "pulls.csv"',
+         "joint[1].force_file: forces must be positive, and must not fall at the end"),
+    ],
+)  # fmt: skip
+def test_what_is_no_law_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, law: str, message: str
+) -> None:
+    for name, text in (
+        ("words", "p, F\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
+    ):  # fmt: skip
+        (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput) as error:
+        case_with(Path(), f"{law}\n")
+    assert str(error.value) == f"case.toml: {message}"
