@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import AfterValidator, Field, ValidationInfo
 from pydantic_core import PydanticCustomError
 
-from dynamics.contact import ContactLaw, PowerContact, restitution_damping
-from dynamics.contact_table import TableContact
 from geometry.boom import Direction
 from runs.case.limits import (
     MOST_STATIONS,
@@ -24,6 +22,10 @@ from runs.case.limits import (
     Text,
 )
 
+if TYPE_CHECKING:
+    from dynamics.contact import ContactLaw
+    from dynamics.contact_table import TableContact
+
 # Each is a term of every row in every step of the time loop.
 MOST_POINTS = 1000
 
@@ -36,6 +38,8 @@ def table_law(
     Raises:
         ValueError: no contact can be like that.
     """
+    from dynamics.contact_table import TableContact
+
     depths, forces = zip(*points, strict=True)
     return TableContact(depths, forces, clearance, damping)
 
@@ -193,6 +197,8 @@ def _law(
     below: float | None,
     exponent: float,
 ) -> ContactLaw:
+    from dynamics.contact import PowerContact, restitution_damping
+
     blow = table.restitution
     damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
     if stiffness is None:

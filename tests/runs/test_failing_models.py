@@ -136,7 +136,7 @@ def test_wall_times_are_this_run_s_but_for_the_motion(monkeypatch: pytest.Monkey
         sleep(1.0 + first["build"])
         return gap_system(*arguments)
 
-    monkeypatch.setattr("runs.case.kinds.model.gap_system", build)
+    monkeypatch.setattr("beam_model.segment_model.gap_system", build)
     second = seconds()
     assert second["motion"] == first["motion"]
     assert second["build"] > 1.0 + first["build"]

@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from pydantic import Field
 
 from beam_model.component import SegmentModel
-from beam_model.segment_model import gap_system, tied_system
-from dynamics.contact import ContactLaw
-from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
 from runs.case.contact import ContactTable
 from runs.case.limits import Name, Positive, Table
@@ -23,6 +20,8 @@ from runs.case.limits import Name, Positive, Table
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from dynamics.contact import ContactLaw
+    from dynamics.gap_system import GapSystem
     from shell_model.boom_shell import ReducedShell
 
 
@@ -164,6 +163,8 @@ class BeamTable(ModelTable):
         """Each segment in coordinates of its own."""
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+        from beam_model.segment_model import gap_system, tied_system
+
         start = perf_counter()
         segments = self.segments(joined.boom)
         if self.play_free:
