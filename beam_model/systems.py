@@ -14,7 +14,11 @@ from geometry.boom import Boom
 
 
 def joint_laws(boom: Boom) -> list[ContactLaw]:
-    """The power law along z that each joint of a boom states."""
+    """The power law along z that each joint of a boom states.
+
+    >>> [str(law) for law in pt.joint_laws(boom)]
+    ['k 1e+09, n 1']
+    """
     return [
         PowerContact(joint.stiffness, joint.exponent, joint.clearance, joint.stiffness_below)
         for joint in boom.joints

@@ -43,6 +43,9 @@ _LEAST, _DEEPEST = 1.0e-300, 500.0
 class Term(NamedTuple):
     """F = side · k max(side · y − onset, 0)ⁿ.
 
+    >>> pt.PowerContact(1e6, 1.0, clearance=0.01).lower().terms
+    (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)
+
     Args:
         side: 1 where a positive y presses, −1 where a negative one does.
         stiffness: k in N/mⁿ; negative where a law becomes softer.
@@ -150,6 +153,10 @@ class PowerContact(ContactLaw):
 
     Equation (4) of Rusiński and Wyciślok (1997), in the one sign convention that restores;
     n = 3/2 is Hertz, n = 1 a linear stop. A side with stiffness zero never touches.
+
+    >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5, clearance=0.01)
+    >>> law.force(np.array([0.0, 0.01, 0.02]))
+    array([   0.,    0., 1000.])
 
     Args:
         stiffness: k₂ in N/mⁿ.
@@ -276,6 +283,9 @@ def restitution_damping(restitution: float, speed: float) -> float:
 
     With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the right side
     adds up to nothing, whatever k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.
+
+    >>> print(f"{pt.restitution_damping(restitution=0.5, speed=2.0):.4f} s/m")
+    0.7164 s/m
 
     Args:
         restitution: e, speed after over speed before the impact, above 0 and at most 1.

@@ -17,6 +17,10 @@ class TableContact(ContactLaw):
 
     A change of slope is a linear spring that begins there, so that the law is a sum of such.
 
+    >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3), clearance=0.01)
+    >>> round(float(pad.force(np.array(0.0115))), 6)
+    2500.0
+
     Args:
         depths: penetrations in m, rising from above 0; the force is zero at zero.
         forces: in N, positive, one for each depth.

@@ -27,6 +27,10 @@ BALANCE = 1.0e-6
 def equilibrium(system: GapSystem, load: Array) -> Array:
     """(num_modes,) rest position a in √kg·m.
 
+    >>> depth = pt.equilibrium(ball, ball.load)[0]
+    >>> print(f"{1e6 * depth:.2f} µm")
+    -9.81 µm
+
     Args:
         system: its contacts hold what its supports leave free.
         load: (num_modes,) constant modal load in N/√kg.

@@ -38,7 +38,11 @@ class History(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """1 from t = 0 on."""
+    """1 from t = 0 on.
+
+    >>> pt.Step()(np.array([0.0, 1.0]))
+    array([1., 1.])
+    """
 
     kinks = (0.0,)
     peak = 1.0
@@ -50,7 +54,11 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """From 0 to 1 within ``duration`` in s, then 1."""
+    """From 0 to 1 within ``duration`` in s, then 1.
+
+    >>> pt.Ramp(0.5)(np.array([0.0, 0.25, 1.0]))
+    array([0. , 0.5, 1. ])
+    """
 
     duration: float
 
@@ -73,6 +81,9 @@ class Ramp:
 @dataclass(frozen=True, slots=True)
 class Sine:
     """sin(2π f t + φ).
+
+    >>> pt.Sine(frequency=2.0)(np.array([0.0, 0.125])).round(6)
+    array([0., 1.])
 
     Args:
         frequency: f in Hz, positive.
@@ -103,6 +114,10 @@ class Sine:
 @dataclass(frozen=True, slots=True)
 class Table:
     """Straight lines between points, held constant outside them.
+
+    >>> gust = pt.Table(times=[0.0, 1.0, 3.0], values=[0.0, 2.0, 0.0])
+    >>> gust(np.array([0.5, 2.0, 9.0])), gust.peak
+    (array([1., 1., 0.]), 2.0)
 
     Args:
         times: in s, rising.
@@ -145,6 +160,11 @@ class Excitation:
 
     Between kinks it is integrated exactly where the history is straight, else over one time step
     as a straight line.
+
+    >>> lifted = replace(ball, excitations=[pt.Excitation(np.array([12.0]), pt.Ramp(0.1))])
+    >>> height = pt.simulate(lifted, 1.0).data["height"]
+    >>> print(f"{float(height[-1]):.1f} m")
+    0.9 m
 
     Args:
         load: (num_modes,) in N/√kg.

@@ -15,6 +15,14 @@ class DryFriction:
     (28) of Rusiński and Wyciślok (1997) with a prescribed normal force; (11), where contact forces
     of the other plane press.
 
+    >>> rubbed = replace(
+    ...     ball, load=np.zeros(1), friction_rows=np.ones((1, 1)),
+    ...     frictions=[pt.DryFriction(coefficient=0.2, station=0, normal_force=10.0)],
+    ... )
+    >>> slid = pt.simulate(rubbed, 1.0, position=[1.0], velocity=[-1.0])
+    >>> print(f"{float(slid.data['height'][-1]):.3f} m")
+    0.750 m
+
     Args:
         coefficient: μ, not negative.
         station: position in the system's stations.

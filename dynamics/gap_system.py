@@ -26,7 +26,11 @@ Array = npt.NDArray[np.float64]
 
 
 class Observer(NamedTuple):
-    """A named output: its row (num_modes,) over the modal coordinates, and its unit."""
+    """A named output: its row (num_modes,) over the modal coordinates, and its unit.
+
+    >>> pt.Observer(np.ones(1)).unit
+    'm'
+    """
 
     row: Array
     unit: str = "m"
@@ -35,6 +39,20 @@ class Observer(NamedTuple):
 @dataclass(frozen=True, slots=True)
 class GapSystem:
     """Modal equations of motion with gap contact and dry friction.
+
+    A ball of 1 kg above a springy floor:
+
+    >>> ball = pt.GapSystem(
+    ...     omega2=np.zeros(1),
+    ...     load=np.array([-9.81]),
+    ...     rows=np.ones((1, 1)),
+    ...     laws=[pt.PowerContact(1e6, 1.0, clearance=0.0).lower()],
+    ...     station_of_row=np.array([0]),
+    ...     stations=[0.0],
+    ...     observers={"height": pt.Observer(np.ones(1))},
+    ... )
+    >>> ball.num_modes, ball.row_masses
+    (1, array([1.]))
 
     Args:
         omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0.

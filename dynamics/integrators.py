@@ -40,7 +40,12 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Splitting:
-    """:func:`dynamics.splitting.integrate` at a step in s."""
+    """:func:`dynamics.splitting.integrate` at a step in s.
+
+    >>> motion = pt.Splitting(step=1e-5)(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion.energy_residual < 1e-4
+    True
+    """
 
     step: float
 
@@ -56,7 +61,12 @@ class Splitting:
 
 @dataclass(frozen=True, slots=True)
 class Events:
-    """:func:`dynamics.event_driven.integrate_events` at a tolerance."""
+    """:func:`dynamics.event_driven.integrate_events` at a tolerance.
+
+    >>> motion = pt.Events()(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion.energy_residual < 1e-9
+    True
+    """
 
     tolerance: float = TOLERANCE
 
@@ -97,6 +107,10 @@ def simulate(
     integrator: Integrator | None = None,
 ) -> Trajectory:
     """Move a system from its initial state, by default in the way that suits it.
+
+    >>> motion = pt.simulate(ball, duration=1.0, position=[0.5])
+    >>> print(f"{motion.first_contact:.3f} s")
+    0.319 s
 
     Args:
         system, duration, output_step, position, velocity: of the :class:`Motion`.

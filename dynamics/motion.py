@@ -17,6 +17,10 @@ Array = npt.NDArray[np.float64]
 class Motion:
     """The motion of a gap system from its initial state; what every integrator takes.
 
+    >>> motion = pt.Motion(ball, duration=1.0, position=[0.5])
+    >>> motion.outputs, motion.from_rest
+    (1000, False)
+
     Args:
         system: what moves.
         duration: in s; a whole number of output steps is made, at least one.

@@ -33,6 +33,10 @@ STILL = 1.0e-6
 class Trajectory:
     """Motion of one model.
 
+    >>> motion = pt.simulate(ball, duration=1.0, position=[0.5])
+    >>> print(f"{float(abs(motion.data['contact_force_peak']).max()):.0f} N")
+    3142 N
+
     Args:
         data: dims ``time`` and ``station``; the output of each observer;
             ``contact_force`` in N, positive where the inner segment presses up, as the mean

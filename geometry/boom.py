@@ -49,7 +49,12 @@ _OF_HEIGHT = 0.2
 
 @dataclass(frozen=True, slots=True)
 class PadSize:
-    """A slide pad: its length along x and its width from a corner inwards, in m."""
+    """A slide pad: its length along x and its width from a corner inwards, in m.
+
+    >>> padded = replace(boom.joints[0], pad=pt.PadSize(length=0.2, width=0.06))
+    >>> replace(boom, joints=(padded,)).joints[0].pad.length
+    0.2
+    """
 
     length: float
     width: float
@@ -58,6 +63,10 @@ class PadSize:
 @dataclass(frozen=True, slots=True)
 class Joint:
     """Where an inner segment slides in an outer one, touching it at the stations.
+
+    >>> (joint,) = boom.joints
+    >>> boom.overlap(joint)
+    (6.0, 8.0)
 
     Args:
         outer, inner: positions of the two in ``Boom.segments``.
@@ -95,6 +104,10 @@ class Joint:
 class Load:
     """A force on a segment's axis that follows a history.
 
+    >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
+    >>> len(pt.finite_element_system(replace(boom, loads=(gust,))).excitations)
+    1
+
     Args:
         segment: position in ``Boom.segments``.
         direction: along which it acts.
@@ -116,6 +129,10 @@ class Load:
 @dataclass(frozen=True, slots=True)
 class Stop:
     """A rest on the ground that a segment meets when it deflects along z.
+
+    >>> rest = pt.Stop(1, 14.0, 0.1, stiffness=0.0, stiffness_below=1e6, exponent=1.0)
+    >>> replace(boom, stops=(rest,)).stations[-1]
+    (14.0, 'z')
 
     Args:
         segment: position in ``Boom.segments``.
@@ -140,6 +157,24 @@ class Stop:
 @dataclass(frozen=True, slots=True)
 class Boom:
     """Segments from the base to the tip, the joints between them, and what acts on them.
+
+    A clamped arm, and a fly of which 2 m slide in it:
+
+    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    >>> boxes = (
+    ...     pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006),
+    ...     pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005),
+    ... )
+    >>> wall = pt.Support(0.0, "clamped")
+    >>> arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
+    >>> fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=-500.0)
+    >>> joint = pt.Joint(
+    ...     outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3,
+    ...     stiffness=1e9, stiffness_below=1e9, exponent=1.0,
+    ... )
+    >>> boom = pt.Boom((arm, fly), (joint,))
+    >>> boom.tip, boom.stations
+    (14.0, [(6.0, 'z'), (8.0, 'z')])
 
     Raises:
         BoomError: supports, stations, loads or stops outside the segments, an inner box that does

@@ -261,6 +261,10 @@ def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
 class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
+    >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
+    >>> print(f"{1e4 * box.area:.0f} cm²")
+    96 cm²
+
     Args:
         height: distance of the flange mid-lines (along z) in m.
         width: distance of the web mid-lines (along y) in m.

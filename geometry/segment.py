@@ -28,7 +28,12 @@ class BoomError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³."""
+    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³.
+
+    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
+    80.8 GPa
+    """
 
     youngs_modulus: float
     poissons_ratio: float
@@ -44,6 +49,9 @@ class Material:
 class Support:
     """What holds a segment at x: its deflection, along y as along z, and its twist.
 
+    >>> pt.Support(2.0), pt.Support(0.0, "clamped").kind
+    (Support(x=2.0, kind='pinned', stiffness=None), 'clamped')
+
     Args:
         x: m.
         kind: ``pinned`` leaves the slopes free, ``clamped`` holds them too.
@@ -58,7 +66,13 @@ class Support:
 
 @dataclass(frozen=True, slots=True)
 class PointMass:
-    """A mass in kg on the axis at x in m, without inertia against turning."""
+    """A mass in kg on the axis at x in m, without inertia against turning.
+
+    >>> arm = replace(boom.segments[0], masses=(pt.PointMass(x=8.0, mass=200.0),))
+    >>> heavier = pt.finite_element_system(replace(boom, segments=(arm, boom.segments[1])))
+    >>> heavier.row_masses[0] > pt.finite_element_system(boom).row_masses[0]
+    True
+    """
 
     x: float
     mass: float
@@ -67,6 +81,10 @@ class PointMass:
 @dataclass(frozen=True, slots=True)
 class Collar:
     """A doubler around the box, on all walls, whose mid-surfaces stay where they are.
+
+    >>> head = pt.Collar(start=7.5, end=8.0, thickness=0.01)
+    >>> len(replace(boom.segments[0], collars=(head,)).collars)
+    1
 
     Args:
         start, end: x of its ends in m.
@@ -82,6 +100,10 @@ class Collar:
 class Diaphragm:
     """A plate that closes the box at x, welded to its walls.
 
+    >>> plate = pt.Diaphragm(x=0.5, thickness=0.01)
+    >>> len(replace(boom.segments[0], diaphragms=(plate,)).diaphragms)
+    1
+
     Args:
         x: of its mid-surface in m.
         thickness: m.
@@ -94,6 +116,9 @@ class Diaphragm:
 @dataclass(frozen=True, slots=True)
 class Lateral:
     """What a beam in space has beyond one in the plane x-z.
+
+    >>> print(f"{boom.segments[0].lateral.torsion_constant:.1e} m⁴")
+    2.8e-04 m⁴
 
     Args:
         second_moment_of_area: for bending in the plane x-y in m⁴.
@@ -113,6 +138,10 @@ class Lateral:
 @dataclass(frozen=True, slots=True)
 class Segment:
     """One box of the boom, with the numbers of its beam and, where known, its plates.
+
+    >>> fly = boom.segments[1]
+    >>> fly.length, fly.rigid_modes
+    (8.0, 2)
 
     Args:
         name: how messages and results call it.

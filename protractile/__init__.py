@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The public names, imported when they are used: ``import protractile as pt``."""
+"""The public names, imported when they are used: ``import protractile as pt``.
+
+Examples in their docstrings have numpy as ``np``, ``dataclasses.replace``, the ``ball`` of
+``GapSystem`` and the ``boom`` of ``Boom`` at hand.
+"""
 
 from __future__ import annotations
 

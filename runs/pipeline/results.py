@@ -34,6 +34,11 @@ POOR = 0.01
 class Results:
     """One run.
 
+    >>> case = pt.load_case(pt.CASES / "coarse.toml")
+    >>> results = pt.run_case(case, models=["kantorovich-4"])
+    >>> sorted(results.summary["models"])
+    ['kantorovich-4']
+
     Args:
         case: the effective one, with every default filled in.
         trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
