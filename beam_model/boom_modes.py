@@ -85,6 +85,17 @@ class BoomModes:
         """(num_modes,) modal load of one N/m along a segment, in 1/(N/m) of N/√kg."""
         return self._expand(segment, direction, self._component(segment, direction).unit_load)
 
+    def rotation(self, segment: int, x: float, direction: Direction) -> Array:
+        """(num_modes,) row that reads the rotation of a segment's cross-section at x in m."""
+        rotation = self._component(segment, direction).rotation
+        assert rotation is not None
+        return self._expand(segment, direction, rotation(x))
+
+    def load_between(self, segment: int, direction: Direction, start: float, end: float) -> Array:
+        """(num_modes,) modal load of one N/m between two x in m of a segment."""
+        load = self._component(segment, direction).uniform_load(start, end)
+        return self._expand(segment, direction, load)
+
     def _component(self, segment: int, motion: Motion) -> Component:
         return self._models[segment].components[motion]
 

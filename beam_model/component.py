@@ -8,7 +8,8 @@ segment of a symmetric section the three do not know of each other.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -30,6 +31,9 @@ class Component:
         load: (num_dofs,) the segment's own uniform load.
         unit_load: (num_dofs,) a uniform load of one N/m (of one N for the twist).
         at: x in m → (num_dofs,) row that reads the deflection or twist there.
+        rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
+            slope of a beam that is rigid in shear; none of a twist.
+        breaks: x in m between which rows are polynomials.
         rigid_modes: how many motions the supports leave free of strain.
     """
 
@@ -40,6 +44,22 @@ class Component:
     unit_load: Array
     at: Callable[[float], Array]
     rigid_modes: int
+    rotation: Callable[[float], Array] | None = None
+    breaks: Array = field(default_factory=lambda: np.zeros(0))
+
+    def uniform_load(self, start: float, end: float) -> Array:
+        """(num_dofs,) a uniform load of 1 N/m between two x in m."""
+        inside = self.breaks[(self.breaks > start) & (self.breaks < end)]
+        # Gauss points are exact for polynomials of each degree that a piece can have.
+        points, weights = np.polynomial.legendre.leggauss(
+            len(self.load) // max(1, self.breaks.size - 1) + 4
+        )
+        total = np.zeros(len(self.load))
+        for a, b in pairwise([start, *inside, end]):
+            for point, weight in zip(points, weights, strict=True):
+                x = 0.5 * (a + b + point * (b - a))
+                total += 0.5 * (b - a) * weight * self.at(x)
+        return total
 
 
 @dataclass(frozen=True, slots=True)

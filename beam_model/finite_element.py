@@ -102,6 +102,13 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         row[2 * k : 2 * k + 4] = shapes
         return np.asarray(row[free])
 
+    def rotation(x: float) -> Array:
+        k, h = _element(nodes, x)
+        row = np.zeros(num_dofs)
+        shapes, _ = _rotation(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
+        row[2 * k : 2 * k + 4] = shapes
+        return np.asarray(row[free])
+
     block = np.ix_(free, free)
     return Component(
         stiffness=stiffness[block],
@@ -110,6 +117,8 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
         at=deflection,
+        rotation=rotation,
+        breaks=nodes,
         rigid_modes=segment.rigid_modes,
     )
 

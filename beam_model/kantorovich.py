@@ -72,6 +72,7 @@ def kantorovich_bending(
         load=segment.load * basis.integral,
         unit_load=basis.integral,
         at=basis.at,
+        rotation=basis.slope_at,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
     )
 
@@ -204,6 +205,10 @@ class _Basis:
     def at(self, x: float) -> Array:
         """(num_functions,) values at one place in m."""
         return np.array([function(x) for function in self.functions])
+
+    def slope_at(self, x: float) -> Array:
+        """(num_functions,) slopes at one place in m."""
+        return np.array([function.deriv()(x) for function in self.functions])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:

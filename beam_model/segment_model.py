@@ -8,7 +8,7 @@ are the flat boom and the one in space, which has more components and more pads.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -70,7 +70,9 @@ def gap_system(
         damping=modes.damping,
         friction_rows=np.array(friction_rows).reshape(-1, modes.omega2.size),
         frictions=frictions,
-        excitations=_excitations(boom, modes),
+        excitations=[
+            Excitation(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads
+        ],
         station_directions=[direction for _, direction in stations],
     )
 
@@ -104,12 +106,23 @@ def _observers(boom: Boom, modes: BoomModes) -> dict[str, Observer]:
     return observers
 
 
-def _excitations(boom: Boom, modes: BoomModes) -> list[Excitation]:
-    excitations = []
-    for load in boom.loads:
-        if load.x is None:
-            unit = modes.unit_load(load.segment, load.direction)
-        else:
-            unit = modes.displacement(load.segment, load.x, load.direction)
-        excitations.append(Excitation(load.magnitude * unit, load.history))
-    return excitations
+@dataclass(frozen=True, slots=True)
+class _Member:
+    """A segment as loads push it, see :class:`geometry.load.Member`."""
+
+    modes: BoomModes
+    segment: int
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.modes.displacement(self.segment, x, direction)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self.modes.rotation(self.segment, x, direction)
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        if span is None:
+            return self.modes.unit_load(self.segment, direction)
+        return self.modes.load_between(self.segment, direction, *span)
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        return force * self.uniform(direction, None)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
+from geometry.load import Load
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
@@ -98,32 +98,6 @@ class Joint:
     tied: bool = False
     pad: PadSize | None = None
     contact_length: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Load:
-    """A force on a segment's axis that follows a history.
-
-    >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
-    >>> len(pt.finite_element_system(replace(boom, loads=(gust,))).excitations)
-    1
-
-    Args:
-        segment: position in ``Boom.segments``.
-        direction: along which it acts.
-        magnitude: in N/m along the whole segment, or in N at one place.
-        x: the place in m; None for the whole segment.
-        history: what multiplies the magnitude, a history of the dynamics.
-        inertial: whether it is an acceleration of the mass per length along the whole segment,
-            which collars and diaphragms feel beyond that.
-    """
-
-    segment: int
-    direction: Direction
-    magnitude: float
-    x: float | None
-    history: Any
-    inertial: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +223,9 @@ class Boom:
             for x in joint.stations
         }  # fmt: skip
         places |= {stop.x for stop in self.stops if stop.segment == segment}
-        places |= {load.x for load in self.loads if load.segment == segment and load.x is not None}
+        places |= {
+            x for load in self.loads if load.segment == segment for x in load.places.values()
+        }
         places |= {mass.x for mass in self.segments[segment].masses}
         return tuple(sorted(places))
 
@@ -383,8 +359,8 @@ class Boom:
 
     def _check_loads(self) -> None:
         for number, load in enumerate(self.loads, start=1):
-            if load.x is not None:
-                _check_place(f"load[{number}].x", load.x, self.segments[load.segment])
+            for key, x in load.places.items():
+                _check_place(f"load[{number}].{key}", x, self.segments[load.segment])
             if load.direction == "y" and not self.spatial:
                 raise BoomError(
                     f"load[{number}].direction",

@@ -17,7 +17,7 @@ from mpi4py import MPI
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem, Observer
-from geometry.boom import Boom, BoomError, Direction, Load
+from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
@@ -154,7 +154,7 @@ def reduce_boom(
     )
     tied = ties(boom, shells)
     own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
-    timed_loads = [(load, _timed_load(load, shells[load.segment])) for load in boom.loads]
+    timed_loads = [(load, load.push(_Member(shells[load.segment]))) for load in boom.loads]
     readings = [c.reading for c in contacts] + [f.reading for f in frictions] + tied
     krylov = options.krylov
     if options.contact_line == "surface":
@@ -279,19 +279,31 @@ def own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
     return load
 
 
-def _timed_load(load: Load, shell: SegmentShell) -> Array:
-    """(num_owned,) a load at the value 1 of its history, in N.
+@dataclass(frozen=True, slots=True)
+class _Member:
+    """A segment as loads push it, see :class:`geometry.load.Member`; (num_owned,) each.
 
-    At one place it is spread over the walls that carry it in their own plane.
+    At one place a force is spread over the walls that carry it in their own plane, a moment over
+    all of them as bending stress is.
     """
-    if load.x is None:
-        force = load.magnitude * shell.unit_loads[load.direction]
-        if load.inertial:
-            acceleration = load.magnitude / shell.segment.mass_per_length
-            force += acceleration * shell.stiffener_loads[load.direction]
-        return force
-    row = shell.outline(load.x).wall_deflection(load.direction)
-    return load.magnitude * shell.row(row)
+
+    shell: SegmentShell
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.shell.row(self.shell.outline(x).wall_deflection(direction))
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self.shell.row(self.shell.outline(x).rotation(direction))
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        if span is None:
+            return self.shell.unit_loads[direction]
+        return self.shell.load_between(direction, *span)
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        acceleration = force / self.shell.segment.mass_per_length
+        whole = force * self.shell.unit_loads[direction]
+        return whole + acceleration * self.shell.stiffener_loads[direction]
 
 
 def _largest(parts: Array) -> float:

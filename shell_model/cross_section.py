@@ -83,10 +83,10 @@ class Outline:
         nodes, areas = self._area_weights()
         return row_of(self.dofs[nodes, component], areas / areas.sum())
 
-    def rotation(self) -> Row:
+    def rotation(self, direction: Direction = "z") -> Row:
         """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
         nodes, areas = self._area_weights()
-        z = self.places[nodes, 2]
+        z = self.places[nodes, COMPONENT[direction]]
         z = z - (areas @ z) / areas.sum()
         return row_of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 

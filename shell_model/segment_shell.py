@@ -65,16 +65,16 @@ class Matrices:
         masses: Attached,
         copies: float = 1.0,
     ) -> None:
-        self._comm, self._plates, self._holds, self._copies = comm, plates, holds, copies
+        self._comm, self.plates, self._holds, self._copies = comm, plates, holds, copies
         self._springs, self._masses = springs, masses
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
-        return self._assembled(self._plates.forms.stiffness, 1.0, self._springs)
+        return self._assembled(self.plates.forms.stiffness, 1.0, self._springs)
 
     @cached_property
     def mass(self) -> PETSc.Mat:
-        return self._assembled(self._plates.forms.mass, 0.0, self._masses)
+        return self._assembled(self.plates.forms.mass, 0.0, self._masses)
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
         matrix = compat.assemble_matrix(form, self._holds, diagonal)
@@ -178,6 +178,17 @@ class SegmentShell(Shell):
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
         return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)
+
+    def load_between(self, direction: Direction, start: float, end: float) -> Array:
+        """(num_owned,) a uniform load of 1 N/m between mesh lines at two x in m. Collective."""
+        thickness = None
+        if self.mesh is not None:
+            x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
+            thickness = plain_thickness(self.section, self.mesh) * ((x > start) & (x < end))
+        forms = self.matrices.plates.forms
+        loaded = compat.cellwise_function(self.space.mesh, self.comm.bcast(thickness))
+        forms.loaded.x.array[:] = loaded.x.array
+        return _unit_load(self.comm, forms, direction) / self.section.area * self.free
 
     def row(self, weights: Row) -> Array:
         """(num_owned,) this rank's part of a row given as global dof → weight."""

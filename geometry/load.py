@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Loads on the segments of a boom: each kind says where it acts, and what it pushes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.section import Direction
+
+Array = npt.NDArray[np.float64]
+
+
+class Member(Protocol):
+    """A segment of a model as loads push it; (num_dofs,) forces on its coordinates each."""
+
+    def force(self, x: float, direction: Direction) -> Array:
+        """1 N at x in m."""
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        """1 N·m at x in m, in the plane of the direction, towards a larger slope."""
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        """1 N/m between two x in m; along the whole segment where none are given."""
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        """An acceleration of all masses per length which the plain segment feels as so many N/m."""
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A force on a segment's axis that follows a history.
+
+    >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
+    >>> len(pt.finite_element_system(replace(boom, loads=(gust,))).excitations)
+    1
+
+    Args:
+        segment: position in ``Boom.segments``.
+        direction: along which it acts.
+        magnitude: in N/m along the whole segment, or in N at one place.
+        x: the place in m; None for the whole segment.
+        history: what multiplies the magnitude, a history of the dynamics.
+        inertial: whether it is an acceleration of the mass per length along the whole segment,
+            which collars and diaphragms feel beyond that.
+    """
+
+    segment: int
+    direction: Direction
+    magnitude: float
+    x: float | None
+    history: Any
+    inertial: bool = False
+
+    @property
+    def places(self) -> Mapping[str, float]:
+        """x in m of mesh lines that it needs, by the keys that give them."""
+        return {} if self.x is None else {"x": self.x}
+
+    def push(self, member: Member) -> Array:
+        """(num_dofs,) what it does at the value 1 of its history."""
+        if self.x is not None:
+            return self.magnitude * member.force(self.x, self.direction)
+        if self.inertial:
+            return member.inertia(self.direction, self.magnitude)
+        return self.magnitude * member.uniform(self.direction, None)
