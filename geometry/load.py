@@ -68,3 +68,26 @@ class Load:
         if self.inertial:
             return member.inertia(self.direction, self.magnitude)
         return self.magnitude * member.uniform(self.direction, None)
+
+
+@dataclass(frozen=True, slots=True)
+class PartialLoad(Load):
+    """A uniform load in N/m between two x in m."""
+
+    span: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def places(self) -> Mapping[str, float]:
+        return dict(zip(("from", "to"), self.span, strict=True))
+
+    def push(self, member: Member) -> Array:
+        return self.magnitude * member.uniform(self.direction, self.span)
+
+
+@dataclass(frozen=True, slots=True)
+class Moment(Load):
+    """A moment in N·m at one place, which bends the segment towards a larger slope."""
+
+    def push(self, member: Member) -> Array:
+        assert self.x is not None
+        return self.magnitude * member.moment(self.x, self.direction)

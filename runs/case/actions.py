@@ -12,7 +12,8 @@ import numpy.typing as npt
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Sine, Step, Table
 from dynamics.gap_system import GapSystem
-from geometry.boom import BoomError, Load, Segment, Stop
+from geometry.boom import BoomError, Segment, Stop
+from geometry.load import Load, Moment, PartialLoad
 from runs.case.messages import choices
 from runs.case.schema import Case, HistoryTable, LoadTable
 
@@ -48,13 +49,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         BoomError: a name that is no segment, a history that cannot be.
     """
     given = [
-        Load(
-            segment=_segment(f"load[{number}].segment", table.segment, segments),
-            direction=table.direction,
-            magnitude=table.magnitude,
-            x=table.x,
-            history=_load_history(f"load[{number}]", table),
-        )
+        _load(f"load[{number}]", table, segments)
         for number, table in enumerate(case.loads, start=1)
     ]
     last = len(segments) - 1
@@ -80,6 +75,25 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
             for point in segments[index].masses
         ]
     return tuple(given)
+
+
+def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
+    index = _segment(f"{where}.segment", table.segment, segments)
+    acts = index, table.direction, table.magnitude, table.x, _load_history(where, table)
+    if table.moment and table.x is None:
+        raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
+    for key, given in (("from", table.start), ("to", table.end)):
+        if given is not None and table.x is not None:
+            raise BoomError(f"{where}.{key}", "x is given; leave one of them out")
+    if table.moment:
+        return Moment(*acts)
+    if table.start is None and table.end is None:
+        return Load(*acts)
+    start = segments[index].start if table.start is None else table.start
+    end = segments[index].end if table.end is None else table.end
+    if not start < end:
+        raise BoomError(f"{where}.to", f"must be beyond from, {start:g} m, got {end:g} m")
+    return PartialLoad(*acts, span=(start, end))
 
 
 def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:

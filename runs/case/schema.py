@@ -222,7 +222,20 @@ class LoadTable(HistoryTable):
     x: Number | None = Field(
         None, description="the x in m of a point load; along the whole segment unless given"
     )
-    magnitude: Number = Field(description="the load in N at x, or in N/m along the segment")
+    start: Number | None = Field(
+        None,
+        alias="from",
+        description="the x in m from which a load along the segment acts; its start unless given",
+    )
+    end: Number | None = Field(
+        None, alias="to", description="the x in m to which it acts; the segment's end unless given"
+    )
+    magnitude: Number = Field(
+        description="the load in N at x, or in N/m along the segment; the moment in N m"
+    )
+    moment: Flag = Field(
+        False, description="whether it is a moment at x, towards a larger slope of the segment"
+    )
     released: Flag = Field(
         False, description="whether it has acted for ever, and is let go at t = 0"
     )

@@ -16,7 +16,8 @@ _KEYS = (
     "diaphragms", "friction", "normal_forces", "lateral_play", "restitution", "tied", "pad",
     "stiffness_below", "exponent", "step", "modes", "tolerance", "contact_line", "surface_points",
     "rotary_inertia", "theory", "base", "contact", "demand", "ramp", "frequency", "table", "file",
-    "released", "direction", "kind", "name", "x", "gravity",
+    "released", "direction", "kind", "name", "x", "gravity", "from", "to", "moment", "force_table",
+    "force_file",
 )  # fmt: skip
 _TABLES = (
     "[payload]\nmass = {}\n", "[damping]\nmodal = {}\n", "[damping]\nstiffness = {}\n",

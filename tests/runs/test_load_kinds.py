@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Loads on a part of a segment and moments, in every kind of model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from dynamics.excitation import Sine
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.pipeline.models import build, workshop
+from tests.runs.test_actions import BENDING, CANTILEVER, ELEMENTS
+
+PART = '[[load]]\nsegment = "beam"\nfrom = 3.0\nto = 7.0\nmagnitude = -500.0\n'
+MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\n'
+SERIES = '[[model]]\nname = "series"\nkind = "kantorovich"\nterms = [6]\nbase = "complete"\n'
+SHELL = '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.1\ncontact_tolerance = "any"\n'
+BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
+
+
+def case_with(folder: Path, load: str, model: str = ELEMENTS, beam: str = CANTILEVER) -> Case:
+    path = folder / "case.toml"
+    path.write_text(beam + load + model, encoding="utf-8")
+    return case_file.load(str(path))
+
+
+def tip_at_rest(case: Case, folder: Path) -> float:
+    """Deflection of the tip in m under all loads at the value 1 of their histories."""
+    tools = workshop(MPI.COMM_SELF, folder / "mesh")
+    system = build(case, build_boom(case), case.models[0], tools).system
+    load = system.load + np.sum([x.load for x in system.excitations], axis=0)
+    return float(system.observers["tip"].row @ system.static_response(load))
+
+
+def under_part(bending: float) -> float:
+    """Analytic: −q ∫ x² (3 L − x)/6 dx from 3 to 7 m over E J, the tip of a cantilever."""
+    antiderivative = [10.0 * x**3 / 6.0 - x**4 / 24.0 for x in (3.0, 7.0)]
+    return -500.0 * (antiderivative[1] - antiderivative[0]) / bending
+
+
+def under_moment(bending: float) -> float:
+    """Analytic: M a (L − a/2)/E J."""
+    return 2.0e4 * 6.0 * (10.0 - 3.0) / bending
+
+
+@pytest.mark.parametrize("model", [ELEMENTS, SERIES], ids=["elements", "series"])
+@pytest.mark.parametrize(("load", "expected"), [(PART, under_part), (MOMENT, under_moment)])
+def test_beams_rest_where_statics_put_them(
+    tmp_path: Path, load: str, expected: Callable[[float], float], model: str
+) -> None:
+    """The influence line of the tip is a cubic, or with the moment its slope; both have it."""
+    found = tip_at_rest(case_with(tmp_path, load, model), tmp_path)
+    assert found == pytest.approx(expected(BENDING), rel=1e-9)
+
+
+@pytest.mark.parametrize(("load", "expected"), [(PART, under_part), (MOMENT, under_moment)])
+def test_a_shell_rests_near_a_beam_with_shear(
+    tmp_path: Path, load: str, expected: Callable[[float], float]
+) -> None:
+    """Reference: other model of ours, Timoshenko elements; the mesh is good for 0.5 %."""
+    beam = CANTILEVER.replace("mass_per_length = 83.16\n", BOX).replace(
+        "second_moment_of_area = 3.7986e-4\n", ""
+    )
+    elements = ELEMENTS + 'theory = "timoshenko"\n'
+    beams = tip_at_rest(case_with(tmp_path, load, elements, beam), tmp_path)
+    shell = tip_at_rest(case_with(tmp_path, load, SHELL, beam), tmp_path)
+    assert shell == pytest.approx(beams, rel=5e-3)
+
+
+def test_they_have_histories_and_are_written_again(tmp_path: Path) -> None:
+    case = case_with(tmp_path, PART + "frequency = 2.0\n" + MOMENT)
+    loads = build_boom(case).loads
+    assert [load.history == Sine(2.0) for load in loads] == [True, False]
+    again = tmp_path / "again.toml"
+    again.write_text(toml.dumps(case), encoding="utf-8")
+    assert case_file.load(str(again)) == case
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        (MOMENT.replace("x = 6.0\n", ""), "x: missing; it is the x in m at which the moment acts"),
+        (PART.replace("to = 7.0", "to = 2.0"), "to: must be beyond from, 3 m, got 2 m"),
+        (PART.replace("from = 3.0", "x = 3.0"), "to: x is given; leave one of them out"),
+        (PART.replace("to = 7.0", "to = 12.0"),
+         "to: 12 m lies outside 'beam'; it must be between 0 and 10 m"),
+        (PART.replace("to = 7.0", 'to = "tip"'), "to: must be a number, got 'tip'"),
+    ],
+)  # fmt: skip
+def test_what_cannot_act_is_refused(tmp_path: Path, load: str, message: str) -> None:
+    with pytest.raises(BadInput) as error:
+        case_with(tmp_path, load)
+    assert str(error.value) == f"{tmp_path / 'case.toml'}: load[1].{message}"
