@@ -76,7 +76,7 @@ docs: $(SPHINX) ## these texts, the formulas and the library's pages as a site, 
 	rm -rf docs/api build/docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs build/docs
 
-matrix: ## `make verify` and `make test` on a Debian 13, the quick tests on unstable (needs root)
+matrix: ## `make verify`, `test` and `docs` on a Debian 13, the quick tests on unstable (needs root)
 	@$(MAKE) --no-print-directory --keep-going -j1 matrix-trixie matrix-sid
 
 matrix-%:
