@@ -12,6 +12,8 @@ from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
 
+import protractile
+
 pyproject = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())
 
 project = pyproject["project"]["name"]
@@ -27,6 +29,11 @@ templates_path = ["_templates"]
 
 myst_enable_extensions = ["dollarmath"]
 autodoc_default_options = {"members": True, "ignore-module-all": True, "show-inheritance": True}
+# What `import protractile` gives, by the places where it is documented.
+public = [getattr(protractile, name) for name in dir(protractile)]
+autosummary_context = {
+    "public": [f"{x.__module__}.{x.__qualname__}" for x in public if hasattr(x, "__qualname__")]
+}
 autodoc_member_order = "bysource"
 napoleon_numpy_docstring = False
 add_module_names = False
