@@ -20,6 +20,8 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def example(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     """The module that a test is about, as if run where it stands."""
     monkeypatch.syspath_prepend(str(EXAMPLES))
+    if request.param == "beam_and_shell":
+        pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     yield import_module(request.param)
     for path in EXAMPLES.glob("*.py"):
         sys.modules.pop(path.stem, None)
@@ -112,3 +114,12 @@ def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
     """Reference: analytic, the restitution that the damping is made for."""
     for asked in (0.3, 0.7, 1.0):
         assert example.rebound(asked) == pytest.approx(asked, abs=2e-3)
+
+
+@pytest.mark.slow
+@of("beam_and_shell")
+def test_beams_and_shells_are_one_boom(example: ModuleType) -> None:
+    """Reference: other code, the one to the other; both fly freely at first."""
+    shell, beam = example.shell(), example.beam()
+    assert shell.first_contact == pytest.approx(beam.first_contact, rel=1e-6)
+    assert shell.first_peak()[1] == pytest.approx(beam.first_peak()[1], rel=0.02)
