@@ -17,8 +17,8 @@ from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.excitation import Excitation
-from dynamics.friction import DryFriction
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_builder import GapBuilder
+from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
 
@@ -41,39 +41,24 @@ def gap_system(
     """
     modes = BoomModes(boom, models)
     laws_along = {"z": laws, "y": lateral_laws}
-    contacts: list[tuple[Array, ContactLaw, int]] = []
-    friction_rows: list[Array] = []
-    frictions: list[DryFriction] = []
+    rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
-        law = _law_of(pad, laws_along[pad.direction][pad.number])
-        if law is None:
-            continue
-        if pad.joint.friction > 0.0:
-            friction_rows.append(_relative(modes, pad, pad.rubs))
-            pressed_by = () if pad.joint.normal_forces else (len(contacts),)
-            frictions.append(
-                DryFriction(pad.joint.friction, pad.station, pad.prescribed, pressed_by)
-            )
-        contacts.append((_relative(modes, pad, pad.direction), law, pad.station))
-    stations = boom.stations
-    for station, stop in enumerate(boom.stops, start=len(stations) - len(boom.stops)):
+        law = laws_along[pad.direction][pad.number]
+        approach, slide = (_relative(modes, pad, along) for along in (pad.direction, pad.rubs))
+        pressing = rows.press(pad.station, law, [(pad.side, pad.weight, approach)])
+        rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
+    for number, stop in enumerate(boom.stops):
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        contacts.append((modes.displacement(stop.segment, stop.x, "z"), law, station))
-    return GapSystem(
-        omega2=modes.omega2,
-        load=modes.load,
-        rows=np.array([row for row, _, _ in contacts]).reshape(-1, modes.omega2.size),
-        laws=[law for _, law, _ in contacts],
-        station_of_row=np.array([station for _, _, station in contacts], dtype=np.int64),
-        stations=[x for x, _ in stations],
-        observers=_observers(boom, modes),
-        damping=modes.damping,
-        friction_rows=np.array(friction_rows).reshape(-1, modes.omega2.size),
-        frictions=frictions,
-        excitations=[
-            Excitation(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads
-        ],
-        station_directions=[direction for _, direction in stations],
+        row = modes.displacement(stop.segment, stop.x, "z")
+        rows.press(boom.station_of_stop(number), law, [(0, 1.0, row)])
+    return rows.system(
+        lambda row: row,
+        modes.omega2,
+        modes.load,
+        boom.stations,
+        _observed(boom, modes),
+        [Excitation(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads],
+        modes.damping,
     )
 
 
@@ -83,27 +68,20 @@ def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     return gap_system(replace(boom, joints=tied), models, ())
 
 
-def _law_of(pad: Pad, law: ContactLaw) -> ContactLaw | None:
-    """A pad's part of its joint's law; None on a side where the law never touches."""
-    if pad.side == 0:
-        return law
-    one_sided = law.one_sided(pad.side)
-    return None if one_sided is None else one_sided.shared(pad.weight)
-
-
 def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:
     """(num_modes,) row that reads u − w of a pad's two points."""
     inner = modes.displacement(pad.joint.inner, pad.x, direction, pad.inner)
     return inner - modes.displacement(pad.joint.outer, pad.x, direction, pad.outer)
 
 
-def _observers(boom: Boom, modes: BoomModes) -> dict[str, Observer]:
-    observers = {}
+def _observed(boom: Boom, modes: BoomModes) -> dict[str, tuple[Array, str]]:
+    """Deflections of the boom's ends, with their unit."""
+    observed = {}
     for name, (segment, x) in boom.observed().items():
-        observers[name] = Observer(modes.displacement(segment, x, "z"))
+        observed[name] = modes.displacement(segment, x, "z"), "m"
         if boom.spatial:
-            observers[f"{name}_lateral"] = Observer(modes.displacement(segment, x, "y"))
-    return observers
+            observed[f"{name}_lateral"] = modes.displacement(segment, x, "y"), "m"
+    return observed
 
 
 @dataclass(frozen=True, slots=True)

@@ -213,6 +213,10 @@ class Boom:
         ]
         return between + [(stop.x, "z") for stop in self.stops]
 
+    def station_of_stop(self, number: int) -> int:
+        """The position of a stop in ``stations``."""
+        return len(self.stations) - len(self.stops) + number
+
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """x of all places at which something acts on a segment, rising.
 

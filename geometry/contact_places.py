@@ -85,7 +85,7 @@ class Pad:
         inner, outer: (y, z) in m of the points from the axes of their segments.
         weight: the part of the joint's law on this side that the pad carries.
         rubs: the direction in which it slides.
-        prescribed: the normal force of its friction in N; 0 where its own contact presses.
+        normal_force: of its friction in N; None where its own contact presses.
     """
 
     station: int
@@ -98,7 +98,7 @@ class Pad:
     outer: Offset
     weight: float
     rubs: Direction
-    prescribed: float
+    normal_force: float | None
 
 
 def pads(boom: Boom) -> list[Pad]:
@@ -114,7 +114,7 @@ def pads(boom: Boom) -> list[Pad]:
             if joint.tied:
                 continue
             for k, x in enumerate(joint.stations):
-                normal_force = joint.normal_forces[k] if joint.normal_forces else 0.0
+                normal_force = joint.normal_forces[k] if joint.normal_forces else None
                 for side, inner, outer, weight in _points(boom, joint, direction):
                     found.append(
                         Pad(
@@ -129,7 +129,9 @@ def pads(boom: Boom) -> list[Pad]:
                             weight=weight,
                             rubs="y" if boom.spatial and direction == "z" else "z",
                             # Both sides together rub as the one on the axis does.
-                            prescribed=normal_force * weight * (0.5 if side else 1.0),
+                            normal_force=None
+                            if normal_force is None
+                            else normal_force * weight * (0.5 if side else 1.0),
                         )
                     )
                 station += 1

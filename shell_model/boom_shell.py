@@ -16,7 +16,7 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
@@ -28,7 +28,7 @@ from shell_model.contact.local_compliance import (
     full_compliance,
     local_compliance,
 )
-from shell_model.contact.rows import contacts_and_frictions, ties
+from shell_model.contact.rows import gap_rows, ties
 from shell_model.contact.surface import SurfaceOptions, without_stiff_modes
 from shell_model.cross_section import Outline, Reading, Row
 from shell_model.reduction.coordinates import BoomCoordinates
@@ -149,13 +149,12 @@ def reduce_boom(
         tell("assembly", (number + 1) / len(boom.segments))
 
     start = perf_counter()
-    contacts, frictions = contacts_and_frictions(
-        boom, shells, planes, options.contact_line, options.surface
-    )
+    rows = gap_rows(boom, shells, planes, options.contact_line, options.surface)
     tied = ties(boom, shells)
     own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
     timed_loads = [(load, load.push(_Member(shells[load.segment]))) for load in boom.loads]
-    readings = [c.reading for c in contacts] + [f.reading for f in frictions] + tied
+    contacts = [contact.reading for contact in rows.contacts]
+    readings = contacts + [friction.reading for friction in rows.frictions] + tied
     krylov = options.krylov
     if options.contact_line == "surface":
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
@@ -175,29 +174,21 @@ def reduce_boom(
         if options.contact_line == "surface" and joined:
             own = without_stiff_modes(comm, own, np.column_stack(joined))
         reduced.append(own)
-        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        touching = [i for i, reading in enumerate(contacts) if number in reading]
         lost[touching] += own.lost_compliance[: len(touching)]
     seconds["reduction"] = perf_counter() - start
     start = perf_counter()
     coordinates = BoomCoordinates(comm, shells, reduced, tied)
-    system = GapSystem(
-        omega2=coordinates.omega2,
-        load=np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
-        rows=_stacked(coordinates, [contact.reading for contact in contacts]),
-        laws=[contact.law for contact in contacts],
-        station_of_row=np.array([contact.station for contact in contacts], dtype=np.int64),
-        stations=[x for x, _ in boom.stations],
-        observers={
-            name: Observer(coordinates.row(reading), unit)
-            for name, (reading, unit) in observed.items()
-        },
-        friction_rows=_stacked(coordinates, [friction.reading for friction in frictions]),
-        frictions=[friction.law for friction in frictions],
-        excitations=[
+    system = rows.system(
+        coordinates.row,
+        coordinates.omega2,
+        np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
+        boom.stations,
+        observed,
+        [
             Excitation(coordinates.push(load.segment, push), load.history)
             for load, push in timed_loads
         ],
-        station_directions=[direction for _, direction in boom.stations],
     )
     seconds["rows"] += perf_counter() - start
     start = perf_counter()
@@ -207,12 +198,13 @@ def reduce_boom(
     seconds["fields"] = perf_counter() - start
     start = perf_counter()
     apart = BoomCoordinates(comm, shells, reduced, ())
-    whole = compliance(apart.omega2, _stacked(apart, [contact.reading for contact in contacts]))
+    apart_rows = np.array([apart.row(reading) for reading in contacts])
+    whole = compliance(apart.omega2, apart_rows.reshape(-1, apart.omega2.size))
     laws_of_rows, stations = system.laws, system.station_of_row.tolist()
     local = local_compliance(whole, laws_of_rows, stations)
     coarse = assemble_segments(boom, options.coarser, comm)
-    same, _ = contacts_and_frictions(boom, coarse, planes, options.contact_line, options.surface)
-    coarser = local_compliance(full_compliance(coarse, same), laws_of_rows, stations)
+    same = gap_rows(boom, coarse, planes, options.contact_line, options.surface)
+    coarser = local_compliance(full_compliance(coarse, same.contacts), laws_of_rows, stations)
     off = extrapolated_error(local, coarser, options.order)
     seconds["mesh error"] = perf_counter() - start
     return ReducedShell(
@@ -309,12 +301,6 @@ class _Member:
 def _largest(parts: Array) -> float:
     """Of those that are known; NaN where none is."""
     return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
-
-
-def _stacked(coordinates: BoomCoordinates, readings: Sequence[Reading]) -> Array:
-    """(num_readings, num_modes) a row for each reading."""
-    rows = [coordinates.row(reading) for reading in readings]
-    return np.array(rows).reshape(-1, coordinates.omega2.size)
 
 
 def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Reading, str]]:

@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.contact import ContactLaw
-from shell_model.contact.rows import Contact
+from dynamics.gap_builder import Contact
+from shell_model.cross_section import Reading
 from shell_model.reduction.products import gram
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell
@@ -36,7 +37,7 @@ def compliance(omega2: Array, rows: Array) -> Array:
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
-def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact]) -> Array:
+def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[Reading]]) -> Array:
     """(num_contacts, num_contacts) the same of shells that are not reduced. Collective."""
     found = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):

@@ -10,12 +10,12 @@ leaves the stations to friction.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from dynamics.contact import ContactLaw, PowerContact
-from dynamics.friction import DryFriction
-from geometry.boom import Boom, BoomError, Direction
+from dynamics.gap_builder import Contact, GapBuilder
+from geometry.boom import Boom, BoomError, Direction, Stop
 from geometry.contact_places import ContactLine, Pad, Stretch, pads, patch
+from geometry.section import Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.stations import (
     Touch,
@@ -32,28 +32,13 @@ from shell_model.cross_section import Reading, relative
 from shell_model.segment_shell import SegmentShell
 
 
-class Contact(NamedTuple):
-    """One contact row: the approach it reads, the law it follows, its station."""
-
-    reading: Reading
-    law: ContactLaw
-    station: int
-
-
-class Friction(NamedTuple):
-    """One friction row: the slide it reads, and what rubs."""
-
-    reading: Reading
-    law: DryFriction
-
-
-def contacts_and_frictions(
+def gap_rows(
     boom: Boom,
     shells: Sequence[SegmentShell],
     laws: Mapping[Direction, Sequence[ContactLaw]],
     line: ContactLine,
     surface: SurfaceOptions,
-) -> tuple[list[Contact], list[Friction]]:
+) -> GapBuilder[Reading]:
     """Rows of every pad, surface and stop. Collective.
 
     Args:
@@ -68,8 +53,7 @@ def contacts_and_frictions(
     """
     _check_line(boom, line)
     points = surface_points(boom, shells, laws, surface) if line == "surface" else []
-    contacts = [Contact(point.reading, point.law, point.station) for point in points]
-    frictions: list[Friction] = []
+    rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
     corners = [CornerLines(shell) for shell in shells]
     by_points = line == "across" or any(joint.pad for joint in boom.joints)
     walls = [WallPoints(shell) for shell in shells] if by_points else []
@@ -78,18 +62,14 @@ def contacts_and_frictions(
         if line == "surface":
             pressing = tuple(i for i, point in enumerate(points) if _presses(point, pad))
         else:
-            first = len(contacts)
             law = laws[pad.direction][pad.number]
-            for side, weight, reading in touch.points:
-                one_sided = law.one_sided(side)
-                if one_sided is not None:
-                    contacts.append(Contact(reading, one_sided.shared(weight), pad.station))
-            pressing = tuple(range(first, len(contacts)))
-        if pad.joint.friction > 0.0 and pressing:
-            pressed_by = () if pad.joint.normal_forces else pressing
-            friction = DryFriction(pad.joint.friction, pad.station, pad.prescribed, pressed_by)
-            frictions.append(Friction(touch.slide, friction))
-    return contacts + _stop_contacts(boom, corners), frictions
+            pressing = rows.press(pad.station, law, touch.points)
+        rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
+    for number, stop in enumerate(boom.stops):
+        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
+        flanges = _flanges(boom, stop, corners[stop.segment])
+        rows.press(boom.station_of_stop(number), law, flanges)
+    return rows
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
@@ -114,18 +94,13 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
     return found
 
 
-def _stop_contacts(boom: Boom, corners: Sequence[CornerLines]) -> list[Contact]:
+def _flanges(boom: Boom, stop: Stop, corners: CornerLines) -> list[tuple[Side, float, Reading]]:
     """A stop meets a flange above its webs, both at once."""
-    contacts = []
-    for station, stop in enumerate(boom.stops, start=len(boom.stations) - len(boom.stops)):
-        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        stretch = Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop))
-        for side in (1, -1):
-            one_sided = law.one_sided(side)
-            if one_sided is not None:
-                row = corners[stop.segment].deflection(stretch, "z", 0.0, side)
-                contacts.append(Contact({stop.segment: row}, one_sided, station))
-    return contacts
+    stretch = Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop))
+    sides: tuple[Side, Side] = (1, -1)
+    return [
+        (side, 1.0, {stop.segment: corners.deflection(stretch, "z", 0.0, side)}) for side in sides
+    ]
 
 
 def _touch(

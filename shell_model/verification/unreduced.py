@@ -24,9 +24,10 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
+from dynamics.gap_builder import Contact, Friction
 from geometry.boom import Boom, BoomError
 from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
-from shell_model.contact.rows import Contact, Friction, contacts_and_frictions
+from shell_model.contact.rows import gap_rows
 from shell_model.cross_section import Reading
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
@@ -55,8 +56,8 @@ class FullShell:
     comm: MPI.Comm
     shells: Sequence[SegmentShell]
     loads: Sequence[Array]
-    contacts: Sequence[Contact]
-    frictions: Sequence[Friction]
+    contacts: Sequence[Contact[Reading]]
+    frictions: Sequence[Friction[Reading]]
     observers: Mapping[str, Reading]
 
     @property
@@ -115,19 +116,17 @@ def assemble_boom(
             "the unreduced shell moves in the plane, under constant loads, without tied joints",
         )
     shells = assemble_segments(boom, options, comm)
-    contacts, frictions = contacts_and_frictions(
-        boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
-    )
-    if any(contact.law.damping > 0.0 for contact in contacts):
+    rows = gap_rows(boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface)
+    if any(contact.law.damping > 0.0 for contact in rows.contacts):
         raise BoomError("joint", "the unreduced shell takes contacts without damping")
-    if any(friction.law.pressed_by for friction in frictions):
+    if any(friction.law.pressed_by for friction in rows.frictions):
         raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
     return FullShell(
         comm,
         shells,
         [own_load(boom, number, shell) for number, shell in enumerate(shells)],
-        contacts,
-        frictions,
+        rows.contacts,
+        rows.frictions,
         {
             name: {number: shells[number].outline(x).mean_deflection()}
             for name, (number, x) in boom.observed().items()

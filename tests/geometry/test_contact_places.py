@@ -100,7 +100,7 @@ def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
         here = [pad for pad in found if pad.station == station]
         for side in (1, -1):
             assert sum(pad.weight for pad in here if pad.side == side) == 1.0
-        assert sum(pad.prescribed for pad in here) == force
+        assert sum(pad.normal_force or 0.0 for pad in here) == force
 
 
 @pytest.mark.parametrize(

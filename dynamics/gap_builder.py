@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""From what touches, rubs and is observed to a gap system, whatever reads it.
+
+A beam reads a place by its modes at once; a shell gathers forms of reading, reduces itself on
+them, and reads them by the modes that it then has. Both press and rub by the same rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.contact import ContactLaw
+from dynamics.excitation import Excitation
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+
+Array = npt.NDArray[np.float64]
+R = TypeVar("R")
+
+
+class Contact(NamedTuple, Generic[R]):
+    """One contact row: the approach it reads, the law it follows, its station."""
+
+    reading: R
+    law: ContactLaw
+    station: int
+
+
+class Friction(NamedTuple, Generic[R]):
+    """One friction row: the slide it reads, and what rubs."""
+
+    reading: R
+    law: DryFriction
+
+
+@dataclass(frozen=True, slots=True)
+class GapBuilder(Generic[R]):
+    """Contact and friction rows in the order in which they come.
+
+    Args:
+        contacts, frictions: the rows, as something of type R that can be read.
+    """
+
+    contacts: list[Contact[R]] = field(default_factory=list)
+    frictions: list[Friction[R]] = field(default_factory=list)
+
+    def press(
+        self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
+    ) -> tuple[int, ...]:
+        """Contact through points: on each the side, the part of the law there, and the approach.
+
+        Side 1 touches where the approach is positive, −1 where it is negative, 0 both ways by the
+        whole law. On a side where the law never touches there is no row.
+
+        Returns:
+            The positions of the rows.
+        """
+        first = len(self.contacts)
+        for side, weight, reading in points:
+            there = law if side == 0 else law.one_sided(side)
+            if there is not None:
+                part = there.shared(weight) if side else there
+                self.contacts.append(Contact(reading, part, station))
+        return tuple(range(first, len(self.contacts)))
+
+    def rub(
+        self,
+        station: int,
+        coefficient: float,
+        slide: R,
+        normal_force: float | None,
+        pressing: tuple[int, ...],
+    ) -> None:
+        """Friction where something presses.
+
+        Args:
+            station: its place.
+            coefficient: μ; no row without it.
+            slide: what is read.
+            normal_force: the prescribed N in N; that of the pressing rows where it is None.
+            pressing: positions of contact rows; no row without them.
+        """
+        if coefficient > 0.0 and pressing:
+            pressed_by = pressing if normal_force is None else ()
+            law = DryFriction(coefficient, station, normal_force or 0.0, pressed_by)
+            self.frictions.append(Friction(slide, law))
+
+    def system(
+        self,
+        read: Callable[[R], Array],
+        omega2: Array,
+        load: Array,
+        places: Sequence[tuple[float, str]],
+        observed: Mapping[str, tuple[R, str]],
+        excitations: Sequence[Excitation],
+        damping: Array | None = None,
+    ) -> GapSystem:
+        """The gap system in modal coordinates.
+
+        Args:
+            read: (num_modes,) the row of what is read.
+            omega2, load: (num_modes,) of the modes.
+            places: x in m and direction of each station.
+            observed: what a trajectory records, and its unit, by its name.
+            excitations: loads that change with time.
+            damping: (num_modes,) in 1/s; none unless given.
+        """
+
+        def rows(readings: Sequence[R]) -> Array:
+            return np.array([read(reading) for reading in readings]).reshape(-1, omega2.size)
+
+        return GapSystem(
+            omega2=omega2,
+            load=load,
+            rows=rows([contact.reading for contact in self.contacts]),
+            laws=[contact.law for contact in self.contacts],
+            station_of_row=np.array([contact.station for contact in self.contacts], dtype=np.int64),
+            stations=[x for x, _ in places],
+            observers={name: Observer(read(row), unit) for name, (row, unit) in observed.items()},
+            damping=np.zeros(0) if damping is None else damping,
+            friction_rows=rows([friction.reading for friction in self.frictions]),
+            frictions=[friction.law for friction in self.frictions],
+            excitations=excitations,
+            station_directions=[direction for _, direction in places],
+        )
