@@ -53,7 +53,7 @@ def run(
 @pytest.fixture(scope="module")
 def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("run")
-    write(run, out, out)
+    write(run, [], out, out)
     return out
 
 
@@ -133,7 +133,7 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     )
     without = run_case(short, "", None, tmp_path, lambda *_: None)
     assert without is not None
-    write(without, tmp_path, tmp_path)
+    write(without, [], tmp_path, tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
     assert Results.load(tmp_path).ensembles is None
 

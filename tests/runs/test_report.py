@@ -276,7 +276,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     model = {**results.summary["models"][name], "reduction_errors": errors, "mesh_error": 0.26}
     model["seconds"] = {"reduction": 1.204}
     models = {**results.summary["models"], name: model}
-    page = render(replace(results, summary={**results.summary, "models": models}), [], [])
+    page = render(replace(results, summary={**results.summary, "models": models}), [], [], [])
     assert (
         "reduction 1.20 s, contact compliance of the reduction within 2.4 × 10⁻⁹, readings of the "
         "reduction within 0.013, its modes right up to 85 Hz, local compliance of the mesh within "

@@ -33,7 +33,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     assert run is not None
     results = run.results
     figures = draw(results, tmp_path)
-    page = render(results, figures, [])
+    page = render(results, [], figures, [])
     assert all(figure.path.stat().st_size > 10_000 for figure in figures)
     assert case.title in page
     assert ("First peaks of the tip in space" in page) == (name == "spatial")
