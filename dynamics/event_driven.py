@@ -20,6 +20,7 @@ from dynamics.contact import Terms, contact_limits, contact_terms, term_force
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_series import (
     Series,
     evaluate,
@@ -124,7 +125,7 @@ def _press(
         place[1] = output_step
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def _march(
     a: Array,
     v: Array,

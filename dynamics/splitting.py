@@ -24,6 +24,7 @@ from numba import njit
 
 from dynamics.contact import Limits
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
+from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces, elastic_kick
 from dynamics.kernels.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.kernels.integrator_state import (
@@ -56,7 +57,7 @@ Array = npt.NDArray[np.float64]
 STRIDES = np.array([1, 8, 64, 512])
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def _closing_bounds(
     a: Array,
     v: Array,

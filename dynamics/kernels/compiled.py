@@ -1,12 +1,28 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where numba keeps the compiled time loops."""
+"""How numba compiles the time loops, and where it keeps them."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
+from typing import Any
 
 from numba import config, njit
+
+# Loops over modes, whose sums may be taken in any order. They are made part of whatever calls them:
+# numba optimises a copy that is only called once more, in another order, so that the process which
+# compiles would differ in the last bit from those that find its work in the cache.
+SUMS: Mapping[str, Any] = MappingProxyType(
+    {
+        "cache": True,
+        "nogil": True,
+        "error_model": "numpy",
+        "fastmath": {"reassoc", "contract", "arcp", "nsz"},
+        "forceinline": True,
+    }
+)
 
 
 def find_folder() -> TemporaryDirectory[str] | None:

@@ -8,11 +8,12 @@ import numpy.typing as npt
 from numba import njit
 
 from dynamics.contact import Limits, Terms, term_energy, term_force, term_slope
+from dynamics.kernels.compiled import SUMS
 
 Array = npt.NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def contact_forces(a: Array, rows: Array, terms: Terms, y: Array, force: Array) -> bool:
     """Relative displacements and elastic forces of every row; whether any row touches."""
     for j in range(rows.shape[0]):
@@ -48,7 +49,7 @@ def contact_energy(y: Array, terms: Terms) -> float:
     return energy
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def elastic_kick(v: Array, rows: Array, force: Array, duration: float) -> None:
     """Change the speeds ``v`` (num_modes,) by elastic forces that act for ``duration``."""
     for j in range(rows.shape[0]):
@@ -58,7 +59,7 @@ def elastic_kick(v: Array, rows: Array, force: Array, duration: float) -> None:
                 v[i] -= rows[j, i] * impulse
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def damped_kick(
     v: Array,
     rows: Array,

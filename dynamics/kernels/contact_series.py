@@ -61,7 +61,7 @@ class Series(NamedTuple):
 
 
 # The sums here are too short for vector instructions: to reorder them would cost time.
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@njit(cache=True, nogil=True, fastmath={"contract"}, forceinline=True)
 def expand(
     series: Series, a: Array, v: Array, system: tuple[Array, ...], terms: Terms, pressed: Array
 ) -> None:

@@ -14,6 +14,7 @@ from numba import njit
 from scipy.linalg import svd
 
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import SUMS
 
 Array = npt.NDArray[np.float64]
 
@@ -34,7 +35,7 @@ def kept_after(rates: Array, time: float, kept: Array) -> None:
         kept[i] = np.exp(-rates[i] * time)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def fade(v: Array, kept: Array) -> float:
     """Leave a part of the speed of every mode; gives the loss in J."""
     loss = 0.0
@@ -44,7 +45,7 @@ def fade(v: Array, kept: Array) -> float:
     return 0.5 * loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def drag(v: Array, directions: Array, kept: Array) -> float:
     """Leave a part of the speed along every dashpot; gives the loss in J."""
     loss = 0.0

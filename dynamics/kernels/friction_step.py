@@ -29,6 +29,7 @@ from dynamics.kernels.bounded_impulses import (
     bounded_impulses,
     slip,
 )
+from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces
 from dynamics.kernels.integrator_state import BOUND, HELD, MIDDLE, PLACE, REST, SLIDING, SPEED
 
@@ -37,7 +38,7 @@ Array = npt.NDArray[np.float64]
 _EPSILON = 2.0 * float(np.finfo(np.float64).eps)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def push_rows(v: Array, rows: Array, problem: Array) -> None:
     """v += rowsᵀ p."""
     for j in range(rows.shape[0]):
@@ -47,7 +48,7 @@ def push_rows(v: Array, rows: Array, problem: Array) -> None:
                 v[i] += rows[j, i] * impulse
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def filter_rows(rows: Array, half: Array, time: float, filtered: Array) -> None:
     """Fill in the filtered rows, φ = 2 av/h by the half flow."""
     for j in range(rows.shape[0]):
@@ -55,7 +56,7 @@ def filter_rows(rows: Array, half: Array, time: float, filtered: Array) -> None:
             filtered[j, i] = 2.0 / time * half[1, i] * rows[j, i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def round_off(row_masses: Array, a: Array, noise: Array) -> None:
     """Round-off of a row times ``a``, by the norms of both."""
     total = 0.0
@@ -108,7 +109,7 @@ def add_pressed_bounds(
             grip[BOUND, j] += given[0, j] * pressing[j, k] * impulse
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def look_ahead(a: Array, v: Array, half: Array, ahead: Array) -> None:
     """Where the modes would be at the end of the step without friction and excitations."""
     for i in range(a.size):

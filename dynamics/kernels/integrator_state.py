@@ -9,6 +9,7 @@ from numba import njit
 
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces, first_closing
 
 Array = npt.NDArray[np.float64]
@@ -105,7 +106,7 @@ def initial_state(system: GapSystem, position: Array, velocity: Array) -> State:
     return whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def read(rows: Array, a: Array, values: Array) -> None:
     """values = rows a."""
     for j in range(rows.shape[0]):
@@ -134,7 +135,7 @@ def enter(y: Array, before: Array, limits: Limits, time: float, tally: Array) ->
         tally[FIRST_CONTACT] = closing
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def excite(excitations: Excitations, first: int, last: int, begin: float, end: float) -> None:
     """Set the modal loads at the start, the middle and the end of a piece of a straight line.
 

@@ -12,6 +12,7 @@ from scipy.linalg import expm
 from scipy.special import spherical_jn
 
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.integrator_state import DAMPING, WORK
 
 Array = npt.NDArray[np.float64]
@@ -120,7 +121,7 @@ def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: floa
         flow[8, i] = drift / (time * time)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
     """Kinetic and strain energy in J."""
     kinetic = 0.0
@@ -131,7 +132,7 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
     return 0.5 * kinetic, 0.5 * strain
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def _energy_under_load(a: Array, v: Array, omega2: Array, load: Array) -> float:
     """Kinetic and strain energy less load times way, which modes without damping keep."""
     total = 0.0
@@ -140,7 +141,7 @@ def _energy_under_load(a: Array, v: Array, omega2: Array, load: Array) -> float:
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def move(a: Array, v: Array, flow: Array) -> None:
     for i in range(a.size):
         ai = a[i]
@@ -149,14 +150,14 @@ def move(a: Array, v: Array, flow: Array) -> None:
         v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def drive(a: Array, flow: Array, now: Array, then: Array) -> None:
     """Add to ``a`` what a load does to it that goes straight from now to then, (num_modes,)."""
     for i in range(a.size):
         a[i] += flow[6, i] * now[i] + flow[7, i] * (then[i] - now[i])
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "arcp", "nsz"})
+@njit(**SUMS)
 def _driven_move(
     a: Array,
     v: Array,
