@@ -25,7 +25,7 @@ MEASURED_AT = 0.01
 # side of the box; and how much longer edges may be for each unit of distance.
 _CORNER, _CORNER_GROWTH = 0.2, 0.5
 _PAD, _PAD_GROWTH = 0.18, 0.3
-_WALLS, _WALLS_GROWTH = 0.2, 0.5
+_WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 
 def spots(boom: Boom, number: int, tolerance: float, line: ContactLine) -> list[Spot]:

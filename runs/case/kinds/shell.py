@@ -29,7 +29,7 @@ _FLAT, _SPATIAL = 60, 210
 # Dofs for each square of the mesh size; bytes for a dof, for a coordinate of it; s. Measured.
 _DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
 # How many times as many dofs a graded mesh has, at corners and at pads.
-_GRADED, _PADDED = 2.0, 4.0
+_GRADED, _PADDED = 3.0, 6.0
 # Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
 _ELEMENTS, _SHORTER = 20, 10.0
 
