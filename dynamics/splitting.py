@@ -75,15 +75,19 @@ def _closing_bounds(
     under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
     than the change over ω. Rigid modes fall.
     """
+    reach = np.empty(a.size)
+    for i in range(a.size):
+        if omega2[i] > 0.0:
+            off = a[i] - (load[i] + now[i]) / omega2[i]
+            growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
+            reach[i] = np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth
     for j in range(rows.shape[0]):
         swing = 0.0
         speed = 0.0
         fall = 0.0
         for i in range(a.size):
             if omega2[i] > 0.0:
-                off = a[i] - (load[i] + now[i]) / omega2[i]
-                growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
-                swing += abs(rows[j, i]) * (np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth)
+                swing += abs(rows[j, i]) * reach[i]
             else:
                 speed += abs(rows[j, i] * v[i])
                 fall += abs(rows[j, i]) * (abs(load[i] + now[i]) + abs(then[i] - now[i]))
@@ -136,13 +140,13 @@ def _march(
     states, energies, gaps, means, peaks, frictions = out
     bounds = np.zeros(y.size)
     piece, undamped = np.zeros((2, *flows[0].shape))
-    faded, none = np.zeros((2, a.size))
+    faded, none = np.zeros(rates.size), np.zeros(a.size)
     tabulate(undamped, omega2, load, none, step)
     kept_after(rates, 0.25 * step, faded)
     dragged = np.zeros((len(flows), dashpot_rates.size))
     for stride in range(len(flows)):
         kept_after(dashpot_rates, 0.5 * STRIDES[stride] * step, dragged[stride])
-    damped = rates.any()
+    damped, dragging = rates.size > 0, dashpot_rates.size > 0
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
     single = (given[0] * given[1]).any() or straight.max() < STRIDES[1]
@@ -182,7 +186,7 @@ def _march(
             flow = undamped if apart else flows[stride]
             if apart:
                 tally[DAMPING] += damp(v, faded, directions, dragged[0])
-            else:
+            elif dragging:
                 tally[DAMPING] += drag(v, directions, dragged[stride])
             if touching:
                 elastic_kick(v, rows, force, 0.5 * step)
@@ -190,7 +194,7 @@ def _march(
                     mean[j] += 0.5 * force[j] / substeps
             if stride == 0 and last > first + 1:
                 for p in range(first, last):
-                    tabulate(piece, omega2, load, none if apart else rates, spans[p])
+                    tabulate(piece, omega2, load, rates if within else none, spans[p])
                     excite(excitations, p, p + 1, 0.0, 1.0)
                     travel(a, v, piece, spans[p], omega2, load, within, now, then, tally)
             elif excited or within:
@@ -209,7 +213,7 @@ def _march(
                         peak[j] = force[j]
             if apart:
                 tally[DAMPING] += damp(v, faded, directions, dragged[0])
-            else:
+            elif dragging:
                 tally[DAMPING] += drag(v, directions, dragged[stride])
             if friction.size > 0:
                 look(a, v, friction_rows, grip)
@@ -250,8 +254,8 @@ def integrate(
     h = output_step / substeps
     state = initial_state(system, a, v)
     y, tally = state[3], state[6]
-    arrays, dry, space = system_arrays(system), friction_arrays(system), space_for(system)
-    damping = damping_arrays(system)
+    arrays, dry, damping = system_arrays(system), friction_arrays(system), damping_arrays(system)
+    space = space_for(system, damping)
     longest = DRAGGED / (h * damping[2].max(initial=0.0) + 1.0e-300)
     strides = STRIDES[max(1.0, longest) >= STRIDES]
     flows = np.array([ModalFlow.over(system, stride * h).stacked() for stride in strides])

@@ -18,14 +18,16 @@ from dynamics.kernels.compiled import SUMS
 
 Array = npt.NDArray[np.float64]
 
-# Rates c (num_modes,); directions V (num_dashpots, num_modes) and their rates σ² (num_dashpots,).
+# Rates c (num_modes,), or none (0,) where no mode has any, so that its loops cost nothing;
+# directions V (num_dashpots, num_modes) and their rates σ² (num_dashpots,).
 Damping = tuple[Array, Array, Array]
 
 
 def damping_arrays(system: GapSystem) -> Damping:
     """The damping of a system in the layout of the compiled loops."""
     _, sigma, directions = svd(system.dashpots, full_matrices=False)
-    return np.ascontiguousarray(system.damping), np.ascontiguousarray(directions), sigma**2
+    rates = system.damping if system.damping.any() else np.zeros(0)
+    return np.ascontiguousarray(rates), np.ascontiguousarray(directions), sigma**2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -37,9 +39,9 @@ def kept_after(rates: Array, time: float, kept: Array) -> None:
 
 @njit(**SUMS)
 def fade(v: Array, kept: Array) -> float:
-    """Leave a part of the speed of every mode; gives the loss in J."""
+    """Leave a part of the speed of every mode that has one; gives the loss in J."""
     loss = 0.0
-    for i in range(v.size):
+    for i in range(kept.size):
         loss += v[i] * v[i] * (1.0 - kept[i] * kept[i])
         v[i] *= kept[i]
     return 0.5 * loss
@@ -66,7 +68,7 @@ def damp(v: Array, faded: Array, directions: Array, dragged: Array) -> float:
 
     Args:
         v: (num_modes,) speeds.
-        faded: (num_modes,) what every mode keeps over half that time.
+        faded: (num_modes,) what every mode keeps over half that time, or none (0,).
         directions: (num_dashpots, num_modes).
         dragged: (num_dashpots,) what is kept along each over that time.
     """

@@ -46,17 +46,18 @@ Array = npt.NDArray[np.float64]
 _TOGETHER = 1.0e-9
 
 # A length of step in s (1,), and of this the flow over its half (9, num_modes), what modes keep
-# over a quarter (num_modes,) and dashpots over a half (num_dashpots,), the filtered friction rows
+# over a quarter (num_rates,) and dashpots over a half (num_dashpots,), the filtered friction rows
 # and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows), friction rows
 # (3, num_frictions), and the problem of bounded impulses.
 Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
 
-def space_for(system: GapSystem) -> Space:
+def space_for(system: GapSystem, damping: Damping) -> Space:
     """What the steps of a system need beside its state."""
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
-    d = len(system.dashpots)
-    shapes = ((1,), (9, n), (n,), (d,), (f, n), (f, f), (n,), (3, m), (3, f))
+    rates, _, dashpot_rates = damping
+    r, d = rates.size, dashpot_rates.size
+    shapes = ((1,), (9, n), (r,), (d,), (f, n), (f, f), (n,), (3, m), (3, f))
     length, half, faded, dragged, filtered, matrix, ahead, middle, lines = map(np.zeros, shapes)
     return length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem_for(f)
 
@@ -96,6 +97,7 @@ def lossy_steps(
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     pressed = pressing.any()
+    damped = rates.size > 0 or dashpot_rates.size > 0
     excited = loads.shape[0] > 0
     none = np.zeros(a.size)
     k = first
@@ -132,10 +134,14 @@ def lossy_steps(
                 else:
                     move(a, v, half)
 
-                tally[DAMPING] += damp(v, faded, directions, dragged)
-                ahead[:] = v
-                damp(ahead, faded, directions, dragged)
-                look_ahead(a, ahead, half, ahead)
+                if damped:
+                    tally[DAMPING] += damp(v, faded, directions, dragged)
+                if damped:
+                    ahead[:] = v
+                    damp(ahead, faded, directions, dragged)
+                    look_ahead(a, ahead, half, ahead)
+                else:
+                    look_ahead(a, v, half, ahead)
                 if excited:
                     drive(ahead, half, centre, end)
                 prescribed_bounds(given, time, grip)
@@ -149,7 +155,8 @@ def lossy_steps(
                 for j in range(friction.size):
                     slips[j] -= grip[PLACE, j]
                 tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
-                tally[DAMPING] += damp(v, faded, directions, dragged)
+                if damped:
+                    tally[DAMPING] += damp(v, faded, directions, dragged)
 
                 if excited:
                     travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
