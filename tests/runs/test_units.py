@@ -93,13 +93,10 @@ def _segment(segment: Segment) -> Segment:
 
 
 def _joint(joint: Joint) -> Joint:
-    per_length = MM**-joint.exponent
     return replace(
         joint,
         stations=tuple(x * MM for x in joint.stations),
         clearance=joint.clearance * MM,
-        stiffness=joint.stiffness * per_length,
-        stiffness_below=joint.stiffness_below * per_length,
         lateral_clearance=joint.lateral_clearance and joint.lateral_clearance * MM,
         pad=joint.pad and PadSize(joint.pad.length * MM, joint.pad.width * MM),
     )

@@ -30,6 +30,7 @@ def clean():
     signal.raise_signal(signal.SIGTERM)
     print("clean", flush=True)
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job ignores it
 interruption.listen()
 with interruption.undone(clean):
     signal.raise_signal(signal.SIGINT)
