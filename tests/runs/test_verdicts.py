@@ -2,130 +2,38 @@
 """Each rule says what its trajectories show, and the opposite of trajectories that show that."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
-from dynamics.trajectory import Trajectory
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import ContactTable
 from runs.case.schema import Case
 from runs.paper.rules import PEAK_SCATTER, judge
 from runs.paper.statements import STATEMENTS
-from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
-from runs.report.verdict import Verdict
-
-PAPER = CASES / "paper.toml"
-FIRST_CONTACT = 0.12
-PERIOD = 1.1
-# First tip peaks in m, of about the heights that the models have.
-PEAKS = {
-    "kantorovich-4": 0.169,
-    "kantorovich-5": 0.171,
-    "beam-fe": 0.184,
-    "beam-fe-tied": 0.019,
-    "shell": 0.186,
-}
+from tests.runs.paper_curves import (
+    FIRST_CONTACT,
+    PEAKS,
+    curves,
+    members,
+    paper,
+    stratifying,
+    swing,
+    verdicts,
+)
 
 
 @pytest.fixture
 def case() -> Case:
-    paper = case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
-    return paper.model_copy(update={"statements": tuple(STATEMENTS)})
-
-
-def swing(height: float, duration: float = 10.0) -> np.ndarray:
-    """A deflection that rises from rest and comes back, at steps of 1 ms."""
-    time = np.arange(round(duration * 1000) + 1) / 1000
-    return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * time / PERIOD))
-
-
-def curves(duration: float = 10.0, **heights: float) -> dict[str, dict[str, np.ndarray]]:
-    """Tip and head of every model of the paper's case; heights by name, _ for -.
-
-    Up to the first contact all with play are those of ``kantorovich-5``. A head moves a tenth of
-    that one's tip, and differs by 0.3 of what its own tip differs from it.
-    """
-    peaks = PEAKS | {name.replace("_", "-"): height for name, height in heights.items()}
-    touching = np.arange(round(duration * 1000) + 1) / 1000 > FIRST_CONTACT
-    common = swing(0.171, duration)
-    drawn = {}
-    for name, peak in peaks.items():
-        own = swing(peak, duration)
-        tip = own if name == "beam-fe-tied" else common + touching * (own - common)
-        head = 0.1 * common + 0.3 * (tip - common)
-        drawn[name] = {"tip": tip, "head": head}
-    return drawn
-
-
-def verdicts(
-    case: Case,
-    motion: Mapping[str, Mapping[str, np.ndarray]],
-    summary: Mapping[str, Mapping[str, Any]] | None = None,
-    ensembles: xr.Dataset | None = None,
-) -> dict[str, Verdict]:
-    """Judge curves; ``summary`` replaces entries of the models' summaries."""
-    size = next(iter(motion.values()))["tip"].size
-    data = xr.Dataset(
-        {
-            place: (("model", "time"), np.array([both[place] for both in motion.values()]))
-            for place in ("tip", "head")
-        },
-        coords={"model": list(motion), "time": np.arange(size) / 1000},
-    )
-    models = {}
-    for name in motion:
-        trajectory = Trajectory(data.sel(model=name), np.zeros((0, 0)))
-        models[name] = {
-            "first_contact": FIRST_CONTACT,
-            "first_peak": {place: trajectory.first_peak(place) for place in ("tip", "head")},
-            "steps": 2_400_000,
-            "contact_changes": 2400,
-            "energy_residual": 1.0e-4,
-            "ensemble": {"horizons": {"0.01": 0.8, "0.2": 3.2}},
-            **(summary or {}).get(name, {}),
-        }
-    whole = {"models": models, "ensemble": {"slow_below": 1.67}}
-    return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
-
-
-def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
-    """Ensembles from the members' tips, (num_members, num_times) by the model's name."""
-    time = np.arange(next(iter(tips.values())).shape[1]) / 1000
-    return xr.Dataset(
-        {"tip": (("model", "member", "time"), np.array(list(tips.values())))},
-        coords={"model": list(tips), "time": time},
-    )
-
-
-def stratifying(drift: float, early: float = 0.0, count: int = 32) -> dict[str, np.ndarray]:
-    """Members of all models with play, which swing alike for six seconds.
-
-    Each model is ``early`` s later than the one before it from the start, and by ``drift`` more
-    from the sixth second on.
-    """
-    time = np.arange(10_001) / 1000
-    delays = early + drift * np.clip(time - 6.0, 0.0, 1.0)
-    names = [name for name in PEAKS if name != "beam-fe-tied"]
-    return {
-        name: np.tile(
-            PEAKS[name] * 0.5 * (1.0 - np.cos(2.0 * np.pi * (time - i * delays) / PERIOD)),
-            (count, 1),
-        )
-        for i, name in enumerate(names)
-    }
+    return paper()
 
 
 def test_judges_every_statement_once_and_in_json(case: Case) -> None:
@@ -452,53 +360,3 @@ def test_s11_compares_the_longest_series_with_elements(
     three = verdicts(case, curves(kantorovich_5=height), modes)["S11"]
     assert three.verdict == expected
     assert three.measured == pytest.approx(100.0 * (1.0 - height / PEAKS["beam-fe"]), rel=1e-2)
-
-
-def test_finds_models_by_what_they_are(case: Case) -> None:
-    """Reference: the same curves under the names of the paper's case."""
-    expected = verdicts(case, curves())
-    models = tuple(m.model_copy(update={"name": f"model {i}"}) for i, m in enumerate(case.models))
-    names = dict(zip([m.name for m in case.models], [m.name for m in models], strict=True))
-    renamed = {names[name]: both for name, both in curves().items()}
-    found = verdicts(case.model_copy(update={"models": models}), renamed)
-    assert [v.verdict for v in found.values()] == [v.verdict for v in expected.values()]
-    assert [v.measured for v in found.values()] == [v.measured for v in expected.values()]
-
-
-def test_compares_series_of_one_base(case: Case) -> None:
-    four, five, *others = case.models
-    pinned = five.model_copy(update={"base": "pinned"})
-    found = verdicts(case.model_copy(update={"models": (four, pinned, *others)}), curves())
-    assert found["S2"].verdict == "undecided"
-    assert found["S2"].why == "The case has no model like 'kantorovich-5'."
-
-
-@pytest.mark.parametrize(
-    ("model", "statements"),
-    [
-        ("kantorovich-4", ["S1", "S2", "S4", "S10"]),
-        ("shell", ["S4"]),
-        ("beam-fe", ["S4"]),
-        ("beam-fe-tied", ["S5"]),
-    ],
-)
-def test_says_which_model_is_missing(case: Case, model: str, statements: list[str]) -> None:
-    others = [m.name for m in case.models if m.name != model]
-    motion = {name: both for name, both in curves().items() if name != model}
-    found = verdicts(case_file.select(case, "", others), motion)
-    for statement in statements:
-        assert found[statement].verdict == "undecided"
-        assert found[statement].measured is None
-        assert found[statement].why == f"The case has no model like {model!r}."
-
-
-def test_says_which_motion_is_not_finite(case: Case) -> None:
-    motion = curves()
-    motion["kantorovich-5"]["tip"][7000] = np.nan
-    found = verdicts(case, motion, {"kantorovich-5": {"first_peak": {"tip": [None, None]}}})
-    for statement in ("S1", "S2", "S3"):
-        assert found[statement].verdict == "undecided"
-        assert found[statement].why == "The tip of 'kantorovich-5' is not finite."
-    for statement in ("S4", "S5", "S6"):
-        assert found[statement].verdict == "undecided"
-        assert found[statement].why == "'kantorovich-5' has no first peak."

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Curves that models of the paper's case might have, and the verdicts on them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from dynamics.trajectory import Trajectory
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.schema import Case
+from runs.paper.rules import judge
+from runs.paper.statements import STATEMENTS
+from runs.pipeline.results import Results
+from runs.report.verdict import Verdict
+
+PAPER = CASES / "paper.toml"
+FIRST_CONTACT = 0.12
+PERIOD = 1.1
+# First tip peaks in m, of about the heights that the models have.
+PEAKS = {
+    "kantorovich-4": 0.169,
+    "kantorovich-5": 0.171,
+    "beam-fe": 0.184,
+    "beam-fe-tied": 0.019,
+    "shell": 0.186,
+}
+
+
+def paper() -> Case:
+    """The paper's case with these models, judged by all statements."""
+    found = case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
+    return found.model_copy(update={"statements": tuple(STATEMENTS)})
+
+
+def swing(height: float, duration: float = 10.0) -> np.ndarray:
+    """A deflection that rises from rest and comes back, at steps of 1 ms."""
+    time = np.arange(round(duration * 1000) + 1) / 1000
+    return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * time / PERIOD))
+
+
+def curves(duration: float = 10.0, **heights: float) -> dict[str, dict[str, np.ndarray]]:
+    """Tip and head of every model of the paper's case; heights by name, _ for -.
+
+    Up to the first contact all with play are those of ``kantorovich-5``. A head moves a tenth of
+    that one's tip, and differs by 0.3 of what its own tip differs from it.
+    """
+    peaks = PEAKS | {name.replace("_", "-"): height for name, height in heights.items()}
+    touching = np.arange(round(duration * 1000) + 1) / 1000 > FIRST_CONTACT
+    common = swing(0.171, duration)
+    drawn = {}
+    for name, peak in peaks.items():
+        own = swing(peak, duration)
+        tip = own if name == "beam-fe-tied" else common + touching * (own - common)
+        head = 0.1 * common + 0.3 * (tip - common)
+        drawn[name] = {"tip": tip, "head": head}
+    return drawn
+
+
+def verdicts(
+    case: Case,
+    motion: Mapping[str, Mapping[str, np.ndarray]],
+    summary: Mapping[str, Mapping[str, Any]] | None = None,
+    ensembles: xr.Dataset | None = None,
+) -> dict[str, Verdict]:
+    """Judge curves; ``summary`` replaces entries of the models' summaries."""
+    size = next(iter(motion.values()))["tip"].size
+    data = xr.Dataset(
+        {
+            place: (("model", "time"), np.array([both[place] for both in motion.values()]))
+            for place in ("tip", "head")
+        },
+        coords={"model": list(motion), "time": np.arange(size) / 1000},
+    )
+    models = {}
+    for name in motion:
+        trajectory = Trajectory(data.sel(model=name), np.zeros((0, 0)))
+        models[name] = {
+            "first_contact": FIRST_CONTACT,
+            "first_peak": {place: trajectory.first_peak(place) for place in ("tip", "head")},
+            "steps": 2_400_000,
+            "contact_changes": 2400,
+            "energy_residual": 1.0e-4,
+            "ensemble": {"horizons": {"0.01": 0.8, "0.2": 3.2}},
+            **(summary or {}).get(name, {}),
+        }
+    whole = {"models": models, "ensemble": {"slow_below": 1.67}}
+    return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
+
+
+def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
+    """Ensembles from the members' tips, (num_members, num_times) by the model's name."""
+    time = np.arange(next(iter(tips.values())).shape[1]) / 1000
+    return xr.Dataset(
+        {"tip": (("model", "member", "time"), np.array(list(tips.values())))},
+        coords={"model": list(tips), "time": time},
+    )
+
+
+def stratifying(drift: float, early: float = 0.0, count: int = 32) -> dict[str, np.ndarray]:
+    """Members of all models with play, which swing alike for six seconds.
+
+    Each model is ``early`` s later than the one before it from the start, and by ``drift`` more
+    from the sixth second on.
+    """
+    time = np.arange(10_001) / 1000
+    delays = early + drift * np.clip(time - 6.0, 0.0, 1.0)
+    names = [name for name in PEAKS if name != "beam-fe-tied"]
+    return {
+        name: np.tile(
+            PEAKS[name] * 0.5 * (1.0 - np.cos(2.0 * np.pi * (time - i * delays) / PERIOD)),
+            (count, 1),
+        )
+        for i, name in enumerate(names)
+    }
