@@ -10,7 +10,8 @@ for the other plane, a linear one for the twist makes the frame element in space
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Literal
 
@@ -18,13 +19,28 @@ import numpy as np
 import numpy.typing as npt
 
 from beam_model.component import Component, Motion, SegmentModel, products
-from geometry.boom import SAME_PLACE, BoomError, Segment
+from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 
 Array = npt.NDArray[np.float64]
 Theory = Literal["euler-bernoulli", "timoshenko"]
 
+# ξ = x/h, h and Φ to shape functions and their derivatives along x, each (4, num_points).
+_Shapes = Callable[[Array, float, float], tuple[Array, Array]]
+
 # Exact for products of the cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
+
+
+def finite_element_segments(
+    boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
+) -> list[SegmentModel]:
+    """All segments of a boom, with nodes where something acts; arguments as below."""
+    return [
+        finite_element_segment(
+            segment, element_length, boom.stations_of(number), theory, rotary_inertia
+        )
+        for number, segment in enumerate(boom.segments)
+    ]
 
 
 def finite_element_segment(
@@ -95,18 +111,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         mass[dof, dof] += point.mass
     free = np.setdiff1d(np.arange(num_dofs), held)
 
-    def deflection(x: float) -> Array:
+    def read(shapes: _Shapes, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        shapes, _ = _deflection(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
-        row[2 * k : 2 * k + 4] = shapes
-        return np.asarray(row[free])
-
-    def rotation(x: float) -> Array:
-        k, h = _element(nodes, x)
-        row = np.zeros(num_dofs)
-        shapes, _ = _rotation(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
-        row[2 * k : 2 * k + 4] = shapes
+        values, _ = shapes(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
+        row[2 * k : 2 * k + 4] = values
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
@@ -116,8 +125,8 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping=damping[block],
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
-        at=deflection,
-        rotation=rotation,
+        at=partial(read, _deflection),
+        rotation=partial(read, _rotation),
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
     )

@@ -18,10 +18,20 @@ from numpy.polynomial import Legendre, Polynomial
 from scipy.linalg import null_space, rq
 
 from beam_model.component import Component, Motion, SegmentModel, products
-from geometry.boom import BoomError, Segment
+from geometry.boom import Boom, BoomError, Segment
 
 Array = npt.NDArray[np.float64]
 Base = Literal["as printed", "pinned", "complete"]
+
+
+def kantorovich_segments(
+    boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
+) -> list[SegmentModel]:
+    """All segments of a boom, each of its own number of terms; arguments as below."""
+    return [
+        kantorovich_segment(segment, count, base, rotary_inertia)
+        for segment, count in zip(boom.segments, terms, strict=True)
+    ]
 
 
 def kantorovich_segment(

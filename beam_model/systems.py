@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from beam_model.finite_element import Theory, finite_element_segment
-from beam_model.kantorovich import Base, kantorovich_segment
+from beam_model.finite_element import Theory, finite_element_segments
+from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.gap_system import GapSystem
@@ -62,12 +62,7 @@ def finite_element_system(
     Raises:
         BoomError: the boom lacks what the theory needs.
     """
-    models = [
-        finite_element_segment(
-            segment, element_length, boom.stations_of(number), theory, rotary_inertia
-        )
-        for number, segment in enumerate(boom.segments)
-    ]
+    models = finite_element_segments(boom, element_length, theory, rotary_inertia)
     return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))
 
 
@@ -99,8 +94,5 @@ def kantorovich_system(
     Raises:
         BoomError: the boom has what the base cannot take.
     """
-    models = [
-        kantorovich_segment(segment, count, base, rotary_inertia)
-        for segment, count in zip(boom.segments, terms, strict=True)
-    ]
+    models = kantorovich_segments(boom, terms, base, rotary_inertia)
     return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))

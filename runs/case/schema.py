@@ -6,7 +6,9 @@ The descriptions are what the JSON Schema shows, and what the message for a miss
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from functools import reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
@@ -282,7 +284,7 @@ class DampingTable(Table):
 if TYPE_CHECKING:
     Model = ModelTable
 else:
-    Model = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+    Model = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
 
 class Case(Table):

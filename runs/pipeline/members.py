@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import tied_system
 from dynamics.predictability.horizon import SHARES, horizons_of
 from dynamics.predictability.low_pass import CUTOFF_SHARE, SlowPeaks
@@ -51,12 +51,7 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     """
     try:
         with np.errstate(all="ignore"):
-            segments = [
-                finite_element_segment(
-                    segment, ELEMENT_LENGTH, boom.stations_of(number), "euler-bernoulli", True
-                )
-                for number, segment in enumerate(boom.segments)
-            ]
+            segments = finite_element_segments(boom, ELEMENT_LENGTH, "euler-bernoulli", True)
             frequencies = tied_system(boom, segments).frequencies
     except (ArithmeticError, np.linalg.LinAlgError, ValueError):
         return None

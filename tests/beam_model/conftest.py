@@ -10,7 +10,7 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment
-from beam_model.kantorovich import Base, kantorovich_segment
+from beam_model.kantorovich import Base, kantorovich_segments
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
 
@@ -43,10 +43,7 @@ def series(paper_boom: Boom) -> Callable[..., list[SegmentModel]]:
     """Kantorovich models of the paper's segments."""
 
     def make(terms: tuple[int, int], base: Base = "as printed") -> list[SegmentModel]:
-        return [
-            kantorovich_segment(segment, count, base, rotary_inertia=False)
-            for segment, count in zip(paper_boom.segments, terms, strict=True)
-        ]
+        return kantorovich_segments(paper_boom, terms, base, False)
 
     return make
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segment
-from beam_model.kantorovich import kantorovich_segment
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
@@ -133,16 +133,10 @@ def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
     runs = []
     for boom, unit in ((paper_boom, 1.0), (small, 1000.0)):
         if kind == "series":
-            models = [
-                kantorovich_segment(segment, terms, "as printed", rotary_inertia=True)
-                for segment, terms in zip(boom.segments, (2, 3), strict=True)
-            ]
+            models = kantorovich_segments(boom, (2, 3), "as printed", True)
             law = PowerContact(1.0e13 / unit**2, 2.0, 7.0e-3 * unit)
         else:
-            models = [
-                finite_element_segment(segment, unit, boom.stations_of(k), "euler-bernoulli", True)
-                for k, segment in enumerate(boom.segments)
-            ]
+            models = finite_element_segments(boom, unit, "euler-bernoulli", True)
             law = PowerContact(1.0e10 / unit, 1.0, 7.0e-3 * unit)
         system = gap_system(boom, models, [law])
         runs.append(integrate(Motion(system, 0.122, output_step=1.0e-3)))

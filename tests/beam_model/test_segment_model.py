@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from beam_model.component import SegmentModel
-from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
@@ -134,10 +134,7 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     last = replace(middle, name="last", start=17.5, end=27.0, section=None)
     second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
     boom = Boom((outer, middle, last), (joint, second))
-    models = [
-        finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
-        for k, s in enumerate(boom.segments)
-    ]
+    models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
     laws = [PowerContact(1e13, 2.0, 7e-3), PowerContact(1e10, 1.0, 5e-3)]
     system = gap_system(boom, models, laws)
     assert [law.exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
@@ -176,10 +173,7 @@ def in_leaves(boom: Boom) -> Boom:
 @pytest.fixture(scope="module")
 def leaves(paper_boom: Boom) -> tuple[Boom, list[SegmentModel]]:
     boom = in_leaves(paper_boom)
-    models = [
-        finite_element_segment(s, 1.0, boom.stations_of(k), "euler-bernoulli", False)
-        for k, s in enumerate(boom.segments)
-    ]
+    models = finite_element_segments(boom, 1.0, "euler-bernoulli", False)
     return boom, models
 
 
@@ -232,10 +226,7 @@ def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
     tied = Joint(0, 1, (4.0, 5.0, 6.0), 0.0, tied=True)
     loose = Joint(1, 2, (8.0, 10.0), 1e-3)
     boom = Boom((one, two, three), (tied, loose))
-    models = [
-        finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
-        for k, s in enumerate(boom.segments)
-    ]
+    models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
     system = gap_system(boom, models, [PowerContact(1e9, 1.0, 1e-3)] * 2)
     assert (system.omega2 == 0.0).sum() == 2
     assert np.sort(system.omega2)[2] > 1.0
@@ -259,10 +250,7 @@ def test_a_longer_chain_has_modes_in_proportion(paper_boom: Boom) -> None:
             for k in range(number)
         ]
         boom = Boom((outer, *chain), tuple(joints))
-        models = [
-            finite_element_segment(s, 0.5, boom.stations_of(k), "euler-bernoulli", False)
-            for k, s in enumerate(boom.segments)
-        ]
+        models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
         system = gap_system(boom, models, [PowerContact(1e9, 1.0, 7e-3)] * number)
         assert len(system.laws) == 2 * number
         counts.append(system.num_modes)

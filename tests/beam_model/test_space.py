@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from beam_model.component import Component, SegmentModel, natural_modes
-from beam_model.finite_element import Theory, finite_element_segment
+from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
@@ -34,10 +34,7 @@ LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0, clearance=5.0e-3)
 def beams(
     boom: Boom, length: float = 1.0, theory: Theory = "euler-bernoulli"
 ) -> list[SegmentModel]:
-    return [
-        finite_element_segment(segment, length, boom.stations_of(k), theory, True)
-        for k, segment in enumerate(boom.segments)
-    ]
+    return finite_element_segments(boom, length, theory, True)
 
 
 def pushed(boom: Boom, *loads: float) -> Boom:

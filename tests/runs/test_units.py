@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
@@ -109,10 +109,7 @@ def series(boom: Boom, law: PowerContact) -> GapSystem:
 
 def elements(boom: Boom, law: PowerContact) -> GapSystem:
     longest = 0.05 * max(segment.length for segment in boom.segments)
-    models = [
-        finite_element_segment(s, longest, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(boom.segments)
-    ]
+    models = finite_element_segments(boom, longest, "timoshenko", True)
     return gap_system(boom, models, [law])
 
 

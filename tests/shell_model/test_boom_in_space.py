@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
@@ -170,10 +170,7 @@ def test_lateral_motion_is_that_of_beams() -> None:
         if segment.lateral is not None
     )
     boom = replace(flat, segments=segments)
-    elements = [
-        finite_element_segment(s, 0.5, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(segments)
-    ]
+    elements = finite_element_segments(boom, 0.5, "timoshenko", True)
     systems = [_system(boom), gap_system(boom, elements, [LAW], [LATERAL_LAW])]
     shell, beam = (integrate(Motion(system, 0.25)) for system in systems)
     assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
@@ -189,10 +186,7 @@ def test_the_tied_boom_vibrates_as_beams_in_both_planes() -> None:
     """
     boom = boom_in_space()
     boom = replace(boom, joints=(replace(boom.joints[0], tied=True),))
-    elements = [
-        finite_element_segment(s, 0.5, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(boom.segments)
-    ]
+    elements = finite_element_segments(boom, 0.5, "timoshenko", True)
     expected = tied_system(boom, elements).frequencies[:6]
     assert _system(boom).frequencies[:6] == pytest.approx(expected, rel=0.01)
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import tied_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
@@ -126,10 +126,7 @@ def test_rest_of_the_pressed_boom_is_that_of_beams(boom: Boom) -> None:
     """
     system = _system(boom, size=0.25)
     rest = _rest(system, [])
-    elements = [
-        finite_element_segment(s, 0.25, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(boom.segments)
-    ]
+    elements = finite_element_segments(boom, 0.25, "timoshenko", True)
     beams = tied_system(boom, elements)
     expected = beams.static_response(beams.load)
     assert set(beams.observers) <= set(system.observers)
@@ -150,10 +147,7 @@ def test_a_tied_joint_has_no_play() -> None:
     system = shell.system
     assert system.rows.shape == (0, system.num_modes)
     assert not (system.omega2 == 0.0).any()
-    elements = [
-        finite_element_segment(s, 0.25, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(boom.segments)
-    ]
+    elements = finite_element_segments(boom, 0.25, "timoshenko", True)
     beams = tied_system(boom, elements)
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
     rest, expected = (one.static_response(one.load) for one in (system, beams))

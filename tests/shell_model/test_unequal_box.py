@@ -12,7 +12,7 @@ import pytest
 from mpi4py import MPI
 
 from beam_model.component import natural_modes
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Support
 from geometry.contact_places import Stretch
@@ -105,10 +105,7 @@ def test_a_pressed_boom_rests_as_its_beams_do() -> None:
     system = _reduced(boom, ShellOptions(0.25, krylov=KrylovOptions(moments=1))).system
     pressed = np.diag(system.omega2) + 1.0e12 * system.rows.T @ system.rows
     rest = np.linalg.solve(pressed, system.load)
-    elements = [
-        finite_element_segment(s, 0.25, boom.stations_of(k), "timoshenko", rotary_inertia=True)
-        for k, s in enumerate(boom.segments)
-    ]
+    elements = finite_element_segments(boom, 0.25, "timoshenko", True)
     beams = tied_system(boom, elements)
     expected = beams.static_response(beams.load)
     for name, observer in beams.observers.items():

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segment
+from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Joined, StandIn
 from runs.case.limits import Flag, Positive
@@ -60,16 +60,7 @@ class FiniteElementTable(BeamTable):
         return f"{self.theory}, elements of {self.element_length:g} m"
 
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        return [
-            finite_element_segment(
-                segment,
-                self.element_length,
-                boom.stations_of(number),
-                self.theory,
-                self.rotary_inertia,
-            )
-            for number, segment in enumerate(boom.segments)
-        ]
+        return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def stand_in(self, boom: Boom) -> StandIn:
         nodes = sum(

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from beam_model.component import SegmentModel
-from beam_model.kantorovich import bending_basis, kantorovich_segment
+from beam_model.kantorovich import bending_basis, kantorovich_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Joined, StandIn
 from runs.case.limits import Count, Few, Flag
@@ -56,10 +56,7 @@ class KantorovichTable(BeamTable):
         return f"terms {' + '.join(map(str, self.terms))}, base {self.base}"
 
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        return [
-            kantorovich_segment(segment, terms, self.base, self.rotary_inertia)
-            for segment, terms in zip(boom.segments, self.terms, strict=True)
-        ]
+        return kantorovich_segments(boom, self.terms, self.base, self.rotary_inertia)
 
     def stand_in(self, boom: Boom) -> StandIn:
         return StandIn(self, sum(self.terms) * (3 if boom.spatial else 1))
