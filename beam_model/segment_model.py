@@ -47,10 +47,10 @@ def gap_system(
         approach, slide = (_relative(modes, pad, along) for along in (pad.direction, pad.rubs))
         pressing = rows.press(pad.station, law, [(pad.side, pad.weight, approach)])
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
-    for number, stop in enumerate(boom.stops):
+    for station, stop in boom.numbered_stops:
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
         row = modes.displacement(stop.segment, stop.x, "z")
-        rows.press(boom.station_of_stop(number), law, [(0, 1.0, row)])
+        rows.stop(station, law, [(0, 1.0, row)])
     return rows.system(
         lambda row: row,
         modes.omega2,

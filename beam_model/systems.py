@@ -8,37 +8,17 @@ from collections.abc import Sequence
 from beam_model.finite_element import Theory, finite_element_segments
 from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.segment_model import gap_system
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 
 
-def joint_laws(boom: Boom) -> list[ContactLaw]:
-    """The power law along z that each joint of a boom states.
-
-    >>> [str(law) for law in pt.joint_laws(boom)]
-    ['k 1e+09, n 1']
-    """
-    return [
-        PowerContact(joint.stiffness, joint.exponent, joint.clearance, joint.stiffness_below)
-        for joint in boom.joints
-    ]
-
-
-def lateral_joint_laws(boom: Boom) -> list[ContactLaw]:
-    """The same along y, as stiff on both sides; none for a flat boom."""
-    return [
-        PowerContact(joint.stiffness, joint.exponent, joint.lateral_clearance)
-        for joint in boom.joints
-        if joint.lateral_clearance is not None
-    ]
-
-
 def finite_element_system(
     boom: Boom,
+    laws: Sequence[ContactLaw],
+    lateral_laws: Sequence[ContactLaw] = (),
     element_length: float = 0.5,
     theory: Theory = "euler-bernoulli",
-    laws: Sequence[ContactLaw] | None = None,
     rotary_inertia: bool = True,
 ) -> GapSystem:
     """A boom by beam finite elements.
@@ -48,29 +28,31 @@ def finite_element_system(
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> wall = pt.Support(0.0, "clamped")
     >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
-    >>> system = pt.finite_element_system(pt.Boom((arm,), ()))
+    >>> system = pt.finite_element_system(pt.Boom((arm,), ()), laws=[])
     >>> print(f"{system.frequencies[0]:.3f} Hz")
     4.724 Hz
 
     Args:
         boom: flat or in space.
+        laws: one for each joint, along z.
+        lateral_laws: one for each joint, along y; none for a flat boom.
         element_length: largest length of an element in m.
         theory: ``timoshenko`` needs the segments' sections.
-        laws: one for each joint, along z; :func:`joint_laws` unless given.
         rotary_inertia: keep I_p of (3).
 
     Raises:
         BoomError: the boom lacks what the theory needs.
     """
     models = finite_element_segments(boom, element_length, theory, rotary_inertia)
-    return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))
+    return gap_system(boom, models, laws, lateral_laws)
 
 
 def kantorovich_system(
     boom: Boom,
+    laws: Sequence[ContactLaw],
     terms: Sequence[int],
     base: Base = "complete",
-    laws: Sequence[ContactLaw] | None = None,
+    lateral_laws: Sequence[ContactLaw] = (),
     rotary_inertia: bool = True,
 ) -> GapSystem:
     """A boom by Kantorovich series.
@@ -80,19 +62,20 @@ def kantorovich_system(
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> wall = pt.Support(0.0, "clamped")
     >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
-    >>> system = pt.kantorovich_system(pt.Boom((arm,), ()), terms=[8])
+    >>> system = pt.kantorovich_system(pt.Boom((arm,), ()), laws=[], terms=[8])
     >>> print(f"{system.frequencies[0]:.3f} Hz")
     4.724 Hz
 
     Args:
         boom: flat or in space.
+        laws: one for each joint, along z.
+        lateral_laws: one for each joint, along y; none for a flat boom.
         terms: number of functions of each segment.
         base: which reading of (29) and (31).
-        laws: one for each joint, along z; :func:`joint_laws` unless given.
         rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
 
     Raises:
         BoomError: the boom has what the base cannot take.
     """
     models = kantorovich_segments(boom, terms, base, rotary_inertia)
-    return gap_system(boom, models, laws or joint_laws(boom), lateral_joint_laws(boom))
+    return gap_system(boom, models, laws, lateral_laws)

@@ -38,19 +38,15 @@ _BENT = 5.0e-3
 _ROUND_OFF = 1.0e-9
 
 
-def pressed_modes(system: GapSystem, joint_stations: int) -> tuple[Array, Array]:
+def pressed_modes(system: GapSystem) -> tuple[Array, Array]:
     """ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes) with the joints pressed.
 
     Rows that press at rest under the constant loads have the stiffness that they have there. Where
-    none does at a station, all of it are tied.
-
-    Args:
-        system: of a boom.
-        joint_stations: how many of its stations, the first ones, are those of joints.
+    none does at a station between segments, all of it are tied.
     """
     stiffness = _stiffness_at_rest(system)
     pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
-    tied = system.rows[~pressed & (system.station_of_row < joint_stations)]
+    tied = system.rows[~pressed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(tied) if tied.size else np.eye(system.num_modes)
     rows = system.rows @ free
     omega2, combination = eigh(
@@ -69,17 +65,16 @@ def _stiffness_at_rest(system: GapSystem) -> Array:
     return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
 
 
-def with_ratio(system: GapSystem, ratio: float, joint_stations: int) -> GapSystem:
+def with_ratio(system: GapSystem, ratio: float) -> GapSystem:
     """The system with a damping ratio ζ in the first modes of the pressed boom.
 
     Args:
         system: of a boom, with its own damping, to which this is added.
         ratio: ζ of the first ``DAMPED_MODES``, or of as many as its segments can bend.
-        joint_stations: as in :func:`pressed_modes`.
     """
     rigid = system.omega2 == 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
-    omega, shapes = (part[..., :count] for part in pressed_modes(system, joint_stations))
+    omega, shapes = (part[..., :count] for part in pressed_modes(system))
     own = np.where(rigid, 0.5 * omega[0], np.sqrt(system.omega2))
     bent = np.where(rigid[:, None], 0.0, shapes)
     asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
@@ -97,12 +92,8 @@ def with_ratio(system: GapSystem, ratio: float, joint_stations: int) -> GapSyste
     )
 
 
-def pressed_ratios(system: GapSystem, joint_stations: int) -> tuple[Array, Array]:
-    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each.
-
-    Args:
-        system, joint_stations: as in :func:`pressed_modes`.
-    """
-    omega, shapes = pressed_modes(system, joint_stations)
+def pressed_ratios(system: GapSystem) -> tuple[Array, Array]:
+    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each."""
+    omega, shapes = pressed_modes(system)
     rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)
     return omega / (2.0 * np.pi), rates / (2.0 * omega)

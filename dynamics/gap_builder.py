@@ -44,10 +44,12 @@ class GapBuilder(Generic[R]):
 
     Args:
         contacts, frictions: the rows, as something of type R that can be read.
+        grounded: stations of those that the ground stops.
     """
 
     contacts: list[Contact[R]] = field(default_factory=list)
     frictions: list[Friction[R]] = field(default_factory=list)
+    grounded: list[int] = field(default_factory=list)
 
     def press(
         self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
@@ -67,6 +69,11 @@ class GapBuilder(Generic[R]):
                 part = there.shared(weight) if side else there
                 self.contacts.append(Contact(reading, part, station))
         return tuple(range(first, len(self.contacts)))
+
+    def stop(self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]) -> None:
+        """Contact with the ground, as of :meth:`press`."""
+        self.grounded.append(station)
+        self.press(station, law, points)
 
     def rub(
         self,
@@ -127,4 +134,5 @@ class GapBuilder(Generic[R]):
             frictions=[friction.law for friction in self.frictions],
             excitations=excitations,
             station_directions=[direction for _, direction in places],
+            grounded=self.grounded,
         )

@@ -69,6 +69,7 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: the direction of each station's relative displacement; "z" for all
             unless given.
+        grounded: positions in ``stations`` of those where the ground is touched, and no segment.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -87,6 +88,7 @@ class GapSystem:
     frictions: Sequence[DryFriction] = ()
     excitations: Sequence[Excitation] = ()
     station_directions: Sequence[str] = ()
+    grounded: Sequence[int] = ()
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
@@ -115,8 +117,9 @@ class GapSystem:
             if not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite")
         places = len(self.stations)
-        if any(not 0 <= station < places for station in self.station_of_row):
-            raise ValueError("station_of_row must hold positions in stations")
+        for name in ("station_of_row", "grounded"):
+            if any(not 0 <= station < places for station in getattr(self, name)):
+                raise ValueError(f"{name} must hold positions in stations")
         if any(not 0 <= friction.station < places for friction in self.frictions):
             raise ValueError("the station of a friction must be a position in stations")
         if any(not 0 <= row < m for friction in self.frictions for row in friction.pressed_by):

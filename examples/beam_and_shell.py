@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A boom as beams and as FEniCSx shells: what the beams miss at the tip's first peak."""
 
-from boom_in_python import boom
+from boom_in_python import LAW, boom
 from mpi4py import MPI
 
 import protractile as pt
@@ -10,13 +10,13 @@ import protractile as pt
 def shell() -> pt.Trajectory:
     """Half a second of a coarse shell."""
     options = pt.ShellOptions(mesh_size=0.4)
-    reduced = pt.reduce_boom(boom(), pt.joint_laws(boom()), options, MPI.COMM_SELF)
+    reduced = pt.reduce_boom(boom(), [LAW], options, MPI.COMM_SELF)
     return pt.simulate(reduced.system, 0.5)
 
 
 def beam() -> pt.Trajectory:
     """The same of Timoshenko beams."""
-    return pt.simulate(pt.finite_element_system(boom(), theory="timoshenko"), 0.5)
+    return pt.simulate(pt.finite_element_system(boom(), [LAW], theory="timoshenko"), 0.5)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import protractile as pt
 
 LOAD, CLEARANCE = -500.0, 5.0e-3
 STEEL = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+LAW = pt.PowerContact(1.0e9, exponent=1.0, clearance=CLEARANCE)
 
 
 def boom(tied: bool = False) -> pt.Boom:
@@ -18,16 +19,13 @@ def boom(tied: bool = False) -> pt.Boom:
         "fly", 6.0, 14.0, STEEL,
         pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005), load=LOAD,
     )  # fmt: skip
-    joint = pt.Joint(
-        outer=0, inner=1, stations=(6.0, 8.0), clearance=CLEARANCE,
-        stiffness=1.0e9, stiffness_below=1.0e9, exponent=1.0, tied=tied,
-    )  # fmt: skip
+    joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=CLEARANCE, tied=tied)
     return pt.Boom((arm, fly), (joint,))
 
 
 def move() -> pt.Trajectory:
     """A second of it, by beam finite elements."""
-    return pt.simulate(pt.finite_element_system(boom(), element_length=1.0), 1.0)
+    return pt.simulate(pt.finite_element_system(boom(), [LAW], element_length=1.0), 1.0)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What play adds to a boom that rests: the fly turns until it touches above and below."""
 
-from boom_in_python import boom
+from boom_in_python import LAW, boom
 
 import protractile as pt
 
 
 def deflection(tied: bool) -> float:
     """Static deflection of the tip in m, with the joint's play or without."""
-    system = pt.finite_element_system(boom(tied), element_length=1.0)
+    system = pt.finite_element_system(boom(tied), [LAW], element_length=1.0)
     return float(system.observers["tip"].row @ pt.equilibrium(system, system.load))
 
 

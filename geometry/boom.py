@@ -6,6 +6,7 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -72,10 +73,6 @@ class Joint:
         outer, inner: positions of the two in ``Boom.segments``.
         stations: x at which they may touch, rising.
         clearance: Δ in m each way, half the play.
-        stiffness: k of (4) in N/mⁿ when the inner segment presses up, for models that are given
-            no laws.
-        stiffness_below: k when it presses down; the same unless given.
-        exponent: n of (4).
         lateral_clearance: Δ along y in m each way; None in a flat boom.
         friction: μ of (28), and of (10) and (11) in space.
         normal_forces: N of (28) in N, one for each station; empty in space, where what presses
@@ -89,9 +86,6 @@ class Joint:
     inner: int
     stations: tuple[float, ...]
     clearance: float
-    stiffness: float = 0.0
-    stiffness_below: float | None = None
-    exponent: float = 1.0
     lateral_clearance: float | None = None
     friction: float = 0.0
     normal_forces: tuple[float, ...] = ()
@@ -142,13 +136,13 @@ class Boom:
     >>> wall = pt.Support(0.0, "clamped")
     >>> arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
     >>> fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=-500.0)
-    >>> joint = pt.Joint(
-    ...     outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3,
-    ...     stiffness=1e9, stiffness_below=1e9, exponent=1.0,
-    ... )
+    >>> joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3)
     >>> boom = pt.Boom((arm, fly), (joint,))
     >>> boom.tip, boom.stations
     (14.0, [(6.0, 'z'), (8.0, 'z')])
+    >>> laws = [pt.PowerContact(1e9, exponent=1.0, clearance=joint.clearance)]
+    >>> pt.finite_element_system(boom, laws).num_modes
+    66
 
     Raises:
         BoomError: supports, stations, loads or stops outside the segments, an inner box that does
@@ -204,18 +198,22 @@ class Boom:
 
         Those of the joints along z, in space those of the joints along y, those of the stops.
         """
-        between: list[tuple[float, Direction]] = [
+        return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
+
+    @property
+    def numbered_stops(self) -> Iterator[tuple[int, Stop]]:
+        """Each stop, behind its position in ``stations``."""
+        return enumerate(self.stops, start=len(self._stations_of_joints))
+
+    @property
+    def _stations_of_joints(self) -> list[tuple[float, Direction]]:
+        return [
             (x, direction)
             for direction in self.directions
             for joint in self.joints
             if not joint.tied
             for x in joint.stations
         ]
-        return between + [(stop.x, "z") for stop in self.stops]
-
-    def station_of_stop(self, number: int) -> int:
-        """The position of a stop in ``stations``."""
-        return len(self.stations) - len(self.stops) + number
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """x of all places at which something acts on a segment, rising.

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from beam_model.segment_model import tied_system as tied_system
     from beam_model.systems import finite_element_system as finite_element_system
-    from beam_model.systems import joint_laws as joint_laws
     from beam_model.systems import kantorovich_system as kantorovich_system
     from dynamics.contact import ContactLaw as ContactLaw
     from dynamics.contact import PowerContact as PowerContact
@@ -73,7 +72,7 @@ _HOMES = {
     name: module
     for module, names in {
         "beam_model.segment_model": "tied_system",
-        "beam_model.systems": "finite_element_system joint_laws kantorovich_system",
+        "beam_model.systems": "finite_element_system kantorovich_system",
         "dynamics.contact": "ContactLaw PowerContact Term restitution_damping",
         "dynamics.contact_table": "TableContact",
         "dynamics.damping": "with_ratio",

@@ -105,11 +105,6 @@ def _joint(case: Case, index: int) -> Joint:
         inner=names.index(table.inner),
         stations=table.stations,
         clearance=0.5 * table.play,
-        stiffness=table.stiffness or 0.0,
-        stiffness_below=(
-            table.stiffness if table.stiffness_below is None else table.stiffness_below
-        ),
-        exponent=table.exponent,
         lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
         friction=table.friction,
         normal_forces=table.normal_forces,

@@ -53,9 +53,12 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
 
 
 def _beside_table(given: float | None, info: ValidationInfo) -> float | None:
-    """A power law has a stiffness, and a table has none."""
+    """A power law has a stiffness, and a table has neither that nor an exponent.
+
+    To the sides a stiffness of their own makes a power law beside any table.
+    """
     table = next((key for key in ("force_table", "force_file") if info.data.get(key)), None)
-    if given is not None and table is not None:
+    if given is not None and table is not None and not info.data.get("lateral_stiffness"):
         what = f"{table} is given; leave one of them out"
         raise PydanticCustomError("unsuitable", "{what}", {"what": what})
     if given is None and table is None and info.field_name == "stiffness":
@@ -69,6 +72,7 @@ Forces = Annotated[
     AfterValidator(_check_points),
 ]
 OrTable = Annotated[Positive | None, AfterValidator(_beside_table)]
+ExponentOrTable = Annotated[Exponent | None, AfterValidator(_beside_table)]
 
 
 class RestitutionTable(Table):
@@ -114,7 +118,9 @@ class JointTable(Table):
         description="the contact stiffness in N/m^n where the inner segment presses down; the "
         "same as above unless given",
     )
-    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+    exponent: ExponentOrTable = Field(
+        None, description="the exponent n of the contact law; 2 unless given"
+    )
     restitution: RestitutionTable | None = Field(
         None, description="the table of the contact's own damping; none unless given"
     )
@@ -132,7 +138,7 @@ class JointTable(Table):
     lateral_stiffness: Positive | None = Field(
         None, description="the contact stiffness to the sides in N/m^n; the same unless given"
     )
-    lateral_exponent: Exponent | None = Field(
+    lateral_exponent: ExponentOrTable = Field(
         None, description="the exponent n to the sides; the same unless given"
     )
     tied: Flag = Field(
@@ -178,7 +184,9 @@ class ContactTable(Table):
     stiffness_below: Annotated[NotNegative | None, AfterValidator(_beside_table)] = Field(
         None, description="the contact stiffness in N/m^n below; the same as above unless given"
     )
-    exponent: Exponent = Field(2.0, description="the exponent n of the contact law")
+    exponent: ExponentOrTable = Field(
+        None, description="the exponent n of the contact law; 2 unless given"
+    )
     restitution: RestitutionTable | None = Field(
         None, description="the table of the contact's own damping; none unless given"
     )
@@ -195,7 +203,7 @@ def _law(
     clearance: float,
     stiffness: float | None,
     below: float | None,
-    exponent: float,
+    exponent: float | None,
 ) -> ContactLaw:
     from dynamics.contact import PowerContact, restitution_damping
 
@@ -204,4 +212,4 @@ def _law(
     if stiffness is None:
         assert table.force_table is not None
         return table_law(table.force_table, clearance, damping)
-    return PowerContact(stiffness, exponent, clearance, below, damping)
+    return PowerContact(stiffness, exponent or 2.0, clearance, below, damping)

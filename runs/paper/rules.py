@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import t as student
 
+from runs.case.build import contact_laws
 from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
@@ -458,6 +459,6 @@ def _range(curve: Array) -> float:
     return span
 
 
-def _exponents(case: Case, model: Model) -> tuple[float, ...]:
+def _exponents(case: Case, model: Model) -> list[set[float]]:
     """n of each joint, as the model sees it."""
-    return tuple((model.contact or joint).exponent for joint in case.joints)
+    return [{term.exponent for term in law.terms} for law in contact_laws(case, model)]

@@ -16,7 +16,7 @@ from runs.case import actions
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case, Model
 from runs.pipeline.estimates import of_run
-from runs.pipeline.models import build, damped, joint_stations
+from runs.pipeline.models import build, damped
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
@@ -136,7 +136,7 @@ def _ratios(case: Case, boom: Boom, model: Model) -> list[str]:
     try:
         with np.errstate(all="ignore"):
             system = damped(actions.start(build(case, boom, model).system, case)[0], case)
-            found = pressed_ratios(system, joint_stations(system, case))
+            found = pressed_ratios(system)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         return ["cannot be computed"]
     both = zip(*found, strict=True)

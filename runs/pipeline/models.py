@@ -70,9 +70,4 @@ def damped(system: GapSystem, case: Case) -> GapSystem:
     system = replace(system, damping=rates)
     if table.modal == 0.0:
         return system
-    return with_ratio(system, table.modal, joint_stations(system, case))
-
-
-def joint_stations(system: GapSystem, case: Case) -> int:
-    """How many stations of a model are those of joints; those of stops follow."""
-    return len(system.stations) - len(case.stops)
+    return with_ratio(system, table.modal)

@@ -66,7 +66,6 @@ class PressedBoom:
         omega: (MODES,) of the first modes in rad/s.
         shapes: (num_modes, MODES).
         step: of the integrator in s, small for all pressed modes.
-        joint_stations: as :func:`dynamics.damping.pressed_modes` wants it.
     """
 
     name: str
@@ -75,7 +74,6 @@ class PressedBoom:
     omega: Array
     shapes: Array
     step: float
-    joint_stations: int
 
     @classmethod
     def of(cls, name: str, system: GapSystem) -> PressedBoom:
@@ -86,11 +84,10 @@ class PressedBoom:
             friction_rows=np.zeros((0, system.num_modes)),
             frictions=(),
         )
-        stations = len(system.stations)
-        omega, shapes = pressed_modes(system, stations)
+        omega, shapes = pressed_modes(system)
         rest = equilibrium(system, system.load)
         step = PHASE / omega[-1]
-        return cls(name, system, rest, omega[:MODES], shapes[:, :MODES], step, stations)
+        return cls(name, system, rest, omega[:MODES], shapes[:, :MODES], step)
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
         """The ratio by the logarithmic decrement of a mode's swing, and its energy residual."""
@@ -102,7 +99,7 @@ class PressedBoom:
         reach = np.abs(self.system.rows @ shape)
         run = integrate(
             Motion(
-                with_ratio(self.system, ratio, self.joint_stations),
+                with_ratio(self.system, ratio),
                 PERIODS * period,
                 period / 200.0,
                 position=self.rest + shape * SWING * (deep / reach)[pressed].min(),

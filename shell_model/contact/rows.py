@@ -65,10 +65,9 @@ def gap_rows(
             law = laws[pad.direction][pad.number]
             pressing = rows.press(pad.station, law, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
-    for number, stop in enumerate(boom.stops):
+    for station, stop in boom.numbered_stops:
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        flanges = _flanges(boom, stop, corners[stop.segment])
-        rows.press(boom.station_of_stop(number), law, flanges)
+        rows.stop(station, law, _flanges(boom, stop, corners[stop.segment]))
     return rows
 
 

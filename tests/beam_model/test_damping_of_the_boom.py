@@ -21,7 +21,6 @@ from dynamics.splitting import integrate
 from geometry.boom import Boom
 
 LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
-STATIONS = 2
 
 
 @pytest.fixture(scope="module")
@@ -34,20 +33,20 @@ def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSys
 @pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
 def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
     """Reference: analytic, Φᵀ C Φ = 2ζω, and a matrix that takes energy only."""
-    damped = with_ratio(heavy, ratio, STATIONS)
-    omega, shapes = pressed_modes(heavy, STATIONS)
+    damped = with_ratio(heavy, ratio)
+    omega, shapes = pressed_modes(heavy)
     found = shapes[:, :8].T @ damped.damping_matrix @ shapes[:, :8]
     np.testing.assert_allclose(found, np.diag(2.0 * ratio * omega[:8]), atol=1e-9 * omega[7])
     assert np.linalg.eigvalsh(damped.damping_matrix)[0] > 0.0
-    hertz, ratios = pressed_ratios(damped, STATIONS)
+    hertz, ratios = pressed_ratios(damped)
     np.testing.assert_allclose(ratios[:8], ratio, rtol=1e-9)
     np.testing.assert_allclose(hertz, omega / (2.0 * np.pi))
 
 
 def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, an oscillator of the ratio ζ loses its amplitude at the rate ζω."""
-    damped = with_ratio(heavy, 0.02, STATIONS)
-    first = pressed_modes(heavy, STATIONS)[0][0]
+    damped = with_ratio(heavy, 0.02)
+    first = pressed_modes(heavy)[0][0]
     rigid = heavy.omega2 == 0.0
     assert rigid.sum() == 2
     expected = np.zeros((2, heavy.num_modes))
@@ -59,11 +58,11 @@ def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem
 @pytest.mark.parametrize("mode", [0, 1, 2])
 def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio: float) -> None:
     """Reference: analytic, the logarithmic decrement 2πζ/√(1 − ζ²)."""
-    omega, shapes = pressed_modes(heavy, STATIONS)
+    omega, shapes = pressed_modes(heavy)
     rest = equilibrium(heavy, heavy.load)
     run = integrate(
         Motion(
-            with_ratio(heavy, ratio, STATIONS),
+            with_ratio(heavy, ratio),
             3.2 * 2.0 * np.pi / omega[mode],
             2.0 * np.pi / omega[mode] / 200.0,
             position=rest + 1e-3 * shapes[:, mode],
@@ -78,9 +77,11 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
 
 def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, exp(−ζω₁t)."""
-    wide = replace(heavy, load=0.0 * heavy.load, laws=[replace(LINEAR, clearance=10.0)] * STATIONS)
-    damped = with_ratio(wide, 0.05, STATIONS)
-    tied = pressed_modes(wide, STATIONS)[0][0]
+    wide = replace(
+        heavy, load=0.0 * heavy.load, laws=[replace(LINEAR, clearance=10.0)] * len(heavy.laws)
+    )
+    damped = with_ratio(wide, 0.05)
+    tied = pressed_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
     run = integrate(Motion(damped, 1.0, 0.1, velocity=thrown))
     way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
@@ -98,9 +99,9 @@ def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
 
 def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     """Reference: the same motion at a sixteenth of the finest step."""
-    damped = with_ratio(heavy, 0.05, STATIONS)
+    damped = with_ratio(heavy, 0.05)
     rest = equilibrium(heavy, heavy.load)
-    _, shapes = pressed_modes(heavy, STATIONS)
+    _, shapes = pressed_modes(heavy)
     start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
 
     def states(step: float) -> np.ndarray:
@@ -116,6 +117,6 @@ def test_a_tied_boom_keeps_its_exact_flow(
 ) -> None:
     """Reference: analytic. Its modes are the pressed ones already: 2ζω each, and no dashpots."""
     tied = tied_system(paper_boom, series((6, 6), "complete"))
-    damped = with_ratio(tied, 0.02, 0)
+    damped = with_ratio(tied, 0.02)
     np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(tied.omega2))
     assert not damped.dashpots.size
