@@ -10,7 +10,6 @@ from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from geometry.segment import Segment
 from runs.studies.box_pair import (
     PROBES,
     Answers,
@@ -21,17 +20,12 @@ from runs.studies.box_pair import (
     shell_parts,
     solid_parts,
 )
-from runs.studies.grid_convergence import GridConvergence
+from runs.studies.refined import Refined
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 
-Boxes = tuple[Segment, Segment]
-Parts = Sequence[Mapping[Family, Part]]
-
-RATIO = 2.0
-# Below it the meshes do not tell where they lead.
-LEAST_ORDER = 0.5
-# What is allowed of the thinnest walls.
-ALLOWED = 0.01
+# What is allowed of the thinnest walls; on a line at a free end, between the corners, a shell does
+# worst.
+ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +74,6 @@ class Measured(NamedTuple):
         return found.frequency if self.probe is None else found.compliances[self.probe]
 
 
-def answers(parts: Parts) -> Sequence[Mapping[Family, Answers]]:
-    """Of both segments."""
-    return [{family: part.measure() for family, part in of.items()} for of in parts]
-
-
 FREQUENCIES = (
     Measured("free inner box, lowest frequency along z", "inner, along z", "Hz", 1, ALONG_Z),
     Measured("free inner box, lowest of twisting", "inner, twisting", "Hz", 1, TWISTING),
@@ -94,53 +83,14 @@ FREQUENCIES = (
 )
 COMPLIANCES = (
     Measured("held outer box, deflection of its head", "head up", "m/N", 0, ALONG_Z, "head"),
-    Measured(
-        "held outer box, twist of its head",
-        "head twisted",
-        "rad/(N·m)",
-        0,
-        TWISTING,
-        "head twist",
-    ),
-    # On a line at a free end, between the corners: what a shell does worst.
-    Measured(
-        "free inner box, squeeze of its tail",
-        "tail squeezed",
-        "m/N",
-        1,
-        BREATHING,
-        "tail squeeze",
-        allowed=0.04,
-    ),
-    Measured(
-        "free inner box, squeeze of its tail by pads",
-        "pads squeezed",
-        "m/N",
-        1,
-        BREATHING,
-        "pad squeeze",
-        allowed=0.04,
-    ),
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Values:
-    """A quantity of one model on every mesh, from the coarsest to the finest."""
-
-    values: Sequence[float]
-
-    @property
-    def limit(self) -> float:
-        """Where refinement leads it; the finest mesh's value where that cannot be told."""
-        convergence = GridConvergence.of(self.values, RATIO)
-        settling = convergence.order > LEAST_ORDER  # False where there is none
-        return convergence.limit if settling else self.values[-1]
-
-    @property
-    def index(self) -> float:
-        """Grid convergence index of the finest mesh."""
-        return GridConvergence.of(self.values, RATIO).index
+    Measured("held outer box, twist of its head", "head twisted", "rad/(N·m)", 0, TWISTING,
+             "head twist"),
+    Measured("free inner box, squeeze of its tail", "tail squeezed", "m/N", 1, BREATHING,
+             "tail squeeze", ALLOWED_OF_A_SQUEEZE),
+    Measured("free inner box, squeeze of its tail by pads", "pads squeezed", "m/N", 1, BREATHING,
+             "pad squeeze", ALLOWED_OF_A_SQUEEZE),
+)  # fmt: skip
+EVERY = FREQUENCIES + COMPLIANCES
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,13 +104,18 @@ class Comparison:
     """
 
     wall: float
-    shell: Mapping[Measured, Values]
-    solid: Mapping[Measured, Values]
+    shell: Mapping[Measured, Refined]
+    solid: Mapping[Measured, Refined]
     blows: tuple[Blow, Blow]
+
+    @property
+    def walls(self) -> str:
+        """For people."""
+        return f"{1.0e3 * self.wall:g} mm"
 
     def error(self, what: Measured) -> float:
         """Of the shell, relative to the solid."""
-        return self.shell[what].limit / self.solid[what].limit - 1.0
+        return self.shell[what].settled / self.solid[what].settled - 1.0
 
     def uncertainty(self, measured: Sequence[Measured]) -> float:
         """Largest grid convergence index of both models' finest meshes, where there is one."""
@@ -176,39 +131,51 @@ class Comparison:
 
 def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
     """Measure the pair at every wall thickness; ``tell`` is told which."""
-    found = []
-    for wall in sizes.walls:
-        tell(f"walls of {1.0e3 * wall:g} mm")
-        boxes = pair(wall)
 
-        def shells(number: int, size: float, boxes: Boxes = boxes) -> Mapping[Family, Part]:
+    def compared(wall: float) -> Comparison:
+        boxes = pair(wall)
+        tell(f"walls of {1.0e3 * wall:g} mm")
+
+        def shells(number: int, size: float) -> Mapping[Family, Part]:
             return shell_parts(boxes[number], PROBES[number], size)
 
-        def solids(number: int, splits: int, boxes: Boxes = boxes) -> Mapping[Family, Part]:
+        def solids(number: int, splits: int) -> Mapping[Family, Part]:
             return solid_parts(boxes[number], PROBES[number], sizes.along, sizes.around, splits)
 
-        shell, of_shell = _refined(wall, sizes.triangles, shells)
-        solid, of_solid = _refined(wall, sizes.splits, solids)
-        found.append(Comparison(wall, shell, solid, (of_shell, of_solid)))
-    return found
+        shell, of_shell = _refined(wall, "shell", sizes.triangles, shells)
+        solid, of_solid = _refined(wall, "solid", sizes.splits, solids)
+        return Comparison(wall, shell, solid, (of_shell, of_solid))
+
+    return [compared(wall) for wall in sizes.walls]
 
 
 _Size = TypeVar("_Size")
 
 
 def _refined(
-    wall: float, sizes: Sequence[_Size], parts_of: Callable[[int, _Size], Mapping[Family, Part]]
-) -> tuple[dict[Measured, Values], Blow]:
+    wall: float,
+    model: str,
+    sizes: Sequence[_Size],
+    parts_of: Callable[[int, _Size], Mapping[Family, Part]],
+) -> tuple[dict[Measured, Refined], Blow]:
     """Every quantity on every mesh, and the blow on the finest but one."""
-    values: dict[Measured, list[float]] = {what: [] for what in FREQUENCIES + COMPLIANCES}
+    answers = []
     for size in sizes:
-        parts = parts_of(0, size), parts_of(1, size)
-        measured = answers(parts)
-        for what, found in values.items():
-            found.append(what.of(measured))
+        outer, inner = parts_of(0, size), parts_of(1, size)
+        answers.append(measure([outer, inner]))
         if size == sizes[-2]:
-            struck = blow(parts[0][ALONG_Z], parts[1][ALONG_Z], wall)
-    return {what: Values(found) for what, found in values.items()}, struck
+            struck = blow(outer[ALONG_Z], inner[ALONG_Z], wall)
+    halvings = [2.0**i for i in reversed(range(len(sizes)))]
+    where = f"{1.0e3 * wall:g} mm, {model}"
+    return {
+        what: Refined(f"{where}: {what.what}", what.unit, halvings, [what.of(a) for a in answers])
+        for what in EVERY
+    }, struck
+
+
+def measure(parts: Sequence[Mapping[Family, Part]]) -> list[Mapping[Family, Answers]]:
+    """Of both segments."""
+    return [{family: part.measure() for family, part in of.items()} for of in parts]
 
 
 def order(comparisons: Sequence[Comparison], what: Measured) -> float:

@@ -21,7 +21,7 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
-from geometry.boom import Material, Segment, Support
+from geometry.boom import Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from runs.studies.motions import SLOW
@@ -33,12 +33,11 @@ from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment_shell import Shell, assemble_segment
+from shell_model.verification.plates import STEEL
 from shell_model.verification.solid import assemble_solid
 from shell_model.verification.solid_mesh import mesh_quarter
 
 Array = npt.NDArray[np.float64]
-
-STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 
 # Distances in m of the mid-lines, which stay where they are as walls become thicker.
 OUTER = (0.40, 0.30)
@@ -242,10 +241,10 @@ def solid_parts(
     assert isinstance(segment.section, BoxSection)
     places = _places(segment, probes)
     mesh = mesh_quarter(segment.section, places, along, around, splits, layers)
-    parts = {}
-    for family in dict.fromkeys(probe.family for probe in probes):
-        model = assemble_solid(segment, mesh, family)
-        parts[family] = Part(
+    families = dict.fromkeys(probe.family for probe in probes)
+    models = {family: assemble_solid(segment, mesh, family) for family in families}
+    return {
+        family: Part(
             model,
             {
                 probe.what: model.row(probe.row(model.outline))
@@ -253,7 +252,8 @@ def solid_parts(
                 if probe.family == family
             },
         )
-    return parts
+        for family, model in models.items()
+    }
 
 
 def blow(outer: Part, inner: Part, wall: float) -> Blow:
@@ -309,15 +309,6 @@ def box(
     wall: float,
     supports: tuple[Support, ...] = (),
 ) -> Segment:
+    """A box of steel, with the distances in m of its mid-lines."""
     section = BoxSection(*middles, wall, wall)
-    return Segment(
-        name=name,
-        start=start,
-        end=end,
-        material=STEEL,
-        mass_per_length=section.mass_per_length(STEEL.density),
-        second_moment_of_area=section.second_moment_of_area,
-        rotary_inertia=STEEL.density * section.second_moment_of_area,
-        section=section,
-        supports=supports,
-    )
+    return Segment.of_section(name, start, end, STEEL, section, supports=supports)

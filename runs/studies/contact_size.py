@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the walls give way under contacts of every size, on ever finer meshes and by plate theory.
+"""What walls give way under contacts of every size, on ever finer meshes and by plate theory.
 
 The paper's boom with friction, its stations squeezed
 (:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which tells
@@ -21,20 +21,17 @@ from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
-from runs.studies.grid_convergence import GridConvergence
-from runs.studies.mesh import RATIO
-from runs.studies.motions import finer, friction_case, gap_system, shell_of
+from runs.studies.motions import OUTPUT_STEP, PHASE, finer, friction_case, gap_system, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Proof, Study
-from runs.studies.working_load import OUTPUT_STEP, PHASE
+from runs.studies.refined import Refined, refined_table
+from runs.studies.study import Proof, Study, Table
 
 Array = npt.NDArray[np.float64]
 
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01
 NANO = 1.0e9
+UNIT = "1e-9 m/N"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +63,7 @@ class Contact(NamedTuple):
     name: str
     case: Case
     length: float
-    width: float
+    width: float | None
 
 
 def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
@@ -75,7 +72,7 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
     for length in sizes.lengths:
         joints = tuple(joint.model_copy(update={"contact_length": length}) for joint in case.joints)
         pressed = case.model_copy(update={"joints": joints})
-        corners.append(Contact(f"corner of {length:g} m", pressed, length, 0.0))
+        corners.append(Contact(f"corner of {length:g} m", pressed, length, None))
     return corners + [
         Contact(f"pad of {length:g} m x {width:g} m", with_pads(case, length, width), length, width)
         for length, width in sizes.pads
@@ -107,144 +104,64 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     model = finer(shell_of(contact.case), sizes.default)
     system = gap_system(contact.case, build_boom(contact.case), model)
     step = contact_step(system, OUTPUT_STEP, phase=PHASE)
-    return [
-        integrate(Motion(replace(system, load=load * system.load), sizes.peak, OUTPUT_STEP), step)
-        .first_peak()[1]
-        for load in sizes.loads
-    ]  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What a contact gives.
-
-    Args:
-        contact: which.
-        local: (num_meshes, num_stations) in m/N.
-        peaks: in m, one for each load.
-    """
-
-    contact: Contact
-    local: Array
-    peaks: Sequence[float]
-
-
-def size_table(found: Sequence[Found], sizes: Sizes) -> TextTable:
-    """What the size of a contact means for the boom."""
-    default = sizes.meshes.index(sizes.default)
-    rows = [
-        (
-            one.contact.name,
-            f"{one.contact.length:g}",
-            f"{one.contact.width:g}" if one.contact.width else "",
-            *(fixed(value, 2, NANO) for value in one.local[default]),
-            *(fixed(peak, 1, 1.0e3) for peak in one.peaks),
-        )
-        for one in found
-    ]
-    stations = build_boom(found[0].contact.case).stations
-    return TextTable(
-        "What the size of a contact means",
-        (
-            "pressed",
-            "along the boom\n(m)",
-            "across\n(m)",
-            *(f"local compliance\nat {x:g} m (1e-9 m/N)" for x, _ in stations),
-            *(f"first tip peak\nload × {load:g} (mm)" for load in sizes.loads),
-        ),
-        rows,
-        (
-            "The paper's boom with its friction, default mesh. Corners are pressed where webs meet "
-            "flanges; pads beside them, where the flanges bend. What the size changes of the peak "
-            "is more than what any mesh does.",
-        ),
-        name="contact-size",
-    )
-
-
-def mesh_table(found: Sequence[Found], sizes: Sizes) -> TextTable:
-    """How the local compliance settles as meshes refine."""
-    stations = build_boom(found[0].contact.case).stations
-    rows = []
-    for one in found:
-        for (x, _), values in zip(stations, one.local.T, strict=True):
-            convergence = GridConvergence.of(values.tolist(), RATIO)
-            rows.append(
-                (
-                    f"{one.contact.name}, {x:g} m",
-                    *(number(NANO * value, 5) for value in values),
-                    fixed(convergence.order, 2),
-                    fixed(convergence.index, 2, 100.0),
-                )
-            )
-    return TextTable(
-        "Local compliance on ever finer meshes (1e-9 m/N)",
-        ("contact", *(f"edges × {part:g}" for part in sizes.meshes), "order", "GCI (%)"),
-        rows,
-        ("Edges are those of the default mesh, all of them longer or shorter by the same factor.",),
-        name="local-compliance",
-    )
-
-
-def proofs(found: Sequence[Found], sizes: Sizes) -> list[Proof]:
-    """The default mesh against the finest."""
-    default = sizes.meshes.index(sizes.default)
-    stations = build_boom(found[0].contact.case).stations
-    return [
-        Proof(
-            f"local compliance, {one.contact.name}, at {x:g} m",
-            NANO * float(values[default]),
-            NANO * float(values[-1]),
-            "1e-9 m/N",
-            "other code",
-            f"edges {1.0 / sizes.meshes[-1]:g} times as short",
-            ALLOWED,
-        )
-        for one in found
-        for (x, _), values in zip(stations, one.local.T, strict=True)
-    ]
+    loaded = [replace(system, load=load * system.load) for load in sizes.loads]
+    motions = [integrate(Motion(one, sizes.peak, OUTPUT_STEP), step) for one in loaded]
+    return [motion.first_peak()[1] for motion in motions]
 
 
 def plate_proofs(sizes: Sizes) -> list[Proof]:
     """A wall under a patch beside its edge."""
     from shell_model.verification.pressed_plate import flange
 
-    found = []
-    for edges in ("simply supported", "clamped"):
-        plate = flange(edges)
-        theory = plate.theory()
-        found += [
-            Proof(
-                f"{edges} plate under a patch beside its edge, mesh of {1e3 * size:g} mm",
-                NANO * plate.shell(size),
-                NANO * theory,
-                "1e-9 m/N",
-                "analytic",
-                "Reissner and Mindlin's plate, by Ritz's method",
-                ALLOWED,
-            )
-            for size in sizes.plate
-        ]
-    return found
+    source = "Reissner and Mindlin's plate, by Ritz's method"
+    return [
+        Proof(f"{edges} plate under a patch beside its edge, mesh of {1e3 * size:g} mm",
+              NANO * flange(edges).shell(size), NANO * flange(edges).theory(), UNIT,
+              "analytic", source, ALLOWED)
+        for edges in ("simply supported", "clamped")
+        for size in sizes.plate
+    ]  # fmt: skip
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     """Corners and pads of several sizes, and a plate."""
     sizes = sizes or Sizes()
     tell("plates")
-    plates = plate_proofs(sizes)
-    found = []
+    proofs = plate_proofs(sizes)
+    stations = [x for x, _ in build_boom(friction_case()).stations]
+    default = sizes.meshes.index(sizes.default)
+    finer_by = f"edges {1.0 / sizes.meshes[-1]:g} times as short"
+    rows, found = [], []
     for contact in contacts_of(friction_case(), sizes):
         tell(contact.name)
-        local = np.array([squeezed(contact, part) for part in sizes.meshes])
-        found.append(Found(contact, local, first_peaks(contact, sizes)))
-    return Study(
-        name="contact-size",
-        title="What walls give way where segments touch",
-        tables=[size_table(found, sizes), mesh_table(found, sizes)],
-        proofs=[*plates, *proofs(found, sizes)],
-        data={
-            one.contact.name: {"local": one.local.tolist(), "first_peaks": list(one.peaks)}
-            for one in found
+        local = NANO * np.array([squeezed(contact, part) for part in sizes.meshes])
+        peaks = [1.0e3 * peak for peak in first_peaks(contact, sizes)]
+        rows.append((contact.name, contact.length, contact.width, *local[default], *peaks))
+        for x, values in zip(stations, local.T.tolist(), strict=True):
+            found.append(Refined(f"{contact.name}, {x:g} m", UNIT, sizes.meshes, values))
+            what = f"local compliance, {contact.name}, at {x:g} m"
+            proofs.append(
+                Proof(what, values[default], values[-1], UNIT, "other code", finer_by, ALLOWED)
+            )
+    of_size = Table(
+        "contact-size",
+        "What the size of a contact means",
+        {
+            "pressed": "",
+            "along the boom\n(m)": ".3g",
+            "across\n(m)": ".3g",
+            **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},
+            **{f"first tip peak\nload × {load:g} (mm)": ".1f" for load in sizes.loads},
         },
+        rows,
+        (
+            "The paper's boom with its friction, default mesh. Corners are pressed where webs meet "
+            "flanges; pads beside them, where the flanges bend. What the size changes of the peak "
+            "is more than what any mesh does.",
+        ),
     )
+    title = "Local compliance on ever finer meshes"
+    note = "Edges are those of the default mesh, all of them longer or shorter by the same factor."
+    of_mesh = refined_table("local-compliance", title, found, "edges × {:g}", (note,))
+    heading = "What walls give way where segments touch"
+    return Study("contact-size", heading, [of_size, of_mesh], proofs)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -19,13 +19,10 @@ from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.report.tables import TextTable
-from runs.report.theme import number
-from runs.studies.motions import gap_system, model_of
-from runs.studies.study import Proof, Study
+from runs.studies.motions import gap_system, model_of, without_friction
+from runs.studies.study import Proof, Study, Table
 
 Array = npt.NDArray[np.float64]
-
 
 # Booms, and their cases.
 BOOMS = {
@@ -33,26 +30,25 @@ BOOMS = {
     "three segments": "three-segments.toml",
     "in space": "spatial.toml",
 }
-
 # Of each boom, all with a linear contact.
 MODELS = ("kantorovich-24", "timoshenko", "shell")
+MESH_SIZE = 0.2
 
 RATIOS = (0.005, 0.02, 0.05)
 MODES = 3
-
 # The numbers of the loads of the cases are those of the masses.
 GRAVITY = 9.80665
-
-MESH_SIZE = 0.2
-
 # Step times the highest frequency.
 PHASE = 0.2
-
 # For which each mode swings.
 PERIODS = 1.1
-
 # What a swing changes of a contact's penetration.
 SWING = 0.02
+
+NOTE = (
+    "From the logarithmic decrements of a small swing about rest under the boom's weight, in space "
+    "under a third of it sideways too."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +56,6 @@ class PressedBoom:
     """A boom that its weight presses, at rest.
 
     Args:
-        name: of the boom and the model.
         system: under its weight, without damping and friction.
         rest: (num_modes,) in √kg·m.
         omega: (MODES,) of the first modes in rad/s.
@@ -68,7 +63,6 @@ class PressedBoom:
         step: of the integrator in s, small for all pressed modes.
     """
 
-    name: str
     system: GapSystem
     rest: Array
     omega: Array
@@ -76,18 +70,12 @@ class PressedBoom:
     step: float
 
     @classmethod
-    def of(cls, name: str, system: GapSystem) -> PressedBoom:
+    def of(cls, system: GapSystem) -> PressedBoom:
         """A boom without stops under a load whose numbers are its masses."""
-        system = replace(
-            system,
-            load=-GRAVITY * system.load,
-            friction_rows=np.zeros((0, system.num_modes)),
-            frictions=(),
-        )
+        system = replace(without_friction(system), load=-GRAVITY * system.load)
         omega, shapes = pressed_modes(system)
         rest = equilibrium(system, system.load)
-        step = PHASE / omega[-1]
-        return cls(name, system, rest, omega[:MODES], shapes[:, :MODES], step)
+        return cls(system, rest, omega[:MODES], shapes[:, :MODES], PHASE / omega[-1])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
         """The ratio by the logarithmic decrement of a mode's swing, and its energy residual."""
@@ -114,56 +102,28 @@ class PressedBoom:
 
 def study(tell: Callable[[str], None]) -> Study:
     """Every boom and model at every ratio."""
-    rows: list[Sequence[str]] = []
-    proofs = []
-    data = {}
-    worst = 0.0
-    for boom, file in BOOMS.items():
-        for model in MODELS:
-            pressed = PressedBoom.of(f"{boom}, {model}", _system(CASES / file, model))
-            tell(pressed.name)
-            for ratio in RATIOS:
-                swings = [pressed.measured(ratio, mode) for mode in range(MODES)]
-                ratios = np.array([found for found, _ in swings])
-                worst = max(worst, *(residual for _, residual in swings))
-                farthest = int(np.abs(ratios - ratio).argmax())
-                percent = [number(100.0 * found, 4) for found in ratios]
-                rows.append((pressed.name, number(100.0 * ratio), *percent))
-                data[f"{pressed.name}, {ratio:g}"] = ratios.tolist()
-                proofs.append(
-                    Proof(
-                        f"damping ratio of {pressed.name}: the mode of the first {MODES} that is "
-                        "farthest off",
-                        100.0 * float(ratios[farthest]),
-                        100.0 * ratio,
-                        "%",
-                        "analytic",
-                        "logarithmic decrement 2πζ/√(1 − ζ²)",
-                        0.05,
-                    )
-                )
-    proofs.append(
-        Proof(
-            "energy residual of these swings, the largest",
-            worst,
-            0.0,
-            "",
-            "analytic",
-            "conservation of energy",
-            1.0e-4,
-        )
-    )
-    table = TextTable(
-        "Damping ratios of pressed booms",
-        ("boom", "asked\n%", *(f"mode {mode}\n%" for mode in range(1, MODES + 1))),
-        rows,
-        (
-            "From the logarithmic decrements of a small swing about rest under the boom's weight, "
-            "in space under a third of it sideways too.",
-        ),
-        name="damping",
-    )
-    return Study("damping", "Damping ratios asked for and measured", [table], proofs, data=data)
+    rows, proofs, residuals = [], [], []
+    decrement = "logarithmic decrement 2πζ/√(1 − ζ²)"
+    for name, path, model in (
+        (f"{boom}, {model}", CASES / file, model)
+        for boom, file in BOOMS.items()
+        for model in MODELS
+    ):
+        tell(name)
+        pressed = PressedBoom.of(_system(path, model))
+        farthest = f"damping ratio of {name}: the mode of the first {MODES} that is farthest off"
+        for ratio in RATIOS:
+            swings = np.array([pressed.measured(ratio, mode) for mode in range(MODES)])
+            residuals.append(float(swings[:, 1].max()))
+            worst = 100.0 * float(swings[np.abs(swings[:, 0] - ratio).argmax(), 0])
+            rows.append((name, 100.0 * ratio, *(100.0 * swings[:, 0])))
+            proofs.append(Proof(farthest, worst, 100.0 * ratio, "%", "analytic", decrement, 0.05))
+    residual, source = "energy residual of these swings, the largest", "conservation of energy"
+    proofs.append(Proof(residual, max(residuals), 0.0, "", "analytic", source, 1.0e-4))
+    modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
+    columns = {"boom": "", "asked\n%": ".3g", **modes}
+    table = Table("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
+    return Study("damping", "Damping ratios asked for and measured", [table], proofs)
 
 
 def _system(path: Path, name: str) -> GapSystem:

@@ -10,7 +10,7 @@ paper loads it, near webs, and once with pads under ten times the load.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
@@ -21,11 +21,9 @@ from dynamics.energy import ENERGY_BOUND
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.pipeline.motion import Plan
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
-from runs.studies.motions import friction_case, gap_system, loaded, shell_of
+from runs.studies.motions import friction_case, gap_system, lasting, loaded, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Plot, Proof, Study, Table
 
 Array = npt.NDArray[np.float64]
 
@@ -34,6 +32,11 @@ ALLOWED = 0.005
 
 # Length and width in m of the pads under so many times the paper's load.
 PAD, LOAD = (0.1, 0.06), 10.0
+
+NOTE = (
+    "Where a station presses and sticks at once, the sum of both forces moves the boom; how they "
+    "share it until the next slip hangs on frequencies far above its motion."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,15 +63,14 @@ class Sizes:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One motion beside the reduced shell's.
+    """One motion.
 
     Args:
         how: it was moved.
         unknowns: degrees of freedom, or modal coordinates.
         step: in s.
-        apart: largest difference of the tip from the reduced shell's, as a part of its range.
-        apart_from_larger: the same from the reduction with more coordinates.
-        impulse: of all contact forces in N·s.
+        tip: (num_times,) in m.
+        impulse: of all contact forces in N·s, from their means over output steps.
         energy_residual: as a part of the work done.
         seconds: wall time of the motion.
     """
@@ -76,45 +78,20 @@ class Run:
     how: str
     unknowns: int
     step: float
-    apart: float
-    apart_from_larger: float
+    tip: Array
     impulse: float
     energy_residual: float
     seconds: float
 
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """All motions of the study.
-
-    Args:
-        time: (num_times,) in s.
-        reduced, direct: (num_times,) tips in m of the reduced shell and of the unreduced one with
-            the shortest step.
-        runs: reduced, with more coordinates, then direct from the longest step to the shortest.
-    """
-
-    time: Array
-    reduced: Array
-    direct: Array
-    runs: Sequence[Run]
-
-    @property
-    def of_steps(self) -> Sequence[Run]:
-        """The direct ones."""
-        return self.runs[2:]
-
-    @property
-    def order(self) -> float:
-        """Slope of the difference from the larger reduction over the step, by least squares."""
-        steps = np.log([run.step for run in self.of_steps])
-        return float(np.polyfit(steps, np.log([r.apart_from_larger for r in self.of_steps]), 1)[0])
+    def apart(self, other: Run, span: float) -> float:
+        """Largest difference of the tips, as a part of a span in m."""
+        return float(np.abs(self.tip - other.tip).max()) / span
 
 
-def compare(
+def runs_of(
     case: Case, steps: Sequence[float], sizes: Sizes, tell: Callable[[str], None]
-) -> Comparison:
-    """Move the shell reduced and unreduced.
+) -> list[Run]:
+    """The shell reduced, with more coordinates, then unreduced from the longest step on.
 
     Args:
         case: in the plane, with prescribed normal forces and a model ``shell``.
@@ -126,181 +103,114 @@ def compare(
     from shell_model.reduction.segment import KrylovOptions
     from shell_model.verification.unreduced import assemble_boom, integrate_directly
 
-    time = case.time.model_copy(update={"duration": sizes.duration})
-    case = case.model_copy(update={"time": time})
-    boom = build_boom(case)
+    case = lasting(case, sizes.duration)
+    boom, output_step = build_boom(case), case.time.output_step
     model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
     laws = contact_laws(case, model)
+    krylov = KrylovOptions(sizes.shifts, sizes.moments)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
-    larger = KrylovOptions(sizes.shifts, sizes.moments)
+    larger = ShellOptions(sizes.mesh, model.contact_line, krylov=krylov)
 
     tell("the reduced shell")
-    own = gap_system(case, boom, model)
-    more = reduce_boom(
-        boom, laws, ShellOptions(sizes.mesh, model.contact_line, krylov=larger), MPI.COMM_SELF
-    ).system
     found = []
     for how, system, step in (
-        ("reduced", own, model.step),
-        ("reduced, more coordinates", more, sizes.fine_step),
+        ("reduced", gap_system(case, boom, model), model.step),
+        (
+            "reduced, more coordinates",
+            reduce_boom(boom, laws, larger, MPI.COMM_SELF).system,
+            sizes.fine_step,
+        ),
     ):
         plan = Plan.of(system, case, model.model_copy(update={"step": step}))
         plan.warm()
         start = perf_counter()
-        trajectory = plan.trajectory(lambda part: None)
+        motion = plan.trajectory(lambda part: None)
         seconds = perf_counter() - start
-        tip, taken = np.asarray(trajectory.data["tip"].values), trajectory.data.attrs["step"]
-        impulse = _impulse(trajectory.data["contact_force"].values, case)
-        residual = trajectory.energy_residual
-        found.append((how, system.num_modes, taken, tip, impulse, residual, seconds))
+        tip, taken = np.asarray(motion.data["tip"].values), float(motion.data.attrs["step"])
+        impulse = float(np.abs(motion.data["contact_force"].values).sum()) * output_step
+        found.append(
+            Run(how, system.num_modes, taken, tip, impulse, motion.energy_residual, seconds)
+        )
     full = assemble_boom(boom, laws, options, MPI.COMM_SELF)
     for step in steps:
         tell(f"the unreduced shell, step {step:g} s")
         start = perf_counter()
-        direct = integrate_directly(full, sizes.duration, step, case.time.output_step)
+        direct = integrate_directly(full, sizes.duration, step, output_step)
         seconds = perf_counter() - start
-        impulse = _impulse(direct.contact_forces, case)
         tip, residual = direct.observed["tip"], direct.energy_residual
-        found.append(("unreduced", full.num_dofs, direct.step, tip, impulse, residual, seconds))
-
-    reduced, extended = found[0][3], found[1][3]
-    span = float(np.ptp(reduced))
-    runs = [
-        Run(
-            how,
-            unknowns,
-            float(step),
-            float(np.abs(tip - reduced).max()) / span,
-            float(np.abs(tip - extended).max()) / span,
-            impulse,
-            residual,
-            seconds,
-        )
-        for how, unknowns, step, tip, impulse, residual, seconds in found
-    ]
-    times = case.time.output_step * np.arange(reduced.size)
-    return Comparison(times, reduced, found[-1][3], runs)
+        impulse = float(np.abs(direct.contact_forces).sum()) * output_step
+        found.append(Run("unreduced", full.num_dofs, direct.step, tip, impulse, residual, seconds))
+    return found
 
 
-def table(found: Comparison, where: str, sizes: Sizes) -> TextTable:
-    """One row a motion."""
-    rows = []
-    for i, run in enumerate(found.runs):
-        halved = i > 2
-        before = found.runs[i - 1]
-        order = np.log2(before.apart_from_larger / run.apart_from_larger) if halved else None
-        rows.append(
-            (
-                run.how,
-                str(run.unknowns),
-                f"{1.0e6 * run.step:g}",
-                "" if i == 0 else number(100.0 * run.apart, 2),
-                "" if i == 1 else number(100.0 * run.apart_from_larger, 2),
-                "" if order is None else fixed(float(order), 2),
-                number(run.impulse, 4),
-                number(run.energy_residual, 2),
-                number(run.seconds, 2),
-            )
-        )
-    return TextTable(
+def compare(
+    runs: Sequence[Run], where: str, name: str, sizes: Sizes
+) -> tuple[Table, list[Proof], list[Plot]]:
+    """All motions of a case beside the reduced shell's and beside that with more coordinates.
+
+    Args:
+        runs: of :func:`runs_of`.
+        where: the segments touch, and under which load.
+        name: of the figures.
+        sizes: what is measured.
+    """
+    reduced, larger, *direct = runs
+    span = float(np.ptp(reduced.tip))
+    off, off_larger = ([run.apart(other, span) for run in runs] for other in (reduced, larger))
+    # Of each halving, and by least squares over all.
+    halvings = np.log2(np.divide(off_larger[2:-1], off_larger[3:]))
+    steps = [run.step for run in direct]
+    order = float(np.polyfit(np.log(steps), np.log(off_larger[2:]), 1)[0])
+    table = Table(
+        f"direct-{where.replace(' ', '-')}",
         f"The reduced shell against the unreduced one, {where}, mesh of {sizes.mesh:g} m",
-        (
-            "shell",
-            "unknowns",
-            "step (µs)",
-            "off the reduced (%)",
-            "off more coordinates (%)",
-            "order",
-            "contact impulse (N s)",
-            "energy residual",
-            "wall (s)",
-        ),
-        rows,
+        {
+            "shell": "",
+            "unknowns": ".0f",
+            "step (µs)": ".4g",
+            "off the reduced (%)": ".2g",
+            "off more coordinates (%)": ".2g",
+            "order": ".2f",
+            "contact impulse (N s)": ".4g",
+            "energy residual": ".2g",
+            "wall (s)": ".2g",
+        },
+        [
+            (run.how, run.unknowns, 1.0e6 * run.step, 100.0 * one, 100.0 * other, halving,
+             run.impulse, run.energy_residual, run.seconds)
+            for run, one, other, halving in zip(
+                runs, off, off_larger, [None, None, None, *halvings], strict=True
+            )
+        ],
         (
             f"Largest difference of the tip over {sizes.duration:g} s, in parts of its range. The "
             "unreduced shell goes by the generalised-α method (Chung and Hulbert 1993), which is "
             "of second order until a row closes, opens or turns within a step: that event is "
-            f"misplaced in the step. The mean order is {found.order:.2f}.",
-            "Where a station presses and sticks at once, the sum of both forces moves the boom; "
-            "how they share it until the next slip hangs on frequencies far above its motion.",
+            f"misplaced in the step. The mean order is {order:.2f}.",
+            NOTE,
         ),
-        name=f"direct-{where.replace(' ', '-')}",
-    )
-
-
-def proofs(found: Comparison, where: str, sizes: Sizes) -> list[Proof]:
-    """The tip, and the energy of both motions."""
-    finest, reduced = found.runs[-1], found.runs[0]
-    where = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
-    return [
-        Proof(
-            what=f"tip of the reduced shell off the unreduced one, part of its range, {where}",
-            value=finest.apart,
-            reference=0.0,
-            unit="",
-            kind="other code",
-            source="all degrees of freedom, generalised-α (Chung and Hulbert 1993)",
-            allowed=ALLOWED,
-            order=found.order,
-        ),
+    )  # fmt: skip
+    on = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
+    method = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
+    tips = f"tip of the reduced shell off the unreduced one, part of its range, {on}"
+    proofs = [
+        Proof(tips, off[-1], 0.0, "", "other code", method, ALLOWED, order),
         *(
-            Proof(
-                what=f"energy residual of the {which} shell, {where}",
-                value=run.energy_residual,
-                reference=0.0,
-                unit="",
-                kind="analytic",
-                source="conservation of energy",
-                allowed=ENERGY_BOUND,
-            )
-            for which, run in (("reduced", reduced), ("unreduced", finest))
+            Proof(f"energy residual of the {run.how} shell, {on}", run.energy_residual, 0.0, "",
+                  "analytic", "conservation of energy", ENERGY_BOUND)
+            for run in (reduced, direct[-1])
         ),
-    ]
-
-
-def _impulse(forces: Array, case: Case) -> float:
-    """Of means over output steps."""
-    return float(np.abs(forces).sum()) * case.time.output_step
-
-
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
-    """The paper's boom with friction, all its degrees of freedom against few coordinates."""
-    sizes = sizes or Sizes()
-    case = friction_case()
-    hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
-    found = {
-        "near webs": compare(case, sizes.steps, sizes, tell),
-        hard: compare(loaded(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, tell),
-    }
-    return Study(
-        name="direct",
-        title="The reduction against the full order",
-        tables=[table(one, where, sizes) for where, one in found.items()],
-        proofs=[proof for where, one in found.items() for proof in proofs(one, where, sizes)],
-        plots=[plot for where, one in found.items() for plot in _plots(one, where, sizes)],
-        data={
-            where: {"runs": [asdict(run) for run in one.runs], "order": one.order}
-            for where, one in found.items()
-        },
-    )
-
-
-def _plots(found: Comparison, where: str, sizes: Sizes) -> list[Plot]:
-    steps = [run.step for run in found.of_steps]
-    times = found.time.tolist()
-    name = "direct" if where == "near webs" else "direct-pads"
-    return [
+    ]  # fmt: skip
+    times = np.linspace(0.0, sizes.duration, reduced.tip.size).tolist()
+    plots = [
         Plot(
             f"{name}-tips",
             f"The reduced shell moves as the unreduced one does, {where}",
             "time (s)",
             "tip (mm)",
             {
-                f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * tip).tolist())
-                for run, tip in (
-                    (found.runs[0], found.reduced),
-                    (found.runs[-1], found.direct),
-                )
+                f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * run.tip).tolist())
+                for run in (reduced, direct[-1])
             },
             "Tip of the paper's boom with friction, by two integrators: one curve hides the other.",
             logarithmic=False,
@@ -311,13 +221,30 @@ def _plots(found: Comparison, where: str, sizes: Sizes) -> list[Plot]:
             "step of the direct integration (s)",
             "tip difference (part of range)",
             {
-                "from the reduced shell": (steps, [r.apart for r in found.of_steps]),
-                "from the one with more coordinates": (
-                    steps,
-                    [r.apart_from_larger for r in found.of_steps],
-                ),
+                "from the reduced shell": (steps, off[2:]),
+                "from the one with more coordinates": (steps, off_larger[2:]),
             },
             f"The largest over {sizes.duration:g} s. Where the curves part, it is the reduction: "
-            f"more coordinates change the tip by {100.0 * found.runs[1].apart:.2g} % of its range.",
+            f"more coordinates change the tip by {100.0 * off[1]:.2g} % of its range.",
         ),
     ]
+    return table, proofs, plots
+
+
+def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+    """The paper's boom with friction, all its degrees of freedom against few coordinates."""
+    sizes = sizes or Sizes()
+    case = friction_case()
+    padded = loaded(with_pads(case, *PAD), LOAD)
+    hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
+    found = [
+        compare(runs_of(case, sizes.steps, sizes, tell), "near webs", "direct", sizes),
+        compare(runs_of(padded, sizes.hard_steps, sizes, tell), hard, "direct-pads", sizes),
+    ]
+    return Study(
+        "direct",
+        "The reduction against the full order",
+        [table for table, _, _ in found],
+        [proof for _, proofs, _ in found for proof in proofs],
+        [plot for _, _, plots in found for plot in plots],
+    )

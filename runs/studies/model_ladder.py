@@ -6,25 +6,16 @@ One thing after another is changed that the series leaves out and the shell has.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
 
 import numpy as np
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.report.tables import TextTable
-from runs.studies.motions import (
-    CASE,
-    SLOW,
-    compliance,
-    friction_case,
-    gap_system,
-    model_of,
-    trajectories,
-)
-from runs.studies.study import Study
+from runs.studies.motions import CASE, friction_case, gap_system, model_of, trajectories
+from runs.studies.pads import flexibility_table
+from runs.studies.study import Study, Table
 
 # From the paper's series to the shell: what is changed, and the model that has it.
 WALK = (
@@ -43,26 +34,9 @@ WALK = (
 EXPLAINED = 5.0
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """A step of the walk from the series to the shell.
-
-    Args:
-        what: is changed.
-        model: that has it.
-        changes: largest difference from the model before, up to ``EXPLAINED`` and to the end, as
-            parts of the shell's range.
-        left: the same from the shell.
-    """
-
-    what: str
-    model: str
-    changes: tuple[float, float]
-    left: tuple[float, float]
-
-
-def walk(case: Case) -> list[Step]:
-    """Measure each step of ``WALK``.
+def walk(case: Case) -> Table:
+    """Each step of ``WALK``: what it changes of the tip, and what it leaves to the shell, largest
+    differences as parts of the shell's range.
 
     Args:
         case: with its models.
@@ -76,59 +50,25 @@ def walk(case: Case) -> list[Step]:
     early = case.time.output_step * np.arange(shell.size) <= EXPLAINED
 
     def apart(one: str, other: str) -> tuple[float, float]:
-        distance = np.abs(tip[one] - tip[other]) / np.ptp(shell)
+        distance = 100.0 * np.abs(tip[one] - tip[other]) / np.ptp(shell)
         return float(distance[early].max()), float(distance.max())
 
     before = [names[0], *names[:-1]]
-    return [
-        Step(what, name, apart(name, previous), apart(name, names[-1]))
-        for (what, name), previous in zip(WALK, before, strict=True)
-    ]
-
-
-def walk_table(steps: Sequence[Step]) -> TextTable:
-    """One row a step."""
-
-    def percent(parts: tuple[float, float]) -> list[str]:
-        return [f"{100.0 * part:.2f}" for part in parts]
-
-    return TextTable(
+    return Table(
+        "walk",
         "From the paper's series to the shell",
-        (
-            "with",
-            "model",
-            f"changes, to {EXPLAINED:g} s (% of the range)",
-            "to the end",
-            f"left to the shell, to {EXPLAINED:g} s",
-            "to the end",
-        ),
-        [(step.what, step.model, *percent(step.changes), *percent(step.left)) for step in steps],
-        name="walk",
-    )
-
-
-def flexibilities(case: Case) -> TextTable:
-    """How much more a shell's stations give way than those of Timoshenko's beam.
-
-    Args:
-        case: with both, in the plane.
-    """
-    boom = build_boom(case)
-    stiff = gap_system(case, boom, model_of(case, "timoshenko"))
-    soft = gap_system(case, boom, model_of(case, "shell"))
-    rigid = compliance(stiff, stiff.rows)
-    together = compliance(soft, soft.friction_rows) - rigid
-    upper = [int(np.argmax(soft.station_of_row == i)) for i in range(len(soft.stations))]
-    alone = compliance(soft, soft.rows[upper]) - rigid
-    return TextTable(
-        "Flexibility of the shell's stations beyond Timoshenko's beam",
-        ("x (m)", "both flanges together (m/N)", "one flange more (m/N)"),
+        {
+            "with": "",
+            "model": "",
+            f"changes, to {EXPLAINED:g} s (% of the range)": ".2f",
+            "changes, to the end": ".2f",
+            f"left to the shell, to {EXPLAINED:g} s": ".2f",
+            "left, to the end": ".2f",
+        },
         [
-            (f"{x:g}", f"{both:.2e}", f"{one - both:.2e}")
-            for x, both, one in zip(soft.stations, together, alone, strict=True)
+            (what, name, *apart(name, previous), *apart(name, names[-1]))
+            for (what, name), previous in zip(WALK, before, strict=True)
         ],
-        (f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",),
-        name="flexibility",
     )
 
 
@@ -138,9 +78,6 @@ def study(tell: Callable[[str], None]) -> Study:
     tell("the models from the series to the shell")
     steps = walk(case)
     tell("flexibility of the stations")
-    return Study(
-        name="walk",
-        title="From the paper's series to the shell",
-        tables=[walk_table(steps), flexibilities(case)],
-        data={"walk": [asdict(step) for step in steps]},
-    )
+    shell = gap_system(case, build_boom(case), model_of(case, "shell"))
+    flexibility = flexibility_table([("the shell's stations", case, shell)])
+    return Study("walk", "From the paper's series to the shell", [steps, flexibility])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,6 +17,9 @@ import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
+from dynamics.splitting import integrate
+from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs import CASES
@@ -30,6 +34,12 @@ from runs.pipeline.motion import Plan
 Array = npt.NDArray[np.float64]
 
 CASE = CASES / "friction-walk.toml"
+
+OUTPUT_STEP = 1.0e-3
+# Of the highest frequency of the contacts, see dynamics.step: about the step of the case itself. A
+# third of it changes the tip by 0.02 % of its range in a second at the paper's play and ten times
+# its load.
+PHASE = 0.2
 
 # At which the flexibility of a station is read: below all elastic modes, above the rigid ones.
 SLOW = 5.0
@@ -46,6 +56,12 @@ def loaded(case: Case, times: float) -> Case:
         segment.model_copy(update={"load": times * segment.load}) for segment in case.segments
     )
     return case.model_copy(update={"segments": segments})
+
+
+def lasting(case: Case, duration: float) -> Case:
+    """The case for so long, in s."""
+    time = case.time.model_copy(update={"duration": duration})
+    return case.model_copy(update={"time": time})
 
 
 def model_of(case: Case, name: str) -> Model:
@@ -81,6 +97,17 @@ def trajectories(case: Case) -> list[Trajectory]:
     plans = [Plan.of(gap_system(case, boom, m), case, m) for m in case.models]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(lambda plan: plan.trajectory(lambda part: None), plans))
+
+
+def without_friction(system: GapSystem) -> GapSystem:
+    """The system with rows that press alone."""
+    return replace(system, friction_rows=np.zeros((0, system.num_modes)), frictions=())
+
+
+def move(system: GapSystem, duration: float, phase: float = PHASE) -> Trajectory:
+    """So many seconds from rest, by steps that suit the contacts."""
+    step = contact_step(system, OUTPUT_STEP, phase=phase)
+    return integrate(Motion(system, duration, OUTPUT_STEP), step)
 
 
 def compliance(system: GapSystem, rows: Array) -> Array:

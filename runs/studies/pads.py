@@ -15,9 +15,8 @@ from geometry.contact_places import Patch, pads, patch
 from runs.case.build import build_boom
 from runs.case.contact import PadTable
 from runs.case.schema import Case
-from runs.report.tables import TextTable
 from runs.studies.motions import SLOW, compliance, gap_system, model_of
-from runs.studies.study import Proof
+from runs.studies.study import Cell, Proof, Table
 
 Array = npt.NDArray[np.float64]
 
@@ -29,35 +28,35 @@ def with_pads(case: Case, length: float, width: float) -> Case:
     return case.model_copy(update={"joints": joints})
 
 
-def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> TextTable:
+def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
     """How much more stations give way than those of Timoshenko's beam.
 
     Args:
         contacts: names, cases (with the model ``timoshenko``, in the plane and with friction), and
             shells that touch at the stations.
     """
-    rows = []
+    rows: list[Sequence[Cell]] = []
     for name, case, system in contacts:
         beam = gap_system(case, _middles(build_boom(case)), model_of(case, "timoshenko"))
         rigid = compliance(beam, beam.rows)
         together = compliance(system, system.friction_rows) - rigid
         alone = compliance(system, upper_rows(system)) - rigid
-        rows.append((name, *(f"{value:.2e}" for value in (*together, *(alone - together)))))
-    stations = [f"{x:g} m" for x in contacts[0][2].stations]
-    return TextTable(
+        rows.append((name, *together, *(alone - together)))
+    stations = contacts[0][2].stations
+    return Table(
+        "flexibility",
         "Flexibility of the stations beyond Timoshenko's beam",
-        (
-            "contact",
-            *(f"both flanges together\nat {x} (m/N)" for x in stations),
-            *(f"one flange more\nat {x} (m/N)" for x in stations),
-        ),
+        {
+            "contact": "",
+            **{f"both flanges together\nat {x:g} m (m/N)": ".3g" for x in stations},
+            **{f"one flange more\nat {x:g} m (m/N)": ".3g" for x in stations},
+        },
         rows,
         (
             f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",
             "A pad at the end of the overlap has its middle half its length inside, and there the "
             "beam is read too.",
         ),
-        name="pad-flexibility",
     )
 
 
@@ -95,31 +94,24 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> list
     boom = build_boom(case)
     (joint,) = boom.joints
     start, _ = boom.overlap(joint)
-    free = np.flatnonzero(system.omega2 == 0.0)
-    ends = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
-    row = upper_rows(system)[0, free]
+    row = upper_rows(system)[0]
 
     def reads(tail: float, tip: float) -> float:
         """What the row reads of a rigid motion; the work of its force, read the other way."""
-        return float(row @ np.linalg.lstsq(ends, np.array([tail, tip]), rcond=None)[0])
+        return float(row @ rigid_motion(system, tail, tip))
 
+    force = "force of a uniformly pressed pad, over its law's"
+    place, middle = "its place along the boom, pad at the overlap's start", start + 0.5 * size[0]
     return [
-        Proof(
-            "force of a uniformly pressed pad, over its law's",
-            reads(1.0, 1.0),
-            1.0,
-            "",
-            "analytic",
-            "pressure times area",
-            1.0e-6,
-        ),
-        Proof(
-            "its place along the boom, pad at the overlap's start",
-            reads(start, boom.tip),
-            start + 0.5 * size[0],
-            "m",
-            "analytic",
-            "middle of the pad",
-            1.0e-6,
-        ),
+        Proof(force, reads(1.0, 1.0), 1.0, "", "analytic", "pressure times area", 1.0e-6),
+        Proof(place, reads(start, boom.tip), middle, "m", "analytic", "middle of the pad", 1.0e-6),
     ]
+
+
+def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
+    """(num_modes,) the state in which the free inner segment's ends are so high, in m."""
+    free = np.flatnonzero(system.omega2 == 0.0)
+    rows = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
+    state = np.zeros(system.num_modes)
+    state[free] = np.linalg.lstsq(rows, np.array([tail, tip]), rcond=None)[0]
+    return state

@@ -1,106 +1,167 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Values on ever finer meshes beside a reference that is known."""
+"""Values on ever finer meshes, and how far they are from where refinement leads (Roache 1994)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
-from runs.studies.grid_convergence import GridConvergence
-from runs.studies.study import Kind, Plot, Proof
+from runs.studies.study import Kind, Plot, Proof, Table
 
-RATIO = 2.0
+# Of a grid convergence index of three or more grids (Roache 1998).
+SAFETY = 1.25
+# Below it the meshes do not tell where they lead.
+LEAST_ORDER = 0.5
 
 
-@dataclass(frozen=True, slots=True)
-class Refined:
-    """A value on ever finer meshes beside its reference.
+class Reference(NamedTuple):
+    """What a value should be, and the relative error with which it counts as proven."""
 
-    Args:
-        what: it is.
-        unit: of the values; empty where the source names none.
-        edges: along a side, each twice the one before.
-        values: one for each mesh.
-        reference: what it should be.
-        kind, source: of the reference.
-        allowed: relative error of the finest mesh.
-    """
-
-    what: str
-    unit: str
-    edges: Sequence[int]
-    values: Sequence[float]
-    reference: float
+    value: float
     kind: Kind
     source: str
     allowed: float
 
-    @property
-    def errors(self) -> list[float]:
-        """Relative to the reference, with their signs."""
-        return [value / self.reference - 1.0 for value in self.values]
+
+@dataclass(frozen=True, slots=True)
+class Refined:
+    """A quantity on ever finer meshes.
+
+    Args:
+        what: it is.
+        unit: of the values; empty for a pure number, or where the source names none.
+        sizes: of the meshes, falling by one ratio each.
+        values: one for each.
+        reference: what the finest should be, where it is known.
+    """
+
+    what: str
+    unit: str
+    sizes: Sequence[float]
+    values: Sequence[float]
+    reference: Reference | None = None
 
     @property
-    def order(self) -> float | None:
-        """Observed on the three finest meshes; None where values do not go one way."""
+    def order(self) -> float:
+        """Observed on the three finest; NaN where values do not go one way by ever less."""
         if len(self.values) < 3:
-            return None
-        order = GridConvergence.of(self.values, RATIO).order
-        return order if math.isfinite(order) else None
+            return math.nan
+        coarse, medium, fine = self.values[-3:]
+        earlier, later = medium - coarse, fine - medium
+        if later == 0.0 or earlier / later <= 1.0:
+            return math.nan
+        return math.log(earlier / later) / math.log(self._ratio)
+
+    @property
+    def limit(self) -> float:
+        """Richardson's value at mesh size zero; NaN without an order."""
+        medium, fine = self.values[-2:]
+        return fine + (fine - medium) / self._shrinking
+
+    @property
+    def index(self) -> float:
+        """Grid convergence index of the finest mesh, relative to its value."""
+        medium, fine = self.values[-2:]
+        return SAFETY * abs((fine - medium) / fine) / self._shrinking
+
+    @property
+    def settles(self) -> bool:
+        """Whether the meshes tell where they lead."""
+        return self.order > LEAST_ORDER  # False where there is none
+
+    @property
+    def settled(self) -> float:
+        """Where refinement leads it; the finest mesh's value where that cannot be told."""
+        return self.limit if self.settles else self.values[-1]
+
+    @property
+    def errors(self) -> list[float]:
+        """Of each mesh, relative to the reference, or to the limit where there is none."""
+        exact = self.limit if self.reference is None else self.reference.value
+        return [abs(value / exact - 1.0) for value in self.values]
 
     @property
     def proof(self) -> Proof:
         """The finest mesh against the reference."""
-        return Proof(
-            what=f"{self.what}, {self.edges[-1]} edges",
-            value=self.values[-1],
-            reference=self.reference,
-            unit=self.unit,
-            kind=self.kind,
-            source=self.source,
-            allowed=self.allowed,
-            order=self.order,
+        assert self.reference is not None
+        value, kind, source, allowed = self.reference
+        order = self.order if math.isfinite(self.order) else None
+        return Proof(self.what, self.values[-1], value, self.unit, kind, source, allowed, order)
+
+    def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Proof:
+        """One mesh against where refinement leads.
+
+        Args:
+            what: is proven.
+            size: of the mesh.
+            finest: name of the finest mesh, the reference where there is no limit.
+            allowed: relative error.
+        """
+        value = self.values[self.sizes.index(size)]
+        source, order = (
+            ("limit of its refinement (Richardson 1911)", self.order)
+            if self.settles
+            else (finest, None)
         )
+        return Proof(what, value, self.settled, self.unit, "other code", source, allowed, order)
+
+    @property
+    def _ratio(self) -> float:
+        return self.sizes[-2] / self.sizes[-1]
+
+    @property
+    def _shrinking(self) -> float:
+        return math.pow(self._ratio, self.order) - 1.0
 
 
 def refined_table(
-    name: str, title: str, found: Sequence[Refined], notes: Sequence[str]
-) -> TextTable:
-    """One row a mesh."""
-    rows = []
-    for one in found:
-        for i, (edges, value, error) in enumerate(
-            zip(one.edges, one.values, one.errors, strict=True)
-        ):
-            last = i == len(one.edges) - 1
-            unit = f" ({one.unit})" if one.unit else ""
-            rows.append(
-                (
-                    f"{one.what}{unit}" if i == 0 else "",
-                    str(edges),
-                    number(value, 6),
-                    number(one.reference, 6) if i == 0 else "",
-                    fixed(error, 3, 100.0),
-                    fixed(one.order, 2) if last else "",
-                )
+    name: str, title: str, found: Sequence[Refined], mesh: str, notes: Sequence[str] = ()
+) -> Table:
+    """One row a quantity: its values, order, limit and index.
+
+    Args:
+        name, title, notes: of the table.
+        found: on the same sizes, or on some of the finest.
+        mesh: name of a mesh of a size, "edges × {:g}" say.
+    """
+    sizes = max((one.sizes for one in found), key=len)
+    return Table(
+        name,
+        title,
+        {
+            "quantity": "",
+            **{mesh.format(size): ".6g" for size in sizes},
+            "order": ".2f",
+            "limit": ".6g",
+            "GCI (%)": ".3f",
+        },
+        [
+            (
+                f"{one.what} ({one.unit})" if one.unit else one.what,
+                *[None] * (len(sizes) - len(one.values)),
+                *one.values,
+                one.order,
+                one.limit,
+                100.0 * one.index,
             )
-    return TextTable(
-        title, ("what", "edges", "value", "reference", "error (%)", "order"), rows, notes, name=name
+            for one in found
+        ],
+        notes,
     )
 
 
-def refined_plot(name: str, title: str, found: Sequence[Refined], caption: str) -> Plot:
-    """Error against the length of an edge.
+def error_plot(name: str, title: str, x: str, found: Sequence[Refined], caption: str) -> Plot:
+    """Errors against the sizes of the meshes, of what has a reference or a limit.
 
     Args:
-        name, title, caption: of the figure.
+        name, title, x, caption: of the figure.
         found: its curves.
     """
     curves = {
-        one.what: ([1.0 / n for n in one.edges], [abs(error) for error in one.errors])
+        one.what: (list(one.sizes), one.errors)
         for one in found
+        if all(map(math.isfinite, one.errors))
     }
-    return Plot(name, title, "length of an edge over that of the side", "error", curves, caption)
+    return Plot(name, title, x, "relative error", curves, caption)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,10 +12,8 @@ from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case, Model
-from runs.report.tables import TextTable
-from runs.report.theme import number
 from runs.studies.motions import finer, friction_case, model_of, trajectories
-from runs.studies.study import Study
+from runs.studies.study import Cell, Study, Table
 
 # The models whose integration is refined, and parts of the case's own step.
 STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")
@@ -26,14 +24,18 @@ TERMS = (3, 6, 12, 24)
 ELEMENTS = (2.0, 1.0, 0.5, 0.25)
 MESHES = (0.4, 0.2, 0.1, 0.05)
 
+NOTE = (
+    "Largest difference of the tip over the whole run from that of the next finer one. The order "
+    "is that of the differences."
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Refinement:
     """A model with one thing refined.
 
     Args:
-        what: is refined.
-        model: its name in the case.
+        what: is refined, of which model.
         sizes: of each run, from the coarsest to the finest.
         unit: of the sizes.
         differences: largest difference of each run's tip from the next finer one's, as a part of
@@ -42,7 +44,6 @@ class Refinement:
     """
 
     what: str
-    model: str
     sizes: Sequence[float]
     unit: str
     differences: Sequence[float]
@@ -54,6 +55,15 @@ class Refinement:
         sizes = np.log(self.sizes[: len(self.differences)])
         slopes = np.diff(np.log(self.differences)) / np.diff(sizes)
         return [float(order) for order in np.abs(slopes)]
+
+    @property
+    def rows(self) -> list[Sequence[Cell]]:
+        """One a size."""
+        what = f"{self.what} ({self.unit})" if self.unit else self.what
+        apart = [*(100.0 * part for part in self.differences), None]
+        peaks = [1.0e3 * peak for peak in self.first_peaks]
+        orders = [None, *self.orders, None]
+        return [(what, *row) for row in zip(self.sizes, apart, orders, peaks, strict=True)]
 
 
 def refine(
@@ -82,78 +92,45 @@ def refine(
     tips = np.array([run.data["tip"].values for run in runs])
     peaks = [run.first_peak()[1] for run in runs]
     apart = np.abs(np.diff(tips, axis=0)).max(axis=1) / np.ptp(tips[-1])
-    return Refinement(what, model.name, list(sizes), unit, apart.tolist(), peaks)
-
-
-def survey(case: Case, tell: Callable[[str], None]) -> list[Refinement]:
-    """Every refinement of the case with friction.
-
-    Args:
-        case: with the models of ``runs/cases/friction-walk.toml``.
-        tell: told what is being refined.
-    """
-    found = []
-    for name in STEPPED:
-        tell(f"{name}: step")
-        model = model_of(case, name)
-        own = model.step or case.time.step
-        assert own is not None
-        steps = [factor * own for factor in STEPS]
-        found.append(refine(case, "step", model, steps, "s", _with_step))
-    asked: Sequence[tuple[str, str, Sequence[float], str, Callable[[Model, float], Model]]] = [
-        ("terms of each segment", "kantorovich-24", TERMS, "", _with_terms),
-        ("element length", "beam-fe", ELEMENTS, "m", _with_elements),
-        ("element length", "timoshenko", ELEMENTS, "m", _with_elements),
-        ("mesh size", "shell", MESHES, "m", _with_mesh),
-    ]
-    for what, name, sizes, unit, at in asked:
-        tell(f"{name}: {what}")
-        found.append(
-            refine(case, what, _with_step(model_of(case, name), FINE_STEP), sizes, unit, at)
-        )
-    return found
-
-
-def table(found: Sequence[Refinement]) -> TextTable:
-    """One row a run."""
-    rows = []
-    for refinement in found:
-        orders = [None, *refinement.orders]
-        for i, size in enumerate(refinement.sizes):
-            finest = i == len(refinement.sizes) - 1
-            rows.append(
-                (
-                    f"{refinement.model}: {refinement.what}" if i == 0 else "",
-                    f"{number(size)} {refinement.unit}".strip(),
-                    "" if finest else number(100.0 * refinement.differences[i]),
-                    "" if finest else number(orders[i], 2),
-                    f"{1e3 * refinement.first_peaks[i]:.2f}",
-                )
-            )
-    return TextTable(
-        "Convergence of the paper's example with friction",
-        ("refined", "size", "off the next (% of the range)", "order", "first tip peak (mm)"),
-        rows,
-        (
-            "Largest difference of the tip over the whole run from that of the next finer one. The "
-            "order is that of the differences.",
-        ),
-        name="convergence",
-    )
+    return Refinement(f"{model.name}: {what}", list(sizes), unit, apart.tolist(), peaks)
 
 
 def study(tell: Callable[[str], None]) -> Study:
-    """Steps of all integrations, terms, elements, meshes."""
-    found = survey(friction_case(), tell)
-    return Study(
-        name="refinement",
-        title="How the motion settles",
-        tables=[table(found)],
-        data={"refinements": [{**asdict(one), "orders": one.orders} for one in found]},
-    )
+    """Steps of all integrations, terms, elements, meshes, each of the case with friction."""
+    case = friction_case()
+    rows: list[Sequence[Cell]] = []
+
+    def add(
+        what: str, name: str, sizes: Sequence[float], unit: str, at: Callable[[Model, float], Model]
+    ) -> None:
+        tell(f"{name}: {what}")
+        model = model_of(case, name)
+        if at is not with_step:
+            model = with_step(model, FINE_STEP)
+        rows.extend(refine(case, what, model, sizes, unit, at).rows)
+
+    for name in STEPPED:
+        own = model_of(case, name).step or case.time.step
+        assert own is not None
+        add("step", name, [factor * own for factor in STEPS], "s", with_step)
+    add("terms of each segment", "kantorovich-24", TERMS, "", _with_terms)
+    add("element length", "beam-fe", ELEMENTS, "m", _with_elements)
+    add("element length", "timoshenko", ELEMENTS, "m", _with_elements)
+    add("mesh size", "shell", MESHES, "m", _with_mesh)
+    columns = {
+        "refined": "",
+        "size": ".3g",
+        "off the next (% of the range)": ".3g",
+        "order": ".2g",
+        "first tip peak (mm)": ".2f",
+    }
+    title = "Convergence of the paper's example with friction"
+    table = Table("convergence", title, columns, rows, (NOTE,))
+    return Study("refinement", "How the motion settles", [table])
 
 
-def _with_step(model: Model, step: float) -> Model:
+def with_step(model: Model, step: float) -> Model:
+    """The model by steps in s."""
     return model.model_copy(update={"step": step})
 
 

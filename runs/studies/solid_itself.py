@@ -35,43 +35,22 @@ def solid_proofs() -> list[Proof]:
     wave = np.pi / BAR.length
     rod = 0.5 * np.sqrt(young / steel.density) / BAR.length / np.sqrt(1.0 + nu**2 * polar * wave**2)
     return [
-        Proof(
-            "solid box: mass",
-            quadratic_form(stretched.mass, slide.ravel()),
-            steel.density * section.area * BAR.length,
-            "kg",
-            "analytic",
-            "ρ A L with the corners filled",
-            ROUND_OFF,
-        ),
-        Proof(
-            "solid box: stiffness against stretching",
-            quadratic_form(stretched.stiffness, stretch.ravel()) / BAR.length,
-            young * section.area,
-            "N",
-            "analytic",
-            "E A",
-            ROUND_OFF,
-        ),
-        Proof(
-            "solid box: stiffness against pure bending",
-            quadratic_form(bent.stiffness, bend.ravel()) / BAR.length,
-            young * section.second_moment_of_area,
-            "N·m²",
-            "analytic",
-            "E J of the hollow rectangle (Saint-Venant 1856)",
-            ROUND_OFF,
-        ),
-        Proof(
-            "solid box: lowest frequency as a rod",
-            float(natural_frequencies(stretched, 2)[1]),
-            float(rod),
-            "Hz",
-            "analytic",
-            "c / 2L with lateral inertia (Love 1927)",
-            1.0e-4,
-        ),
-    ]
+        Proof(f"solid box: {what}", value, reference, unit, "analytic", source, allowed)
+        for what, value, reference, unit, source, allowed in (
+            ("mass", quadratic_form(stretched.mass, slide.ravel()),
+             steel.density * section.area * BAR.length, "kg",
+             "ρ A L with the corners filled", ROUND_OFF),
+            ("stiffness against stretching",
+             quadratic_form(stretched.stiffness, stretch.ravel()) / BAR.length,
+             young * section.area, "N", "E A", ROUND_OFF),
+            ("stiffness against pure bending",
+             quadratic_form(bent.stiffness, bend.ravel()) / BAR.length,
+             young * section.second_moment_of_area, "N·m²",
+             "E J of the hollow rectangle (Saint-Venant 1856)", ROUND_OFF),
+            ("lowest frequency as a rod", float(natural_frequencies(stretched, 2)[1]), float(rod),
+             "Hz", "c / 2L with lateral inertia (Love 1927)", 1.0e-4),
+        )
+    ]  # fmt: skip
 
 
 def _solid(family: Family) -> SolidFamily:

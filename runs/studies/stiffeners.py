@@ -9,8 +9,8 @@ pins far from the joint, and Timoshenko's beam on the same is taken off.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -20,10 +20,8 @@ from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
 from runs.case.build import build_boom
-from runs.report.tables import TextTable
-from runs.report.theme import fixed
 from runs.studies.motions import friction_case
-from runs.studies.study import Proof, Study
+from runs.studies.study import Cell, Proof, Study, Table
 from shell_model.cross_section import Outline, Row, combine
 from shell_model.reduction.products import gram, times
 from shell_model.reduction.solver import ShiftedSolver
@@ -64,81 +62,64 @@ class Sizes:
 
 
 @dataclass(frozen=True, slots=True)
-class Flexibility:
-    """Of one segment at one station, in m/N, beyond Timoshenko's beam.
-
-    Args:
-        x: of the station in m.
-        together: half the force on each flange, above and below its webs.
-        one_more: what one flange with all of the force gives way beyond that.
-    """
-
-    x: float
-    together: float
-    one_more: float
-
-    @property
-    def alone(self) -> float:
-        """Of one flange with all of the force."""
-        return self.together + self.one_more
-
-
-@dataclass(frozen=True, slots=True)
 class Variant:
     """One segment with its stiffeners.
 
     Args:
-        segment: its name.
-        what: it has.
+        what: it is, and has.
         mass: of all its plates in kg.
-        flexibilities: at every station.
+        together: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange,
+            above and below its webs.
+        one_more: (num_stations,) what one flange with all of the force gives way beyond that.
         frequencies: the lowest ones in Hz, rigid motions left out.
     """
 
-    segment: str
     what: str
     mass: float
-    flexibilities: Sequence[Flexibility]
-    frequencies: Sequence[float]
+    together: Array
+    one_more: Array
+    frequencies: Array
+
+    @property
+    def row(self) -> list[Cell]:
+        """Of the table."""
+        flexibilities = np.column_stack([self.together, self.one_more]).ravel()
+        return [self.what, self.mass, *flexibilities, *self.frequencies]
 
 
-def variants(boom: Boom, sizes: Sizes, tell: Callable[[str], None]) -> list[Variant]:
-    """Measure the two segments of a boom, plain and stiffened.
-
-    Args:
-        boom: of two segments with box sections in one joint.
-        sizes: what is measured.
-        tell: told which variant.
-    """
+def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
+    """What each of two segments has → the segment with it: nothing first, the most last."""
     outer, inner = boom.segments
     head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
-    strongest = max(sizes.collars), max(sizes.diaphragms)
 
     def plate(thickness: float) -> tuple[Diaphragm]:
         return (Diaphragm(inner.start, thickness),)
 
-    stiffened: list[tuple[str, Segment]] = [("nothing", outer)]
-    for t in sizes.collars:
-        collared = replace(outer, collars=(Collar(*head, t),))
-        stiffened.append((f"collar at the head, {1e3 * t:g} mm", collared))
-    stiffened.append(("nothing", inner))
-    for t in sizes.collars:
-        collared = replace(inner, collars=(Collar(*tail, t),))
-        stiffened.append((f"collar at the tail, {1e3 * t:g} mm", collared))
-    for t in sizes.diaphragms:
-        what = f"diaphragm in the tail, {1e3 * t:g} mm"
-        stiffened.append((what, replace(inner, diaphragms=plate(t))))
-    both = replace(inner, collars=(Collar(*tail, strongest[0]),), diaphragms=plate(strongest[1]))
-    stiffened.append(("the thickest of both", both))
-    stations = boom.joints[0].stations
-    found = []
-    for what, segment in stiffened:
-        tell(f"{segment.name}: {what}")
-        found.append(_measure(segment, what, stations, sizes))
-    return found
+    both = (Collar(*tail, max(sizes.collars)),)
+    return {
+        "nothing": outer,
+        **{
+            f"collar at the head, {1e3 * t:g} mm": replace(outer, collars=(Collar(*head, t),))
+            for t in sizes.collars
+        },
+    }, {
+        "nothing": inner,
+        **{
+            f"collar at the tail, {1e3 * t:g} mm": replace(inner, collars=(Collar(*tail, t),))
+            for t in sizes.collars
+        },
+        **{
+            f"diaphragm in the tail, {1e3 * t:g} mm": replace(inner, diaphragms=plate(t))
+            for t in sizes.diaphragms
+        },
+        "the thickest of both": replace(
+            inner, collars=both, diaphragms=plate(max(sizes.diaphragms))
+        ),
+    }
 
 
-def _measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
+def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
+    """A segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
     shell = _shell(segment, sizes.mesh, stations)
     held, standing = segment, shell
     if not segment.supports:
@@ -148,14 +129,14 @@ def _measure(segment: Segment, what: str, stations: Sequence[float], sizes: Size
     flexibilities = []
     for x in stations:
         top, bottom = (_corners(standing.outline(x), side) for side in (1.0, -1.0))
-        rigid = _timoshenko(held, x)
         both = _compliance(standing, solve, combine((0.5, top), (0.5, bottom)))
         one = _compliance(standing, solve, top)
-        flexibilities.append(Flexibility(x, both - rigid, one - both))
+        flexibilities.append((both - _timoshenko(held, x), one - both))
     solve.destroy()
+    together, one_more = 1.0e9 * np.array(flexibilities).T
     free = shell.rigid_motions().shape[1]
     frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
-    return Variant(segment.name, what, _mass(shell), flexibilities, [float(f) for f in frequencies])
+    return Variant(f"{segment.name}, {what}", _mass(shell), together, one_more, frequencies)
 
 
 def _shell(segment: Segment, size: float, lines: Sequence[float] = ()) -> SegmentShell:
@@ -219,7 +200,7 @@ def racking_stiffness(
     """
     stiffness = []
     for plates in ((), (Diaphragm(0.5, thickness),)):
-        shell = _shell(replace(_piece(section, material, 1.0), diaphragms=plates), size, (0.5,))
+        shell = _shell(_piece(material, section, 1.0, diaphragms=plates), size, (0.5,))
         solve = ShiftedSolver(shell, STATIC)
         stiffness.append(1.0 / _compliance(shell, solve, racking(shell.outline(0.5))))
         solve.destroy()
@@ -235,10 +216,11 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
         collar: thickness in m that is added all around.
         size: of the mesh in m.
     """
-    plain = _piece(section, Material(young, 0.0, 7850.0), 0.1 * (section.width + section.height))
-    ring = replace(plain, collars=(Collar(0.0, plain.end, collar),)) if collar else plain
-    shell = _shell(ring, size, (0.5 * plain.end,))
-    across = ((0.0, 1.0 / 6.0), (0.5 * plain.end, 4.0 / 6.0), (plain.end, 1.0 / 6.0))
+    length = 0.1 * (section.width + section.height)
+    collars = (Collar(0.0, length, collar),) if collar else ()
+    ring = _piece(Material(young, 0.0, 7850.0), section, length, collars=collars)
+    shell = _shell(ring, size, (0.5 * length,))
+    across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))
     row = combine(
         *(
             (weight * side, shell.outline(x).flange_deflection(side, 0.0))
@@ -249,7 +231,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
     solve = ShiftedSolver(shell, STATIC)
     found = _compliance(shell, solve, row)
     solve.destroy()
-    return found * plain.end
+    return found * length
 
 
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
@@ -266,42 +248,26 @@ def frame_flexibility(section: BoxSection, young: float, collar: float) -> float
     return (bending + shear + 0.5 * h / t) / young
 
 
-def _piece(section: BoxSection, material: Material, length: float) -> Segment:
+def _piece(
+    material: Material, section: BoxSection, length: float, **stiffeners: tuple[object, ...]
+) -> Segment:
     """A free piece of box."""
-    mass, second_moment = material.density * section.area, section.second_moment_of_area
-    rotary = material.density * second_moment
-    return Segment("piece", 0.0, length, material, mass, second_moment, rotary, section)
+    return Segment.of_section("piece", 0.0, length, material, section, **stiffeners)
 
 
-def table(found: Sequence[Variant], sizes: Sizes) -> TextTable:
+def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> Table:
     """One row a variant."""
-    stations = [f"{one.x:g}" for one in found[0].flexibilities]
-    rows = [
-        (
-            f"{one.segment}, {one.what}",
-            f"{one.mass:.1f}",
-            *(
-                fixed(1.0e9 * value, 2)
-                for station in one.flexibilities
-                for value in (station.together, station.one_more)
-            ),
-            *(f"{frequency:.2f}" for frequency in one.frequencies),
-        )
-        for one in found
-    ]
-    return TextTable(
+    flexibility = "both flanges (nm/N)", "one flange more (nm/N)"
+    return Table(
+        "variants",
         "Collars and diaphragms on the paper's boom",
-        (
-            "segment, with",
-            "mass (kg)",
-            *(
-                heading
-                for x in stations
-                for heading in (f"{x} m: both flanges (nm/N)", f"{x} m: one flange more (nm/N)")
-            ),
-            *(f"f{k} (Hz)" for k in range(1, sizes.frequencies + 1)),
-        ),
-        rows,
+        {
+            "segment, with": "",
+            "mass (kg)": ".1f",
+            **{f"{x:g} m: {what}": ".2f" for x in stations for what in flexibility},
+            **{f"f{k} (Hz)": ".2f" for k in range(1, sizes.frequencies + 1)},
+        },
+        [one.row for one in found],
         (
             f"Collars are {sizes.collar:g} m long. Static flexibility above the webs, beyond that "
             "of Timoshenko's beam of the plain box: of half the force on each flange, and what all "
@@ -309,75 +275,54 @@ def table(found: Sequence[Variant], sizes: Sizes) -> TextTable:
             "the outer one on its supports, the inner one free. Flexibility to a corner's force "
             f"grows as the mesh refines: compare on one mesh, here {sizes.mesh:g} m.",
         ),
-        name="stiffeners",
     )
 
 
-def sums(found: Sequence[Variant], outer: str, inner: str) -> TextTable:
-    """What both segments of a joint give way together, for some pairs of variants.
-
-    Args:
-        found: measured.
-        outer, inner: names of the segments.
-    """
-    mine = [[one for one in found if one.segment == name] for name in (outer, inner)]
-    collared = [[one for one in some if one.what.startswith("collar")][-1] for some in mine]
-    closed = [one for one in mine[1] if one.what.startswith("diaphragm")][-1]
-    pairs: list[tuple[str, Variant, Variant]] = [
-        ("nothing", mine[0][0], mine[1][0]),
-        ("a collar at the head", collared[0], mine[1][0]),
-        ("a collar at the tail", mine[0][0], collared[1]),
-        ("collars at both", collared[0], collared[1]),
-        ("a diaphragm in the tail", mine[0][0], closed),
-        ("collars at both and the diaphragm", collared[0], mine[1][-1]),
-    ]
-    rows = []
-    for what, one, other in pairs:
-        stations = zip(one.flexibilities, other.flexibilities, strict=True)
-        rows.append((what, *(fixed(1.0e9 * (a.alone + b.alone), 2) for a, b in stations)))
-    return TextTable(
+def sums(
+    outer: Sequence[Variant], inner: Sequence[Variant], stations: Sequence[float], sizes: Sizes
+) -> Table:
+    """What both segments of a joint give way together, for some pairs of variants."""
+    head, tail, closed = outer[-1], inner[len(sizes.collars)], inner[-2]
+    return Table(
+        "stiffened-stations",
         "Flexibility of a contact, both segments together",
-        ("with", *(f"at {one.x:g} m (nm/N)" for one in found[0].flexibilities)),
-        rows,
+        {"with": "", **{f"at {x:g} m (nm/N)": ".2f" for x in stations}},
+        [
+            (what, *(one.together + one.one_more + other.together + other.one_more))
+            for what, one, other in (
+                ("nothing", outer[0], inner[0]),
+                ("a collar at the head", head, inner[0]),
+                ("a collar at the tail", outer[0], tail),
+                ("collars at both", head, tail),
+                ("a diaphragm in the tail", outer[0], closed),
+                ("collars at both and the diaphragm", head, inner[-1]),
+            )
+        ],
         ("Of one flange of each, with the thickest stiffeners of the table above.",),
-        name="stiffened-stations",
     )
 
 
-def proofs(boom: Boom, sizes: Sizes, tell: Callable[[str], None]) -> list[Proof]:
+def proofs(boom: Boom, sizes: Sizes) -> list[Proof]:
     """Stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
     assert isinstance(section, BoxSection)
     t, collar = sizes.diaphragms[len(sizes.diaphragms) // 2], sizes.collars[0]
-    tell("a diaphragm in pure shear")
+    what = f"resistance of a diaphragm of {1e3 * t:g} mm to racking"
+    value = racking_stiffness(section, material, t, sizes.plate_mesh)
     shear = material.shear_modulus * t * section.width * section.height
-    found = [
-        Proof(
-            what=f"resistance of a diaphragm of {1e3 * t:g} mm to racking",
-            value=racking_stiffness(section, material, t, sizes.plate_mesh),
-            reference=shear,
-            unit="N m",
-            kind="analytic",
-            source="G t b h of a plate in pure shear",
-            allowed=ALLOWED,
-        )
-    ]
-    for thickness in (0.0, collar) if section.flange == section.web else ():
-        what = f"with a collar of {1e3 * thickness:g} mm" if thickness else "without a collar"
-        tell(f"a ring {what}")
-        young = material.youngs_modulus
-        found.append(
-            Proof(
-                what=f"flexibility of a ring {what}, per length",
-                value=ring_flexibility(section, young, thickness, sizes.ring_mesh),
-                reference=frame_flexibility(section, young, thickness),
-                unit="m²/N",
-                kind="analytic",
-                source="frame of Timoshenko beams",
-                allowed=ALLOWED,
-            )
-        )
+    source = "G t b h of a plate in pure shear"
+    found = [Proof(what, value, shear, "N m", "analytic", source, ALLOWED)]
+    if section.flange == section.web:
+        young, source = material.youngs_modulus, "frame of Timoshenko beams"
+        for thickness, has in (
+            (0.0, "without a collar"),
+            (collar, f"with a collar of {1e3 * collar:g} mm"),
+        ):
+            what = f"flexibility of a ring {has}, per length"
+            value = ring_flexibility(section, young, thickness, sizes.ring_mesh)
+            frame = frame_flexibility(section, young, thickness)
+            found.append(Proof(what, value, frame, "m²/N", "analytic", source, ALLOWED))
     return found
 
 
@@ -385,12 +330,23 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     """Collars and diaphragms at the joint of the paper's boom."""
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
-    outer, inner = (segment.name for segment in boom.segments)
-    found = variants(boom, sizes, tell)
+    stations = boom.joints[0].stations
+
+    def measured(variants: Mapping[str, Segment]) -> list[Variant]:
+        found = []
+        for what, segment in variants.items():
+            tell(f"{segment.name}: {what}")
+            found.append(measure(segment, what, stations, sizes))
+        return found
+
+    outer, inner = map(measured, stiffened(boom, sizes))
+    tell("a diaphragm in pure shear, and rings")
     return Study(
-        name="stiffeners",
-        title="Collars and diaphragms",
-        tables=[table(found, sizes), sums(found, outer, inner)],
-        proofs=proofs(boom, sizes, tell),
-        data={"variants": [asdict(one) for one in found]},
+        "stiffeners",
+        "Collars and diaphragms",
+        [
+            table([*outer, *inner], stations, sizes),
+            sums(outer, inner, stations, sizes),
+        ],
+        proofs(boom, sizes),
     )

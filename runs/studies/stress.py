@@ -7,10 +7,8 @@ load: a static state with known moments, and known forces where it touches.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -20,10 +18,8 @@ from geometry.boom import Boom
 from geometry.contact_places import Stretch
 from geometry.mesh import mesh_segment, plate_thickness
 from runs.case.build import build_boom, contact_laws
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
-from runs.studies.grid_convergence import GridConvergence
 from runs.studies.motions import friction_case, model_of
+from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Plot, Proof, Study
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.contact.corner_lines import CornerLines
@@ -34,7 +30,6 @@ from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import ShellStress, wall_forces
 
 INNER = 1
-RATIO = 2.0
 
 # Hz, in place of zero, since nothing holds the segment along x: nothing elastic is so slow.
 STATIC = 0.01
@@ -42,6 +37,12 @@ STATIC = 0.01
 # Relative errors with which a stress counts as proven: away from contacts, over a patch, and of
 # the reduction.
 BEAM, PATCH, REDUCED = 0.01, 0.05, 0.001
+
+NOTE = (
+    "The force enters along a length of the corner of a flange and a web. The stress of the "
+    "nearest triangle grows as the mesh refines, and is no design stress. The mean over a patch of "
+    "half a wall and 0.5 m settles."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,96 +167,46 @@ def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
     return {tail: (-1, at_head - lift), head: (1, at_head)}
 
 
-def proofs(pressed: Sequence[Pressed], reduced: Pressed, sizes: Sizes) -> list[Proof]:
+def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str], Refined]:
+    """x of each contact, and "triangle" or "patch" → the largest von Mises stress near it."""
+    return {
+        (x, what): Refined(
+            f"largest {what} at {x:g} m",
+            "MPa",
+            sizes.meshes,
+            [one.near(x)[place] / 1.0e6 for one in pressed],
+        )
+        for x in pressed[0].boom.joints[0].stations
+        for place, what in enumerate(("triangle", "patch"))
+    }
+
+
+def proofs(
+    default: Pressed, reduced: Pressed, near: Mapping[tuple[float, str], Refined], sizes: Sizes
+) -> list[Proof]:
     """The default mesh against a beam, equilibrium, and the limit of the refinement; and the
     reduced shell against the full one.
     """
-    default = pressed[sizes.meshes.index(sizes.default)]
-    mesh = f"mesh of {sizes.default:g} m"
+    mesh, finest = (f"mesh of {size:g} m" for size in (sizes.default, sizes.meshes[-1]))
     found = []
     for x in sizes.places:
-        value, reference = default.top(x)
-        found.append(
-            Proof(
-                what=f"stress of the top at {x:g} m, {mesh}",
-                value=value / 1.0e6,
-                reference=reference / 1.0e6,
-                unit="MPa",
-                kind="analytic",
-                source="σ = M z / J",
-                allowed=BEAM,
-            )
-        )
+        value, reference = (stress / 1.0e6 for stress in default.top(x))
+        what = f"stress of the top at {x:g} m, {mesh}"
+        found.append(Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM))
+    what = f"shear force of the webs at {sizes.places[0]:g} m, {mesh}"
     value, reference = default.shear(sizes.places[0])
-    found.append(
-        Proof(
-            what=f"shear force of the webs at {sizes.places[0]:g} m, {mesh}",
-            value=value,
-            reference=reference,
-            unit="N",
-            kind="analytic",
-            source="equilibrium",
-            allowed=BEAM,
-        )
-    )
+    found.append(Proof(what, value, reference, "N", "analytic", "equilibrium", BEAM))
     for x in default.boom.joints[0].stations:
-        patches = GridConvergence.of([one.near(x)[1] for one in pressed], RATIO)
-        settles = math.isfinite(patches.limit)
-        found.append(
-            Proof(
-                what=f"von Mises stress of a patch at the contact at {x:g} m, {mesh}",
-                value=default.near(x)[1] / 1.0e6,
-                reference=(patches.limit if settles else patches.fine) / 1.0e6,
-                unit="MPa",
-                kind="other code",
-                source="limit of its refinement (Richardson 1911)"
-                if settles
-                else f"mesh of {sizes.meshes[-1]:g} m",
-                allowed=PATCH,
-                order=patches.order if settles else None,
-            )
-        )
-        found.append(
-            Proof(
-                what=f"largest von Mises stress of a triangle at the contact at {x:g} m, reduced",
-                value=reduced.near(x)[0] / 1.0e6,
-                reference=default.near(x)[0] / 1.0e6,
-                unit="MPa",
-                kind="other code",
-                source="the unreduced shell, of the same mesh",
-                allowed=REDUCED,
-            )
-        )
+        at = f"at the contact at {x:g} m"
+        patch, triangle = near[x, "patch"], near[x, "triangle"]
+        what = f"von Mises stress of a patch {at}, {mesh}"
+        found.append(patch.against_limit(what, sizes.default, finest, PATCH))
+        what = f"largest von Mises stress of a triangle {at}, reduced"
+        value = reduced.near(x)[0] / 1.0e6
+        reference = triangle.values[sizes.meshes.index(sizes.default)]
+        source = "the unreduced shell, of the same mesh"
+        found.append(Proof(what, value, reference, "MPa", "other code", source, REDUCED))
     return found
-
-
-def table(pressed: Sequence[Pressed], sizes: Sizes) -> TextTable:
-    """What the meshes make of the stress at the contacts."""
-    rows = []
-    for x in pressed[0].boom.joints[0].stations:
-        for what, place in (("largest triangle", 0), ("largest patch", 1)):
-            values = [one.near(x)[place] / 1.0e6 for one in pressed]
-            grids = GridConvergence.of(values, RATIO)
-            rows.append(
-                (
-                    f"{what} at {x:g} m",
-                    *(number(value, 4) for value in values),
-                    fixed(values[-1] / values[-2], 2),
-                    fixed(grids.order, 2),
-                    number(grids.limit, 4),
-                )
-            )
-    return TextTable(
-        "Von Mises stress (MPa) where the inner segment is pressed",
-        ("near the contact", *(f"{m:g} m" for m in sizes.meshes), "finest ratio", "order", "limit"),
-        rows,
-        (
-            "The force enters along a length of the corner of a flange and a web. The stress of "
-            "the nearest triangle grows as the mesh refines, and is no design stress. The mean "
-            "over a patch of half a wall and 0.5 m settles.",
-        ),
-        name="stress",
-    )
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
@@ -270,29 +221,23 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     tell(f"mesh of {sizes.default:g} m, reduced")
     laws = contact_laws(case, model_of(case, "shell"))
     reduced = Pressed.reduced(boom, laws, sizes.default)
-    stations = boom.joints[0].stations
-    curves = {}
-    data: dict[str, Any] = {"meshes": list(sizes.meshes), "near": []}
-    for x in stations:
-        for what, place in (("triangle", 0), ("patch", 1)):
-            values = [one.near(x)[place] / 1.0e6 for one in pressed]
-            curves[f"largest {what} at {x:g} m"] = (list(sizes.meshes), values)
-            data["near"].append({"x": x, "what": what, "von_mises": values})
+    near = stresses(pressed, sizes)
+    title = "Von Mises stress where the inner segment is pressed"
+    default = pressed[sizes.meshes.index(sizes.default)]
     return Study(
-        name="stress",
-        title="Stresses of the inner segment between its contacts",
-        tables=[table(pressed, sizes)],
-        proofs=proofs(pressed, reduced, sizes),
-        plots=[
+        "stress",
+        "Stresses of the inner segment between its contacts",
+        [refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))],
+        proofs(default, reduced, near, sizes),
+        [
             Plot(
                 "stress",
                 "At a line of contact the mesh makes the stress; over a patch it settles",
                 "mesh size (m)",
                 "von Mises stress (MPa)",
-                curves,
+                {one.what: (one.sizes, one.values) for one in near.values()},
                 "The inner segment of the paper's boom rests on its contacts. Largest von Mises "
                 "stress of a triangle within 0.25 m of each, and of the mean over half a wall.",
             )
         ],
-        data=data,
     )

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a study leaves: tables, curves, and proofs."""
+"""The one form of a study: values beside their references, tables of numbers, curves."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal
 
 from runs.report.tables import TextTable
+from runs.report.theme import fixed, number
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
+Cell = str | float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,38 @@ class Proof:
 
 
 @dataclass(frozen=True, slots=True)
+class Table:
+    """Numbers under headings, for people and for programs.
+
+    Args:
+        name: of its place in the report and in the JSON file.
+        title: above it.
+        columns: heading → how its numbers are shown: ".2f" with two decimals, ".3g" with three
+            significant digits, "" where there is text alone.
+        rows: a cell for each heading, numbers in the heading's unit; None for none.
+        notes: sentences below it.
+    """
+
+    name: str
+    title: str
+    columns: Mapping[str, str]
+    rows: Sequence[Sequence[Cell]]
+    notes: Sequence[str] = ()
+
+    @property
+    def text(self) -> TextTable:
+        """For people."""
+        forms = list(self.columns.values())
+        rows = [tuple(map(_shown, row, forms)) for row in self.rows]
+        return TextTable(self.title, list(self.columns), rows, self.notes, name=self.name)
+
+    @property
+    def data(self) -> list[dict[str, Any]]:
+        """For programs: each row by its headings, as JSON can say it."""
+        return [dict(zip(self.columns, map(_plain, row), strict=True)) for row in self.rows]
+
+
+@dataclass(frozen=True, slots=True)
 class Plot:
     """Curves of one figure.
 
@@ -78,15 +113,31 @@ class Study:
     Args:
         name: of its part of the files.
         title: heading.
-        tables: for people.
+        tables: of what was measured.
         proofs: rows of docs/verification.md.
         plots: figures.
-        data: what the tables are made of, as JSON.
     """
 
     name: str
     title: str
-    tables: Sequence[TextTable]
+    tables: Sequence[Table] = ()
     proofs: Sequence[Proof] = ()
     plots: Sequence[Plot] = ()
-    data: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def data(self) -> dict[str, list[dict[str, Any]]]:
+        """The numbers of each table by its name, as JSON."""
+        return {table.name: table.data for table in self.tables}
+
+
+def _shown(cell: Cell, form: str) -> str:
+    if isinstance(cell, str):
+        return cell
+    digits = int(form[1:-1])
+    return fixed(cell, digits) if form.endswith("f") else number(cell, digits)
+
+
+def _plain(cell: Cell) -> Cell:
+    if isinstance(cell, str) or cell is None:
+        return cell
+    return float(cell) if math.isfinite(cell) else None

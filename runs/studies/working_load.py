@@ -21,28 +21,18 @@ import numpy as np
 import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
-from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
-from runs.studies.grid_convergence import GridConvergence
-from runs.studies.mesh import RATIO, peak_heights
-from runs.studies.motions import finer, friction_case, gap_system, shell_of
+from runs.studies.mesh import peak_heights
+from runs.studies.motions import finer, friction_case, gap_system, move, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Proof, Study
+from runs.studies.refined import Refined, refined_table
+from runs.studies.study import Cell, Proof, Study, Table
 
 Array = npt.NDArray[np.float64]
 
-OUTPUT_STEP = 1.0e-3
-# Of the highest frequency of the contacts, see dynamics.step: about the step of the case itself. A
-# third of it changes the tip by 0.02 % of its range in a second at the paper's play and ten times
-# its load.
-PHASE = 0.2
-# What is allowed of the first peak and of the tip, near webs and with pads, which give way more.
-NEAR_WEBS, WITH_PADS = (0.002, 0.02), (0.002, 0.02)
+# What is allowed of the first peak, and of the tip as a part of its range.
+ALLOWED = 0.002, 0.02
 # Outputs over which a pad's force is averaged: single blows are a matter of microseconds.
 HELD = 20
 
@@ -52,6 +42,9 @@ class Point(NamedTuple):
 
     play: float
     load: float
+
+    def __str__(self) -> str:
+        return f"{1e3 * self.play:g} mm, load × {self.load:g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +70,6 @@ class Sizes:
     spatial_duration: float = 1.0
     peaks: int = 3
 
-    @property
-    def points(self) -> list[Point]:
-        """Every play with every load."""
-        return [Point(*point) for point in product(self.plays, self.loads)]
-
 
 @dataclass(frozen=True, slots=True)
 class Moved:
@@ -97,6 +85,19 @@ class Moved:
     peaks: Sequence[float]
     forces: Array
 
+    def peak(self, which: int = 0) -> float:
+        """Height of one in m; NaN without it."""
+        return self.peaks[which] if which < len(self.peaks) else float("nan")
+
+    @classmethod
+    def of(cls, system: GapSystem, duration: float, peaks: int) -> Moved:
+        """From rest, in s."""
+        motion = move(system, duration)
+        held = np.cumsum(np.pad(motion.data["contact_force"].values, ((1, 0), (0, 0))), axis=0)
+        means = (held[HELD:] - held[:-HELD]) / HELD
+        tip = np.asarray(motion.data["tip"].values)
+        return cls(tip, peak_heights(motion)[:peaks], np.abs(means).max(axis=0))
+
 
 @dataclass(frozen=True, slots=True)
 class Contact:
@@ -104,20 +105,15 @@ class Contact:
 
     Args:
         name: of it.
-        allowed: of the first peak, and of the tip as a part of its range.
         moved: point → its motions, from the coarsest mesh to the finest.
     """
 
     name: str
-    allowed: tuple[float, float]
     moved: Mapping[Point, Sequence[Moved]]
 
     def peak_change(self, point: Point, which: int = 0) -> float:
         """Relative change of a peak from the default mesh to the finest; NaN without it."""
-        peaks = [moved.peaks for moved in self.moved[point][-2:]]
-        if any(len(found) <= which for found in peaks):
-            return float("nan")
-        default, fine = (found[which] for found in peaks)
+        default, fine = (moved.peak(which) for moved in self.moved[point][-2:])
         return abs(default / fine - 1.0)
 
     def force_change(self, point: Point) -> float:
@@ -135,6 +131,36 @@ class Contact:
         known = [(change(p), p) for p in self.moved if np.isfinite(change(p))]
         return max(known, default=(float("nan"), next(iter(self.moved))))
 
+    @property
+    def proofs(self) -> list[Proof]:
+        """First peaks and tips of the default mesh against half of all edges."""
+        found = []
+        for what, change, allowed in zip(
+            ("first tip peak", "tip, part of its range"),
+            (self.peak_change, self.tip_change),
+            ALLOWED,
+            strict=True,
+        ):
+            value, point = self.worst(change)
+            name = f"{what}, {self.name}, worst of {len(self.moved)} points ({point})"
+            source = "all edges half as long"
+            found.append(Proof(name, value, 0.0, "", "other code", source, allowed))
+        return found
+
+    def hardest(self, sizes: Sizes) -> list[Refined]:
+        """Peaks and pad forces at the largest play and load."""
+        meshes = self.moved[max(self.moved, key=lambda p: (p.load, p.play))]
+        values = {
+            ("tip peak", "mm"): [[1e3 * peak for peak in moved.peaks] for moved in meshes],
+            ("pad force", "kN"): [(1e-3 * moved.forces).tolist() for moved in meshes],
+        }
+        return [
+            Refined(f"{self.name}: {what} {i}", unit, sizes.meshes, of_meshes)
+            for (what, unit), each in values.items()
+            # As many as all meshes have.
+            for i, of_meshes in enumerate(zip(*each, strict=False), start=1)
+        ]
+
 
 def at_point(system: GapSystem, point: Point) -> GapSystem:
     """The system with another play and load, its coordinates as they were."""
@@ -151,74 +177,44 @@ def in_space(case: Case) -> Case:
     return case.model_copy(update={"joints": joints, "segments": segments})
 
 
-def _systems(case: Case, sizes: Sizes) -> list[GapSystem]:
-    shell = shell_of(case)
-    boom = build_boom(case)
-    return [gap_system(case, boom, finer(shell, part)) for part in sizes.meshes]
-
-
-def _move(system: GapSystem, duration: float, peaks: int) -> Moved:
-    step = contact_step(system, OUTPUT_STEP, phase=PHASE)
-    motion = integrate(Motion(system, duration, OUTPUT_STEP), step)
-    forces = motion.data["contact_force"].values
-    held = np.cumsum(np.pad(forces, ((1, 0), (0, 0))), axis=0)
-    means = (held[HELD:] - held[:-HELD]) / HELD
-    return Moved(
-        np.asarray(motion.data["tip"].values),
-        peak_heights(motion)[:peaks],
-        np.abs(means).max(axis=0),
-    )
-
-
 def measure(
-    name: str,
-    case: Case,
-    points: Sequence[Point],
-    duration: float,
-    allowed: tuple[float, float],
-    sizes: Sizes,
+    name: str, case: Case, points: Sequence[Point], duration: float, sizes: Sizes
 ) -> Contact:
     """All points on all meshes."""
-    systems = _systems(case, sizes)
+    boom, shell = build_boom(case), shell_of(case)
+    systems = [gap_system(case, boom, finer(shell, part)) for part in sizes.meshes]
     tasks = [at_point(system, point) for point in points for system in systems]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        moved = list(pool.map(lambda task: _move(task, duration, sizes.peaks), tasks))
+        moved = list(pool.map(lambda task: Moved.of(task, duration, sizes.peaks), tasks))
     count = len(systems)
     return Contact(
-        name,
-        allowed,
-        {point: moved[count * i : count * (i + 1)] for i, point in enumerate(points)},
+        name, {point: moved[count * i : count * (i + 1)] for i, point in enumerate(points)}
     )
 
 
-def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> TextTable:
+def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
     """The largest changes of each way to touch."""
-    rows = []
+    rows: list[Sequence[Cell]] = []
     for contact in contacts:
-        changes: list[Callable[[Point], float]] = [
+        read: list[Callable[[Point], float]] = [
             *(partial(contact.peak_change, which=which) for which in range(sizes.peaks)),
             contact.force_change,
             contact.tip_change,
         ]
-        worst = [contact.worst(change) for change in changes]
-        rows.append(
-            (
-                contact.name,
-                str(len(contact.moved)),
-                *(fixed(change, 2, 100.0) for change, _ in worst),
-                _label(worst[-1][1]),
-            )
-        )
-    return TextTable(
+        worst = [contact.worst(change) for change in read]
+        changes = [100.0 * change for change, _ in worst]
+        rows.append((contact.name, len(contact.moved), *changes, str(worst[-1][1])))
+    return Table(
+        "working-load",
         "From the default mesh to one with all edges half as long",
-        (
-            "contact",
-            "points",
-            *(f"peak {which}\n(%)" for which in range(1, sizes.peaks + 1)),
-            "pad forces\n(%)",
-            "tip, part of\nits range (%)",
-            "where",
-        ),
+        {
+            "contact": "",
+            "points": ".0f",
+            **{f"peak {which}\n(%)": ".2f" for which in range(1, sizes.peaks + 1)},
+            "pad forces\n(%)": ".2f",
+            "tip, part of\nits range (%)": ".2f",
+            "where": "",
+        },
         rows,
         (
             f"The largest change over plays of {1e3 * min(sizes.plays):g} to "
@@ -227,125 +223,47 @@ def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> TextTable:
             f"(in space {sizes.spatial_duration:g} s). A pad force is the largest mean over "
             f"{HELD} ms.",
         ),
-        name="working-load",
     )
 
 
-def point_table(contact: Contact, sizes: Sizes) -> TextTable:
-    """First peaks and the tip's change at every point of one way to touch."""
-    rows = []
-    for play in sizes.plays:
-        points = [Point(play, load) for load in sizes.loads]
-        rows.append(
-            (
-                f"{1e3 * play:g}",
-                *(fixed(contact.moved[p][-2].peaks[0], 1, 1e3) for p in points),
-                *(fixed(contact.peak_change(p), 3, 100.0) for p in points),
-                *(fixed(contact.tip_change(p), 2, 100.0) for p in points),
-            )
-        )
-    return TextTable(
+def point_table(contact: Contact) -> Table:
+    """First peaks and the changes at every point of one way to touch, a row each."""
+    return Table(
+        f"points-{contact.name.replace(' ', '-')}",
         f"Every point, {contact.name}",
-        (
-            "play (mm)",
-            *(f"first peak (mm)\nload × {load:g}" for load in sizes.loads),
-            *(f"its change (%)\nload × {load:g}" for load in sizes.loads),
-            *(f"tip (% of range)\nload × {load:g}" for load in sizes.loads),
-        ),
-        rows,
-        name=f"points-{contact.name.replace(' ', '-')}",
-    )
-
-
-def limit_table(contacts: Sequence[Contact], sizes: Sizes) -> TextTable:
-    """Peaks and pad forces on every mesh, and where refinement leads them, at the hardest point."""
-    rows = []
-    for contact in contacts:
-        point = max(contact.moved, key=lambda p: (p.load, p.play))
-        meshes = contact.moved[point]
-        peaks = min(len(moved.peaks) for moved in meshes)
-        quantities = {
-            **{
-                f"tip peak {i} (mm)": [1e3 * m.peaks[i - 1] for m in meshes]
-                for i in range(1, peaks + 1)
-            },
-            **{
-                f"pad force {i} (kN)": [1e-3 * float(m.forces[i - 1]) for m in meshes]
-                for i in range(1, meshes[0].forces.size + 1)
-            },
-        }
-        for what, values in quantities.items():
-            found = GridConvergence.of(values, RATIO)
-            rows.append(
-                (
-                    f"{contact.name}: {what}",
-                    *(number(value, 5) for value in values),
-                    fixed(found.order, 2),
-                    number(found.limit, 5),
-                    fixed(found.index, 3, 100.0),
-                )
+        {
+            "point": "",
+            "first peak (mm)": ".1f",
+            "its change (%)": ".3f",
+            "tip (% of range)": ".2f",
+            "largest pad force (kN)": ".4g",
+        },
+        [
+            (
+                str(point),
+                1e3 * meshes[-2].peak(),
+                100.0 * contact.peak_change(point),
+                100.0 * contact.tip_change(point),
+                1e-3 * float(meshes[-1].forces.max()),
             )
-    return TextTable(
-        "Where refinement leads, at the largest play and load",
-        (
-            "quantity",
-            *(f"edges × {part:g}" for part in sizes.meshes),
-            "order",
-            "limit",
-            "GCI (%)",
-        ),
-        rows,
-        ("Order, Richardson's limit and the grid convergence index as for the paper's load.",),
-        name="working-load-limits",
+            for point, meshes in contact.moved.items()
+        ],
     )
-
-
-def proofs(contacts: Sequence[Contact]) -> list[Proof]:
-    """First peaks and tips of the default mesh against half of all edges."""
-    found = []
-    for contact in contacts:
-        count = len(contact.moved)
-        for what, change, allowed in (
-            ("first tip peak", contact.peak_change, contact.allowed[0]),
-            ("tip, part of its range", contact.tip_change, contact.allowed[1]),
-        ):
-            value, point = contact.worst(change)
-            found.append(
-                Proof(
-                    f"{what}, {contact.name}, worst of {count} points ({_label(point)})",
-                    value,
-                    0.0,
-                    "",
-                    "other code",
-                    "all edges half as long",
-                    allowed,
-                )
-            )
-    return found
-
-
-def _label(point: Point) -> str:
-    return f"{1e3 * point.play:g} mm, load × {point.load:g}"
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     """The paper's boom with friction under working loads, on three meshes."""
     sizes = sizes or Sizes()
     case = friction_case()
+    every = [Point(*point) for point in product(sizes.plays, sizes.loads)]
+    padded = {
+        f"pads of {length:g} m x {width:g} m": with_pads(case, length, width)
+        for length, width in sizes.pads
+    }
     contacts = []
-    for name, touching, allowed in (
-        ("near webs", case, NEAR_WEBS),
-        *(
-            (
-                f"pads of {length:g} m x {width:g} m",
-                with_pads(case, length, width),
-                WITH_PADS,
-            )
-            for length, width in sizes.pads
-        ),
-    ):
+    for name, touching in {"near webs": case, **padded}.items():
         tell(name)
-        contacts.append(measure(name, touching, sizes.points, sizes.duration, allowed, sizes))
+        contacts.append(measure(name, touching, every, sizes.duration, sizes))
     tell("in space")
     contacts.append(
         measure(
@@ -353,31 +271,19 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             in_space(case),
             sizes.in_space,
             sizes.spatial_duration,
-            NEAR_WEBS,
             sizes,
         )
     )
-    flat = contacts[:-1]
+    title = "Where refinement leads, at the largest play and load"
+    hardest = [one for contact in contacts for one in contact.hardest(sizes)]
+    note = "Order, Richardson's limit and the grid convergence index as for the paper's load."
     return Study(
-        name="working-load",
-        title="Meshes under working loads",
-        tables=[
+        "working-load",
+        "Meshes under working loads",
+        [
             summary_table(contacts, sizes),
-            *(point_table(contact, sizes) for contact in flat),
-            limit_table(contacts, sizes),
+            *map(point_table, contacts),
+            refined_table("working-load-limits", title, hardest, "edges × {:g}", (note,)),
         ],
-        proofs=proofs(contacts),
-        data={
-            contact.name: [
-                {
-                    "play": point.play,
-                    "load": point.load,
-                    "peaks": [list(moved.peaks) for moved in meshes],
-                    "forces": [moved.forces.tolist() for moved in meshes],
-                    "tip_change": contact.tip_change(point),
-                }
-                for point, meshes in contact.moved.items()
-            ]
-            for contact in contacts
-        },
+        [proof for contact in contacts for proof in contact.proofs],
     )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import json
 from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
@@ -11,9 +12,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from runs.report.tables import TextTable
 from runs.studies import convergence, verification
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Plot, Proof, Study, Table
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 
@@ -30,7 +30,7 @@ def test_a_proof_holds_within_its_bar() -> None:
 
 
 def test_the_page_of_proofs_marks_what_fails() -> None:
-    study = Study("shells", "Shells", tables=[], proofs=[proof(0.3030), proof(0.4)])
+    study = Study("shells", "Shells", proofs=[proof(0.3030), proof(0.4)])
     lines = verification.markdown([study]).splitlines()
     rows = [line for line in lines if line.startswith("| roof")]
     assert rows[0] == (
@@ -43,17 +43,18 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     study = Study(
         "shells",
         "Shells",
-        tables=[TextTable("Roof", ("mesh", "m"), [("1", "0.3")], name="roof")],
+        tables=[Table("roof", "Roof", {"mesh": "", "m": ".2f"}, [("fine", 0.3), ("no", None)])],
         proofs=[proof(0.3030)],
         plots=[Plot("roof", "It settles", "h (m)", "error", {"roof": ([1, 2], [1, 4])}, "So.")],
-        data={"roof": 0.303},
     )
     monkeypatch.setattr(convergence, "run", lambda name: (study, 1.0))
     monkeypatch.setattr(convergence, "ProcessPoolExecutor", _Here)
     shown = io.StringIO()
     folder = tmp_path / "convergence"
     convergence.survey(["shells"], folder, Console(file=shown, width=120))
-    assert "Roof" in shown.getvalue()
+    assert "fine   0.30" in shown.getvalue()
+    data = json.loads((folder / "convergence.json").read_text(encoding="utf-8"))
+    assert data["shells"]["roof"] == [{"mesh": "fine", "m": 0.3}, {"mesh": "no", "m": None}]
     assert "Shells: 1 s" in shown.getvalue()
     names = sorted(path.name for path in folder.iterdir())
     assert names == [

@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from runs.case.schema import Case, Model
+from runs.case.schema import Case
 from runs.studies.model_ladder import WALK
 from runs.studies.motions import friction_case
-from runs.studies.refinement import Refinement, refine, table
+from runs.studies.refinement import Refinement, refine, with_step
 
 
 @pytest.fixture
@@ -20,15 +20,11 @@ def case() -> Case:
     return long.model_copy(update={"time": time})
 
 
-def with_step(model: Model, step: float) -> Model:
-    return model.model_copy(update={"step": step})
-
-
 def test_orders_are_those_of_a_power_law() -> None:
     """Reference: analytic, errors of 3 h²."""
     sizes = np.array([0.4, 0.2, 0.1, 0.05])
     errors = 3.0 * sizes**2
-    found = Refinement("", "", sizes.tolist(), "m", np.abs(np.diff(errors)).tolist(), [0.1] * 4)
+    found = Refinement("", sizes.tolist(), "m", np.abs(np.diff(errors)).tolist(), [0.1] * 4)
     assert found.orders == pytest.approx([2.0, 2.0])
 
 
@@ -38,9 +34,8 @@ def test_a_finer_step_settles_with_the_splitting_s_order(case: Case) -> None:
     found = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], "s", with_step)
     assert found.differences[0] < 1e-3
     assert np.mean(found.orders) == pytest.approx(2.0, abs=0.4)
-    rows = table([found]).rows
-    assert [row[0] for row in rows] == ["kantorovich-5-linear: step", "", "", ""]
-    assert rows[-1][2] == ""
+    assert [row[0] for row in found.rows] == ["kantorovich-5-linear: step (s)"] * 4
+    assert found.rows[-1][2] is None
 
 
 def test_the_walk_has_its_models(case: Case) -> None:

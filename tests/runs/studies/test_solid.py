@@ -10,16 +10,17 @@ pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
 from runs.studies.box_errors import (
     COMPLIANCES,
+    EVERY,
     FREQUENCIES,
     Comparison,
     Sizes,
-    Values,
     compare,
     order,
     slenderness_at,
 )
 from runs.studies.box_pair import Blow
-from runs.studies.solid import error_table, index_table, shell_proofs
+from runs.studies.refined import Refined
+from runs.studies.solid import error_table, refinements, shell_proofs
 from runs.studies.solid_itself import solid_proofs
 
 TINY = Sizes(
@@ -29,13 +30,14 @@ TINY = Sizes(
 
 def comparison(wall: float, error: float) -> Comparison:
     """One in which every quantity has the same error."""
-    measured = FREQUENCIES + COMPLIANCES
     time = 1.0e-3 * np.arange(4)
     still = Blow(time, np.array([0.0, 1.0, 2.0, 0.0]), time, 0.0)
     return Comparison(
         wall,
-        {what: Values([1.0 + error] * 3) for what in measured},
-        {what: Values([1.0] * 3) for what in measured},
+        *(
+            {what: Refined(what.what, what.unit, [4.0, 2.0, 1.0], [value] * 3) for what in EVERY}
+            for value in (1.0 + error, 1.0)
+        ),
         (still, still),
     )
 
@@ -51,14 +53,6 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
     assert slenderness_at(found, head, 0.2) == "> 0.067"
     assert slenderness_at(found, head, 0.001) == "< 0.017"
     assert np.isnan(order([comparison(0.01, -0.01), comparison(0.02, 0.01)], head))
-
-
-def test_a_value_goes_on_to_its_limit_if_it_has_one() -> None:
-    """Reference: analytic, 2 + 3 h² at h = 0.4, 0.2, 0.1; then values that do not settle."""
-    settling = Values([2.0 + 3.0 * h**2 for h in (0.4, 0.2, 0.1)])
-    assert settling.limit == pytest.approx(2.0, rel=1.0e-12)
-    assert Values([2.0, 1.0, 1.5]).limit == 1.5
-    assert Values([2.0, 1.9, 1.81]).limit == 1.81
 
 
 @pytest.mark.slow
@@ -97,11 +91,11 @@ def test_the_solid_stands_by_itself() -> None:
 
 def test_tables_and_proofs_have_every_quantity() -> None:
     found = [comparison(0.005, 0.004), comparison(0.01, -0.02)]
-    for table in (error_table(found), index_table(found)):
-        assert [row[0] for row in table.rows] == [one.what for one in FREQUENCIES + COMPLIANCES]
-        assert {len(row) for row in table.rows} == {len(table.headings)}
-    assert error_table(found).rows[0][1:3] == ("0.40", "−2.00")
-    proofs = shell_proofs(found)
+    errors = error_table(found).text
+    assert [row[0] for row in errors.rows] == [one.what for one in EVERY]
+    assert errors.rows[0][1:3] == ("0.40", "−2.00")
+    assert len(refinements(found).data) == 4 * len(EVERY)
+    proofs = shell_proofs(found[0])
     assert all(proof.holds for proof in proofs)
     assert [proof.error for proof in proofs[:8]] == pytest.approx([0.004] * 8)
     assert proofs[9].what == "blow, largest force, walls of 5 mm"

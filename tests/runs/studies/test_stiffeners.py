@@ -27,24 +27,24 @@ def test_stiffeners_act_where_they_are() -> None:
     assert [proof.unit for proof in found.proofs] == ["N m", "m²/N", "m²/N"]
 
     outer, collared, inner, banded, closed, both = found.data["variants"]
+    mass, more = "mass (kg)", "one flange more (nm/N)"
     perimeter, opening = 2.0 * (0.488874 + 0.325916), 0.463596 * 0.270571
-    assert collared["mass"] - outer["mass"] == pytest.approx(
+    assert collared[mass] - outer[mass] == pytest.approx(
         7850.0 * perimeter * 0.3 * 0.01, rel=1.0e-4
     )
-    assert closed["mass"] - inner["mass"] == pytest.approx(7850.0 * opening * 0.008, rel=1.0e-3)
+    assert closed[mass] - inner[mass] == pytest.approx(7850.0 * opening * 0.008, rel=1.0e-3)
     for stiff, plain, there, elsewhere in (
-        (collared, outer, 1, 0),
-        (banded, inner, 0, 1),
-        (closed, inner, 0, 1),
+        (collared, outer, "10 m", "9 m"),
+        (banded, inner, "9 m", "10 m"),
+        (closed, inner, "9 m", "10 m"),
     ):
-        stations = list(zip(stiff["flexibilities"], plain["flexibilities"], strict=True))
-        mine, before = stations[there]
-        assert mine["one_more"] < 0.6 * before["one_more"]
-        assert mine["together"] < before["together"]
-        mine, before = stations[elsewhere]
-        assert mine["one_more"] == pytest.approx(before["one_more"], rel=0.05)
-    tail = [one["flexibilities"][0]["one_more"] for one in (banded, closed, both)]
+        assert stiff[f"{there}: {more}"] < 0.6 * plain[f"{there}: {more}"]
+        together = f"{there}: both flanges (nm/N)"
+        assert stiff[together] < plain[together]
+        other = f"{elsewhere}: {more}"
+        assert stiff[other] == pytest.approx(plain[other], rel=0.05)
+    tail = [one[f"9 m: {more}"] for one in (banded, closed, both)]
     assert tail[2] < min(tail[:2])
     # The head's mass lowers what bends as a whole.
-    assert collared["frequencies"][0] < outer["frequencies"][0]
+    assert collared["f1 (Hz)"] < outer["f1 (Hz)"]
     assert [len(table.rows) for table in found.tables] == [6, 6]
