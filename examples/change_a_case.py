@@ -13,6 +13,6 @@ def run(play: float) -> pt.Results:
 if __name__ == "__main__":
     for play in (0.007, 0.014):
         results = run(play)
-        summary = results.summary["models"]["kantorovich-5"]
-        print(f"play {play} m: first contact at {summary['first_contact']:.4f} s")
+        summary = results.summary.models["kantorovich-5"]
+        print(f"play {play} m: first contact at {summary.first_contact:.4f} s")
         results.trajectories["tip"].plot.line(x="time")

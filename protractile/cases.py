@@ -86,7 +86,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
 
     Returns:
         The results. ``results.trajectories["tip"].plot.line(x="time")`` draws the tips; a model
-        that cannot be computed is in ``summary["failures"]``, with the reason.
+        that cannot be computed is in ``summary.failures``, with the reason.
 
     Raises:
         BadInput: a model that the case does not know.

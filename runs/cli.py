@@ -163,7 +163,7 @@ def snapshot(
     from runs.folder.files import alone, changed_folder
     from runs.paper import readings
     from runs.paper.rules import judge
-    from runs.pipeline.results import FIELDS, Results
+    from runs.pipeline.results import FIELDS, Results, read_fields
     from runs.report import output
     from shell_model.pictures.rendering import RenderingUnavailable
 
@@ -175,11 +175,13 @@ def snapshot(
         for t in time or []:
             if not 0.0 <= t <= last:
                 raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
-        if not list(Path(folder).glob(f"*{FIELDS}")):
+        shells = {path.name: read_fields(path) for path in Path(folder).glob(f"*{FIELDS}")}
+        if not shells:
             raise BadInput(folder, FIELDS, "missing; give the folder of a run with a shell")
         with changed_folder(Path(folder)) as part:
             try:
-                drawn = output.write_snapshots(results, part, sorted(set(time)) if time else None)
+                times = sorted(set(time)) if time else None
+                drawn = output.write_snapshots(results, shells, part, times)
             except RenderingUnavailable as reason:
                 raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
             output.write_report(results, judge(results), part, surveyed)
@@ -373,7 +375,7 @@ def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]
     console = Terminal()
     for results in runs.values():
         print_models(results, console)
-        skipped = results.summary["snapshots"]["skipped"]
+        skipped = results.summary.snapshots.skipped
         if skipped is not None:
             print(f"no snapshots: {skipped}")
     print_verdicts({Path(file).stem: judged for file, judged in verdicts.items()}, console)
@@ -391,11 +393,11 @@ def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]
 def _show_models_that_failed(file: str, results: Results) -> int:
     """A line where a model took smaller steps, and one for all that failed; the exit status."""
     numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
-    for name, model in results.summary["models"].items():
-        if refused := model["refused_steps"]:
+    for name, model in results.summary.models.items():
+        if refused := model.refused_steps:
             taken = f"took {2 ** len(refused)} times as many steps"
             say(message(f"{shown(file)}: model[{numbers[name]}]: {taken}, since {refused[0]}"))
-    failures = results.summary["failures"]
+    failures = results.summary.failures
     if not failures:
         return 0
     first, *others = (f"model[{numbers[name]}]" for name in failures)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Results as two files: their numbers, bare, and JSON that tells what these are.
 
-All comes back to the last bit, tuples as tuples, and this program's dataclasses and named tuples
-as what they were, checks of their own included. Files hold data alone: whoever writes them has no
-say in what runs when they are read, other than which of these classes are made of what.
+All comes back to the last bit, tuples as tuples, and this program's dataclasses, named tuples and
+pydantic models as what they were, checks of their own included. Files hold data alone: whoever
+writes them has no say in what runs when they are read, other than which of these classes are made
+of what.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 import xarray as xr
+from pydantic import BaseModel
 
 from runs.folder.versions import packages
 
@@ -97,7 +99,9 @@ def _written(thing: Any, numbers: _Numbers) -> Any:
         ]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
-        parts = {name: _written(getattr(thing, name), numbers) for name in names}
+        # Of a pydantic model, what was never set stays so.
+        own = thing.model_fields_set if isinstance(thing, BaseModel) else names
+        parts = {name: _written(getattr(thing, name), numbers) for name in names if name in own}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
     if isinstance(thing, list | tuple):
         return {type(thing).__name__: [_written(part, numbers) for part in thing]}
@@ -135,7 +139,9 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Of the parts that make a dataclass or a named tuple; None of other classes."""
+    """Of the parts that make an object of a class; None of what may be more than its parts."""
+    if issubclass(kind, BaseModel):
+        return list(kind.model_fields)
     if is_dataclass(kind):
         return [field.name for field in fields(kind) if field.init]
     if issubclass(kind, tuple) and hasattr(kind, "_fields"):

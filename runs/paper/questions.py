@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
+from runs.pipeline.results import Results
+from runs.pipeline.summary import ModelSummary
 
 Array = npt.NDArray[np.float64]
+Number = TypeVar("Number", int, float)
 
 
 class Lacking(Exception):
@@ -27,36 +29,36 @@ class Run:
     """What the rules ask of a run; each question raises :class:`Lacking` without an answer.
 
     Args:
-        trajectories: dims ``model``, ``time``, ``station``.
-        summary: per model.
-        case: which model is which.
-        ensembles: dims ``model``, ``member``, ``time``; None where there are none.
+        results: of the run.
     """
 
-    trajectories: xr.Dataset
-    summary: Mapping[str, Any]
-    case: Case
-    ensembles: xr.Dataset | None
+    results: Results
+
+    @property
+    def case(self) -> Case:
+        """Which model is which."""
+        return self.results.case
 
     @property
     def time(self) -> Array:
         """(num_times,) in s."""
-        return np.asarray(self.trajectories["time"].values, dtype=float)
+        return np.asarray(self.results.trajectories["time"].values, dtype=float)
 
     def check_ran(self, model: Model) -> None:
         """Refuse a model that failed, or was left out."""
-        why = self.summary.get("failures", {}).get(model.name)
+        why = self.results.summary.failures.get(model.name)
         if why is not None:
             raise Lacking(f"{model.name!r} failed: {why}.")
-        if model.name not in self.trajectories["model"].values:
+        if model.name not in self.results.trajectories["model"].values:
             raise Lacking(f"{model.name!r} did not run.")
 
     def curve(self, model: Model, place: str = "tip") -> Array:
         """(num_times,) deflection in m."""
         self.check_ran(model)
-        if place not in self.trajectories:
+        if place not in self.results.trajectories:
             raise Lacking(f"No {place} in this run.")
-        deflection = np.asarray(self.trajectories[place].sel(model=model.name).values, dtype=float)
+        of_model = self.results.trajectories[place].sel(model=model.name)
+        deflection = np.asarray(of_model.values, dtype=float)
         if not np.isfinite(deflection).all():
             raise Lacking(f"The {place} of {model.name!r} is not finite.")
         return deflection
@@ -65,24 +67,39 @@ class Run:
         """(num_models, num_members, num_times) tip in m."""
         for model in models:
             self.curve(model)
-        if self.ensembles is None:
+        if self.results.ensembles is None:
             raise Lacking("One run is a sample of a chaotic motion; it takes [ensemble].")
-        tips = self.ensembles["tip"].sel(model=[model.name for model in models])
+        tips = self.results.ensembles["tip"].sel(model=[model.name for model in models])
         return np.asarray(tips.transpose("model", "member", "time").values, dtype=float)
 
-    def number(self, model: Model, *keys: str | int) -> float:
-        """A number of the model's summary."""
+    def found(self, model: Model) -> ModelSummary:
+        """What the summary says of a model."""
         self.check_ran(model)
-        value: Any = self.summary["models"].get(model.name)
-        for key in keys:
-            value = value.get(key) if isinstance(value, Mapping) else value and value[key]
-        if value is None or not np.isfinite(value):
-            raise Lacking(f"{model.name!r} has no {str(keys[0]).replace('_', ' ')}.")
-        return float(value)
+        return self.results.summary.models[model.name]
 
-    def first_peak(self, model: Model) -> float:
-        """Height of the first peak of the tip in m."""
-        return self.number(model, "first_peak", "tip", 1)
+    def first_contact(self, model: Model) -> float:
+        """In s."""
+        return _there(model, "first contact", self.found(model).first_contact)
+
+    def peak_time(self, model: Model) -> float:
+        """Of the first peak of the tip in s."""
+        return _there(model, "first peak", self.found(model).first_peak["tip"].time)
+
+    def peak_height(self, model: Model) -> float:
+        """Of the first peak of the tip in m."""
+        return _there(model, "first peak", self.found(model).first_peak["tip"].height)
+
+    def fewest_steps(self, model: Model) -> int:
+        """That keep the first slow peaks."""
+        needed = self.found(model).steps_for_peaks
+        return _there(model, "steps for peaks", needed.fewest if needed else None)
+
+    def slow_below(self) -> float:
+        """Cut-off of the slow motion in Hz."""
+        asked = self.results.summary.ensemble
+        if asked is None or asked.slow_below is None:
+            raise Lacking("The run is too coarsely reported for a slow motion.")
+        return asked.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
         """The model that fits; of several the one that is called ``what``, else the first."""
@@ -144,6 +161,12 @@ class Run:
         """Refuse a run that ends before ``end`` in s."""
         if self.time[-1] < end * (1.0 - 1e-9):
             raise Lacking(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
+
+
+def _there(model: Model, what: str, value: Number | None) -> Number:
+    if value is None:
+        raise Lacking(f"{model.name!r} has no {what}.")
+    return value
 
 
 def terms(model: Model) -> tuple[int, ...]:

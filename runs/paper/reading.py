@@ -165,13 +165,13 @@ def judge_reading(reading: Reading, paper: Case, members: int = MEMBERS) -> Judg
         )
         for verdict in judge(first)
     }
-    peaks = {name: first.summary["models"][name]["first_peak"]["tip"][1] for name in MODELS}
+    peaks = {name: _first_peak(first, name) for name in MODELS}
     findings |= {
         "S2": _all_above([_apart(run, SERIES, run.case.time.duration - 1.0) for run in runs]),
         "S3": _all_above([_apart(run, WITH_PLAY, STRATIFIED_FROM) for run in runs]),
         "S4": _grows([peaks[name] for name in WITH_PLAY]),
     }
-    residuals = [run.summary["models"][name]["energy_residual"] for run in runs for name in MODELS]
+    residuals = [run.summary.models[name].energy_residual for run in runs for name in MODELS]
     return Judged(reading, findings, peaks, max(residuals))
 
 
@@ -204,9 +204,17 @@ def _but_exponent(reading: Reading) -> Reading:
 def _results(case: Case) -> Results:
     finished = run_case(case, "paper.toml", None, Path(), _silence)
     assert finished is not None
-    for model, why in finished.results.summary["failures"].items():
+    for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")
     return finished.results
+
+
+def _first_peak(run: Results, model: str) -> float:
+    """Of the tip in m."""
+    height = run.summary.models[model].first_peak["tip"].height
+    if height is None:
+        raise NumericsError(f"{model}: no first peak")
+    return height
 
 
 def _silence(model: str, stage: str, part: float) -> None:

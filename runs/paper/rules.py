@@ -61,7 +61,7 @@ SEGMENTS = 3
 def judge(results: Results) -> list[Verdict]:
     """The verdicts that a run's case asks for, or demands."""
     case = results.case
-    run = Run(results.trajectories, results.summary, case, results.ensembles)
+    run = Run(results)
     return [
         Verdict(
             id=key,
@@ -81,7 +81,7 @@ def _s1(run: Run) -> Finding:
     """
     run.without_friction()
     four, five = run.four_terms(), run.five_terms()
-    first = min(run.number(model, "first_contact") for model in (four, five))
+    first = min(run.first_contact(model) for model in (four, five))
     before = run.time <= first
     curve = run.curve(five)
     measured = float(np.abs(run.curve(four) - curve)[before].max() / _range(curve))
@@ -130,9 +130,7 @@ def _s3(run: Run) -> Finding:
     run.last_until(CONFORMITY)
     models = run.with_play()
     curves = run.members(*models).swapaxes(0, 1)
-    cutoff = run.summary["ensemble"]["slow_below"]
-    if cutoff is None:
-        raise Lacking("The run is too coarsely reported for a slow motion.")
+    cutoff = run.slow_below()
     found = [peaks_apart(member, run.time, cutoff) for member in curves]
     early = [
         apart[time <= CONFORMITY].max()
@@ -170,7 +168,7 @@ def _s4(run: Run) -> Finding:
     """
     run.without_friction()
     models = [run.four_terms(), run.five_terms(), run.beam_elements(), run.shell()]
-    peaks = [run.first_peak(model) for model in models]
+    peaks = [run.peak_height(model) for model in models]
     rises = [after / before - 1.0 for before, after in pairwise(peaks)]
     smallest = min(rises)
     least = int(np.argmin(rises))
@@ -192,11 +190,11 @@ def _s5(run: Run) -> Finding:
     within a tenth of one another. First peaks scatter by 0.5 % only.
     """
     run.without_friction()
-    without = run.first_peak(run.play_free())
+    without = run.peak_height(run.play_free())
     models = [model for model in run.case.models if not model.play_free]
     if not models:
         raise Lacking("The case has no model with play.")
-    ratio, name = min((run.first_peak(model) / without, model.name) for model in models)
+    ratio, name = min((run.peak_height(model) / without, model.name) for model in models)
     return Finding(
         _above(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_SCATTER),
         f"First tip peak with play over the {1e3 * without:.1f} mm without; the smallest is that "
@@ -216,7 +214,7 @@ def _s6(run: Run) -> Finding:
     """
     run.without_friction()
     models = run.with_play()
-    end = min(run.number(model, "first_peak", "tip", 0) for model in models)
+    end = min(run.peak_time(model) for model in models)
     until = run.time <= end
     apart, relative = {}, {}
     for place in ("tip", "head"):
@@ -284,12 +282,12 @@ def _s8(run: Run) -> Finding:
     model = run.beam_elements()
     run.curve(model)
     run.last_until(INTERVAL)
-    steps = run.number(model, "steps")
+    found = run.found(model)
     lasted = float(run.time[-1])
     return Finding(
         _above(INTERVAL, lasted, 1.0e-9 * INTERVAL),
-        f"{model.name!r} moves for {lasted:g} s in {steps:.0f} steps with an energy residual of "
-        f"{run.number(model, 'energy_residual'):.1e}: what ended the paper's run after 4375 steps "
+        f"{model.name!r} moves for {lasted:g} s in {found.steps} steps with an energy residual of "
+        f"{found.energy_residual:.1e}: what ended the paper's run after 4375 steps "
         "was its integration.",
         lasted,
         INTERVAL,
@@ -304,7 +302,7 @@ def _s9(run: Run) -> Finding:
     """
     untied = [model for model in run.case.models if not model.play_free]
     differences = [
-        (abs(run.first_peak(a) / run.first_peak(b) - 1.0), a.name, b.name)
+        (abs(run.peak_height(a) / run.peak_height(b) - 1.0), a.name, b.name)
         for a, b in combinations(untied, 2)
         if options(a, "contact", "step") == options(b, "contact", "step")
         and _exponents(run.case, a) != _exponents(run.case, b)
@@ -330,10 +328,7 @@ def _s10(run: Run) -> Finding:
     """
     run.without_friction()
     series = [run.four_terms(), run.five_terms()]
-    needed = {
-        model.name: run.number(model, "steps_for_peaks", "fewest")
-        for model in (*series, run.beam_elements())
-    }
+    needed = {model.name: run.fewest_steps(model) for model in (*series, run.beam_elements())}
     *of_series, of_elements = needed.values()
     steps = max(of_series)
     listed = ", ".join(f"{name!r} {number:.0f}" for name, number in needed.items())
@@ -366,11 +361,11 @@ def _s11(run: Run) -> Finding:
     if series is None:
         raise Lacking("The case has no series.")
     elements = run.beam_elements()
-    apart = abs(run.first_peak(series) / run.first_peak(elements) - 1.0)
+    apart = abs(run.peak_height(series) / run.peak_height(elements) - 1.0)
     return Finding(
         _above(DIVERGENCE, apart, PEAK_SCATTER),
         f"First tip peaks of {series.name!r} and {elements.name!r} on {count} segments, which take "
-        f"{run.number(series, 'modes'):.0f} and {run.number(elements, 'modes'):.0f} equations.",
+        f"{run.found(series).modes} and {run.found(elements).modes} equations.",
         100.0 * apart,
         100.0 * DIVERGENCE,
         "%",
@@ -432,11 +427,8 @@ def _half_part(middle: float) -> str:
 
 def _horizons(run: Run, models: list[Model]) -> str:
     """From when on a single run of each model is a sample."""
-    known = [
-        run.summary["models"][model.name]["ensemble"]["horizons"][f"{DIVERGENCE:g}"]
-        for model in models
-    ]
-    times = [time for time in known if time is not None]
+    sampled = [ensemble for model in models if (ensemble := run.found(model).ensemble)]
+    times = [time for one in sampled if (time := one.horizon(DIVERGENCE)) is not None]
     if not times:
         return "The members of each model stay together."
     return (

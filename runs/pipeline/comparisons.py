@@ -8,7 +8,6 @@ the beginning to the end: friction takes what impacts would otherwise let grow.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import xarray as xr
 
@@ -20,7 +19,14 @@ from dynamics.predictability.comparison import (
     compare,
 )
 from runs.case.schema import Case, Model
-from runs.pipeline.known import known
+from runs.pipeline.summary import (
+    Comparisons,
+    DistributionsLevel,
+    Levels,
+    PeaksLevel,
+    PointwiseLevel,
+    Whole,
+)
 
 # Differences over a whole run are told until here, too, in s.
 HALFWAY = 5.0
@@ -49,77 +55,69 @@ def compare_models(
     case: Case,
     trajectories: xr.Dataset,
     ensembles: xr.Dataset | None,
-    summary: Mapping[str, Any],
-) -> dict[str, Any] | None:
+    cutoff: float | None,
+) -> Comparisons | None:
     """What the summary says of the models' differences; None where there is nothing to compare.
 
     Args:
         case: which model is which.
         trajectories: dims ``model``, ``time``; ``tip`` in m.
         ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
-        summary: ``ensemble`` with the cut-off ``slow_below`` in Hz.
-
-    Returns:
-        ``reference``; ``ensembles``, for each other model with play the three levels; ``whole``,
-        with friction, for each other model the pointwise differences until some times.
+        cutoff: of the slow motion in Hz.
     """
     ran = trajectories["model"].values
     reference = reference_of(model for model in case.models if model.name in ran)
     if reference is None:
         return None
-    found: dict[str, Any] = {"reference": reference}
-    cutoff = summary.get("ensemble", {}).get("slow_below")
+    found = Comparisons(reference=reference)
     if ensembles is not None and cutoff is not None:
         one = ensembles.sel(model=reference).astype(float)
-        found["ensembles"] = {
+        found.ensembles = {
             name: _levels(compare(one, ensembles.sel(model=name).astype(float), cutoff))
             for name in _others(ensembles, reference)
         }
     if rubs(case):
-        found["whole"] = {
+        found.whole = {
             name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
         }
-    return found if any(found.get(part) for part in ("ensembles", "whole")) else None
+    return found if found.ensembles or found.whole else None
 
 
 def _others(data: xr.Dataset, reference: str) -> list[str]:
     return [str(name) for name in data["model"].values if name != reference]
 
 
-def _levels(comparison: Comparison) -> dict[str, Any]:
-    """The three levels as JSON has them; None for what there is not."""
+def _levels(comparison: Comparison) -> Levels:
     pointwise, peaks, spread = comparison.pointwise, comparison.peaks, comparison.distributions
-    return {
-        "pointwise": {
-            "until": pointwise.until,
-            "largest": pointwise.largest,
-            "rms": pointwise.rms,
-        },
-        "peaks": {
-            "time": peaks.times.tolist(),
-            "time_spread": peaks.time_spreads.tolist(),
-            "height": peaks.heights.tolist(),
-            "height_spread": peaks.height_spreads.tolist(),
-            "explained": peaks.explained.tolist(),
-        },
-        "distributions": {
-            "since": known(spread.since),
-            "range": [known(value) for value in spread.ranges],
-            "mean": [known(value) for value in spread.means],
-            "deviation": [known(value) for value in spread.deviations],
-            "distance": known(spread.distance),
-        },
-    }
+    return Levels(
+        pointwise=PointwiseLevel(
+            until=pointwise.until, largest=pointwise.largest, rms=pointwise.rms
+        ),
+        peaks=PeaksLevel(
+            time=peaks.times.tolist(),
+            time_spread=peaks.time_spreads.tolist(),
+            height=peaks.heights.tolist(),
+            height_spread=peaks.height_spreads.tolist(),
+            explained=peaks.explained.tolist(),
+        ),
+        distributions=DistributionsLevel(
+            since=spread.since,
+            range=list(spread.ranges),
+            mean=list(spread.means),
+            deviation=list(spread.deviations),
+            distance=spread.distance,
+        ),
+    )
 
 
-def _whole(trajectories: xr.Dataset, reference: str, name: str) -> dict[str, Any]:
+def _whole(trajectories: xr.Dataset, reference: str, name: str) -> Whole:
     """Pointwise differences of two tips until the middle and until the end."""
     time = trajectories["time"].values
     one, other = (trajectories["tip"].sel(model=model).values for model in (reference, name))
     ends = [end for end in (HALFWAY, float(time[-1])) if end <= time[-1]]
     found = [Pointwise.of(one, other, time, end) for end in dict.fromkeys(ends)]
-    return {
-        "until": [part.until for part in found],
-        "largest": [known(part.largest) for part in found],
-        "rms": [known(part.rms) for part in found],
-    }
+    return Whole(
+        until=[part.until for part in found],
+        largest=[part.largest for part in found],
+        rms=[part.rms for part in found],
+    )

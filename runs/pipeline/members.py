@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -17,7 +17,7 @@ from dynamics.predictability.horizon import SHARES, horizons_of
 from dynamics.predictability.low_pass import CUTOFF_SHARE, SlowPeaks
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
-from runs.pipeline.known import known
+from runs.pipeline.summary import CommonPeaks, EnsembleSummary
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -64,30 +64,35 @@ def slow_below(boom: Boom, time: TimeTable) -> float | None:
     return cutoff
 
 
-def sum_up(ensemble: xr.Dataset, cutoff: float | None) -> dict[str, Any]:
-    """What the summary says of one model's ensemble; None for what there is not.
+def common_peaks(ensemble: xr.Dataset, cutoff: float | None) -> SlowPeaks | None:
+    """The tip's slow peaks that all members have; None without a cut-off in Hz."""
+    if cutoff is None:
+        return None
+    return SlowPeaks.of(ensemble["tip"].values, ensemble["time"].values, cutoff)
+
+
+def sum_up(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
+    """What the summary says of one model's ensemble.
 
     Args:
         ensemble: of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
-        cutoff: of the slow motion in Hz.
+        peaks: its :func:`common_peaks`.
     """
     shares = zip(SHARES, horizons_of(ensemble), strict=True)
-    summary: dict[str, Any] = {
-        "horizons": {f"{share:g}": known(time) for share, time in shares},
-        "energy_residual": float(ensemble["energy_residual"].max()),
-        "slow_peaks": None,
-    }
-    if cutoff is not None:
-        peaks = SlowPeaks.of(ensemble["tip"].values, ensemble["time"].values, cutoff)
-        summary["slow_peaks"] = {
-            "time": peaks.times.tolist(),
-            "time_spread": peaks.time_spreads.tolist(),
-            "height": peaks.heights.tolist(),
-            "height_spread": peaks.height_spreads.tolist(),
-            "period": known(peaks.period),
-            "period_spread": known(peaks.period_spread),
-        }
-    return summary
+    return EnsembleSummary(
+        horizons={f"{share:g}": time for share, time in shares},
+        energy_residual=float(ensemble["energy_residual"].max()),
+        slow_peaks=None
+        if peaks is None
+        else CommonPeaks(
+            time=peaks.times.tolist(),
+            time_spread=peaks.time_spreads.tolist(),
+            height=peaks.heights.tolist(),
+            height_spread=peaks.height_spreads.tolist(),
+            period=peaks.period,
+            period_spread=peaks.period_spread,
+        ),
+    )
 
 
 def gather(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:

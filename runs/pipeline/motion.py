@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +18,8 @@ from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.schema import Case, EnsembleTable, Model
-from runs.pipeline.known import known
 from runs.pipeline.models import damped
+from runs.pipeline.summary import Growth
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,10 +103,10 @@ class Plan:
 
     def horizons(
         self, table: EnsembleTable, executor: Executor | None, progress: Progress
-    ) -> dict[str, Any]:
+    ) -> Growth:
         """When changes of several sizes have grown, at what rate, and whether steps are to blame.
 
-        None stands for what does not happen within the run.
+        NaN stands for what does not happen within the run.
         """
         from dynamics.predictability.horizon import measure_horizons
 
@@ -118,12 +118,12 @@ class Plan:
             executor=executor,
             progress=progress,
         )
-        return {
-            "relatives": found.relatives.tolist(),
-            "shares": found.shares.tolist(),
-            "times": [[known(time) for time in row] for row in found.times],
-            "of_step": [known(time) for time in found.of_step],
-            "rate": [known(growth.rate) for growth in found.growth],
-            "step_change": known(found.step_change),
-            "limits": list(found.limits),
-        }
+        return Growth(
+            relatives=found.relatives.tolist(),
+            shares=found.shares.tolist(),
+            times=found.times.tolist(),
+            of_step=found.of_step.tolist(),
+            rate=[growth.rate for growth in found.growth],
+            step_change=found.step_change,
+            limits=list(found.limits),
+        )

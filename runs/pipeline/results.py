@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
@@ -12,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from pydantic import ValidationError
 
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
@@ -19,6 +19,7 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
+from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
 SUMMARY = "summary.json"
@@ -36,7 +37,7 @@ class Results:
 
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
     >>> results = pt.run_case(case, models=["kantorovich-4"])
-    >>> sorted(results.summary["models"])
+    >>> list(results.summary.models)
     ['kantorovich-4']
 
     Args:
@@ -53,7 +54,7 @@ class Results:
 
     case: Case
     trajectories: xr.Dataset
-    summary: dict[str, Any]
+    summary: Summary
     ensembles: xr.Dataset | None = None
 
     @classmethod
@@ -67,32 +68,26 @@ class Results:
             what = "is a file" if folder.exists() else "does not exist"
             raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
 
-        def read(name: str, how: Callable[[Path], Any]) -> Any:
-            try:
-                return how(folder / name)
-            except FileNotFoundError:
-                what = "missing; give the folder of a run that has finished"
-            except (OSError, ValueError, TypeError, KeyError) as error:
-                what = f"cannot be understood ({error}); run the case again"
-            raise BadInput(str(folder), name, what)
-
-        trajectories = read(TRAJECTORIES, read_netcdf)
+        trajectories = _read(folder / TRAJECTORIES, read_netcdf)
         if "station" not in trajectories.dims:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
-        summary = read(SUMMARY, _read_json)
-        ensembles = read(ENSEMBLES, read_netcdf) if summary.get("ensemble") else None
+        summary = _read(folder / SUMMARY, Summary.load)
+        ensembles = _read(folder / ENSEMBLES, read_netcdf) if summary.ensemble else None
         if not (folder / CASE).is_file():
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
         case = case_file.load(str(folder / CASE))
         expected = toml.digest(case)
-        if expected != summary.get("case_hash") == sha256((folder / CASE).read_bytes()).hexdigest():
+        if expected != summary.case_hash == sha256((folder / CASE).read_bytes()).hexdigest():
             what = "is another version's, which had other keys; run the case again"
             raise BadInput(str(folder), CASE, what)
-        marks = {TRAJECTORIES: trajectories.attrs, SUMMARY: summary}
+        marks = {
+            TRAJECTORIES: trajectories.attrs.get("case_hash"),
+            SUMMARY: summary.case_hash,
+        }
         if ensembles is not None:
-            marks[ENSEMBLES] = ensembles.attrs
+            marks[ENSEMBLES] = ensembles.attrs.get("case_hash")
         for name, mark in marks.items():
-            if mark.get("case_hash") != expected:
+            if mark != expected:
                 raise BadInput(
                     str(folder), name, f"is not of the case in {CASE}; run the case again"
                 )
@@ -101,14 +96,14 @@ class Results:
     @property
     def ran(self) -> list[Model]:
         """The models that have not failed."""
-        return [model for model in self.case.models if model.name in self.summary["models"]]
+        return [model for model in self.case.models if model.name in self.summary.models]
 
     def cautions(self) -> list[str]:
         """What the results are not worth, a line each."""
         spans = [x for segment in self.case.segments for x in segment.span]
         length = max(spans) - min(spans)
         largest = np.abs(self.trajectories["tip"].values).max(axis=1)
-        models = self.summary["models"].items()
+        models = self.summary.models.items()
         far = [
             f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
             "boom's length: small displacements do not hold; check units and loads"
@@ -116,26 +111,34 @@ class Results:
             if move > 0.1 * length
         ]
         poor = [
-            f"caution: the {model['modes']} coordinates of {name} err by {100.0 * error:.2g} % "
+            f"caution: the {model.modes} coordinates of {name} err by {100.0 * error:.2g} % "
             "where the segments touch; allow more modes, or --modes auto"
             for name, model in models
-            if (error := model.get("reduction_errors", {}).get("contact_compliance") or 0.0) > POOR
+            if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR
         ]
         coarse = [
             f"caution: the mesh of {name} errs by {100.0 * error:.2g} % of what the walls give way "
             "where the segments touch; give a smaller mesh_size"
             for name, model in models
-            if (error := model.get("mesh_error") or 0.0) > POOR
+            if (error := model.mesh_error or 0.0) > POOR
         ]
-        failed = [
-            f"failed: {name}: {why}" for name, why in self.summary.get("failures", {}).items()
-        ]
+        failed = [f"failed: {name}: {why}" for name, why in self.summary.failures.items()]
         halved = [
             f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
             for name, model in models
-            if (refused := model.get("refused_steps"))
+            if (refused := model.refused_steps)
         ]
         return failed + far + poor + coarse + halved
+
+
+def read_fields(path: Path) -> xr.Dataset:
+    """The fields of a shell in a run's folder, with all that pictures are made of.
+
+    Raises:
+        BadInput: the file is damaged, or another version's.
+    """
+    fields: xr.Dataset = _read(path, _whole_fields)
+    return fields
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
@@ -178,5 +181,30 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     )
 
 
-def _read_json(path: Path) -> Any:
-    return json.loads(path.read_text(encoding="utf-8"))
+def _read(path: Path, how: Callable[[Path], Any]) -> Any:
+    """A file of a run's folder.
+
+    Raises:
+        BadInput: it is missing, damaged, or another version's.
+    """
+    try:
+        return how(path)
+    except FileNotFoundError:
+        what = "missing; give the folder of a run that has finished"
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        where = "".join(f"{step}: " for step in fault["loc"])
+        what = f"{where}{fault['msg']}; is damaged or another version's; run the case again"
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        what = f"cannot be understood ({error}); run the case again"
+    raise BadInput(str(path.parent), path.name, what)
+
+
+def _whole_fields(path: Path) -> xr.Dataset:
+    fields = read_netcdf(path)
+    numbers = range(1, int(fields["segment"].max()) + 2)
+    of_each = {f"{what}_{k}" for what in ("plate", "stress", "coordinates") for k in numbers}
+    common = {"points", "triangles", "thickness", "wall", "modes", "state"}
+    if missing := (common | of_each) - fields.variables.keys():
+        raise KeyError(*sorted(missing))
+    return fields.assign_attrs(model=fields.attrs["model"])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -24,16 +24,16 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
-from runs.folder.finished import Finished, finished
 from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
-from runs.pipeline.known import known
+from runs.pipeline.finished import Finished, finished
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results, label
 from runs.pipeline.shell_output import ShellOutput
+from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -51,7 +51,7 @@ class Outcome:
     """What one model leaves; ``ensemble`` and ``shell`` where it has one."""
 
     trajectory: Trajectory
-    summary: dict[str, Any]
+    summary: ModelSummary
     ensemble: xr.Dataset | None
     shell: ShellOutput | None
 
@@ -130,23 +130,23 @@ def run_case(
         return None
     if first_failure is not None and not outcomes:
         raise first_failure
-    summary: dict[str, Any] = {
-        "title": case.title,
-        "case_hash": toml.digest(case),
-        "versions": versions(),
-        "models": {name: outcome.summary for name, outcome in outcomes.items()},
-        "failures": failures,
-    }
+    summary = Summary(
+        title=case.title,
+        case_hash=toml.digest(case),
+        versions=versions(),
+        models={name: outcome.summary for name, outcome in outcomes.items()},
+        failures=failures,
+    )
     ensembles = members.gather(
         {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
     )
     if ensembles is not None and case.ensemble is not None:
-        summary["ensemble"] = {**case.ensemble.model_dump(), "slow_below": cutoff}
-        ensembles = ensembles.assign_attrs(case_hash=summary["case_hash"])
+        summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
+        ensembles = ensembles.assign_attrs(case_hash=summary.case_hash)
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
-    data = label(boom, trajectories).assign_attrs(case_hash=summary["case_hash"])
-    summary["comparisons"] = compare_models(case, data, ensembles, summary)
+    data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
+    summary.comparisons = compare_models(case, data, ensembles, cutoff)
     shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
     return Run(Results(case, data, summary, ensembles), shells)
 
@@ -204,16 +204,16 @@ def _run_model(
         moved = finished(kept, content, lambda: _move(built, model, case, cutoff, executor, moving))
     summary, reduced = moved.summary, built.shell
     # Those of a motion that is kept are what it has taken.
-    stages.seconds |= summary["seconds"]
-    summary["seconds"] = stages.seconds
-    if reduced is None:
-        return Outcome(moved.trajectory, summary, moved.ensemble, None)
-    summary["reduction_errors"] = {name: known(error) for name, error in reduced.errors.items()}
-    summary["local_compliance"] = [known(value) for value in reduced.local_compliance]
-    summary["mesh_error"] = known(reduced.mesh_error)
-    with stages.stage("stress"):
-        shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
-    summary["stress"] = shell.summary
+    stages.seconds |= summary.seconds
+    shell = None
+    if reduced is not None:
+        summary.reduction_errors = dict(reduced.errors)
+        summary.local_compliance = list(reduced.local_compliance)
+        summary.mesh_error = reduced.mesh_error
+        with stages.stage("stress"):
+            shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
+        summary.stress = shell.largest
+    summary.seconds = stages.seconds
     return Outcome(moved.trajectory, summary, moved.ensemble, shell)
 
 
@@ -237,7 +237,8 @@ def _move(
             refused.append(str(error))
             plan = plan.finer()
         else:
-            moved.summary["refused_steps"] = refused
+            moved.summary.refused_steps = refused
+            moved.summary.seconds = stages.seconds
             return moved
 
 
@@ -255,22 +256,22 @@ def _move_at(
     plan.warm()
     with stages.stage("motion") as told:
         trajectory = plan.trajectory(told)
-    summary = _summary(model, system, trajectory, num_dofs, stages.seconds)
+    summary = _summary(model, system, trajectory, num_dofs)
     # Under prescribed forces friction makes the motion regular; what contacts press does not.
     if system.frictions and not any(friction.pressed_by for friction in system.frictions):
         with stages.stage("half the step") as told:
-            summary["step_halving"] = plan.change_by_finer_steps(trajectory, told)
+            summary.step_halving = plan.change_by_finer_steps(trajectory, told)
     if case.ensemble is None or not system.laws:
         return Finished(trajectory, summary, None)
     with stages.stage("ensemble") as told:
         ensemble = plan.ensemble(case.ensemble, executor, told)
-    summary["ensemble"] = members.sum_up(ensemble, cutoff)
+    peaks = members.common_peaks(ensemble, cutoff)
+    summary.ensemble = members.sum_up(ensemble, peaks)
     with stages.stage("horizons") as told:
-        summary["horizons"] = plan.horizons(case.ensemble, executor, told)
-    if cutoff is not None and motion.from_rest:
-        peaks = summary["ensemble"]["slow_peaks"]
+        summary.horizons = plan.horizons(case.ensemble, executor, told)
+    if cutoff is not None and peaks is not None and motion.from_rest:
         with stages.stage("step counts"):
-            summary["steps_for_peaks"] = steps_for_peaks(motion, peaks, cutoff)
+            summary.steps_for_peaks = steps_for_peaks(motion, peaks, cutoff)
     return Finished(trajectory, summary, ensemble)
 
 
@@ -279,25 +280,26 @@ def _summary(
     system: GapSystem,
     trajectory: Trajectory,
     num_dofs: int,
-    seconds: dict[str, float],
-) -> dict[str, Any]:
+) -> ModelSummary:
+    """Without what it took and what was refused, which :func:`_move` knows."""
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
-    return {
-        "kind": model.kind,
-        "degrees_of_freedom": num_dofs,
-        "modes": system.num_modes,
-        "frequencies": system.frequencies[:6].tolist(),
-        "seconds": seconds,
-        "step": attributes["step"],
-        "steps": attributes["steps"],
-        "first_contact": known(trajectory.first_contact),
-        "contact_changes": attributes["contact_changes"],
-        "energy_residual": attributes["energy_residual"],
-        "first_peak": {
-            name: [known(number) for number in trajectory.first_peak(name)]
+    return ModelSummary(
+        kind=model.kind,
+        degrees_of_freedom=num_dofs,
+        modes=system.num_modes,
+        frequencies=system.frequencies[:6].tolist(),
+        seconds={},
+        step=attributes["step"],
+        steps=attributes["steps"],
+        first_contact=trajectory.first_contact,
+        contact_changes=attributes["contact_changes"],
+        energy_residual=attributes["energy_residual"],
+        first_peak={
+            name: Peak(*trajectory.first_peak(name))
             for name in ("tip", "head", "tip_lateral")
             if name in trajectory.data
         },
-        "peak_contact_force": float(peaks.max()) if peaks.size else None,
-    }
+        peak_contact_force=float(peaks.max()) if peaks.size else None,
+        refused_steps=[],
+    )

@@ -13,6 +13,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
+from shell_model.stress.summary import StressSummary
 
 if TYPE_CHECKING:
     from geometry.mesh import SegmentMesh
@@ -27,13 +28,13 @@ class ShellOutput:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
             mode), and the joints.
         stresses: von Mises stresses near stations and supports over time.
-        summary: the largest of them, and what the walls carry then, as JSON.
+        largest: the largest of them, and what the walls carry then.
         meshes: name of the segment → its mesh.
     """
 
     fields: xr.Dataset
     stresses: xr.Dataset
-    summary: dict[str, Any]
+    largest: StressSummary
     meshes: dict[str, SegmentMesh]
 
     @classmethod

@@ -66,7 +66,7 @@ def contact_peaks(pen: Pen) -> list[Figure]:
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
     _log_scale(panels, np.concatenate(drawn))
     panels[-1].set_xlabel("time (s)")
-    peaks = [pen.summary[name]["peak_contact_force"] for name in pen.with_play]
+    peaks = [pen.summary[name].peak_contact_force for name in pen.with_play]
     known = [peak for peak in peaks if peak is not None]
     title = "Peak contact forces" + (f": up to {max(known) / KILO:.0f} kN" if known else "")
     caption = (

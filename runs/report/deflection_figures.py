@@ -45,13 +45,13 @@ def close_up(pen: Pen) -> list[Figure]:
         deflection = MILLI * pen.of(name, "tip")
         pen.line(axes, name, pen.time[shown], deflection[shown])
         color = pen.strokes[name].color
-        contact = pen.summary[name]["first_contact"]
+        contact = pen.summary[name].first_contact
         if contact is not None and contact <= end:
             contacts.append(contact)
-            height = float(np.interp(contact, pen.time, deflection))
-            axes.plot(contact, height, "o", color=color, zorder=4, **circle)
-        peak, height = pen.summary[name]["first_peak"]["tip"]
-        if peak is None:
+            then = np.interp(contact, pen.time, deflection)
+            axes.plot(contact, then, "o", color=color, zorder=4, **circle)
+        peak, height = pen.summary[name].first_peak["tip"]
+        if peak is None or height is None:
             peakless.append(name)
         elif peak <= end:
             axes.plot(peak, MILLI * height, "v", color=color, ms=8, zorder=4)
@@ -154,8 +154,8 @@ def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
     shade = min(0.25, SHADE / len(pen.with_play))
     axes.fill_between(pen.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
     for share, dashes in zip(SHARES, (":", "--"), strict=True):
-        known = pen.summary[name]["ensemble"]["horizons"][f"{share:g}"]
-        if known is not None:
+        ensemble = pen.summary[name].ensemble
+        if ensemble and (known := ensemble.horizon(share)) is not None:
             axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
 
 
@@ -175,8 +175,8 @@ def _sampled(pen: Pen, place: str) -> str:
         f" Shaded: {low:g} to {high:g} % of the {pen.ensembles.sizes['member']} members of each "
         "model's ensemble."
     )
-    horizons = [pen.summary[name]["ensemble"]["horizons"] for name in pen.with_play]
-    if not any(time is not None for known in horizons for time in known.values()):
+    sampled = [found for name in pen.with_play if (found := pen.summary[name].ensemble)]
+    if not any(time is not None for found in sampled for time in found.horizons.values()):
         return f"{band} They stay together to the end."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
     beyond = "" if pen.rubs else ", beyond which a curve is one sample of a chaotic motion"

@@ -49,7 +49,7 @@ def render(
         *_numbered("Figure", chain(motion, knowledge, snapshots)),
     ]
     judged: list[str] = [verdict.verdict for verdict in verdicts]
-    names = list(results.summary["models"])
+    names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
     return page(
         "report.html",
@@ -69,10 +69,10 @@ def render(
         knowledge=knowledge,
         compared=compared,
         snapshots=snapshots,
-        skipped=results.summary.get("snapshots", {}).get("skipped"),
+        skipped=results.summary.snapshots.skipped,
         readings=readings,
-        versions={k: v for k, v in results.summary["versions"].items() if v is not None},
-        case_hash=results.summary["case_hash"],
+        versions={k: v for k, v in results.summary.versions.items() if v is not None},
+        case_hash=results.summary.case_hash,
         costs=_costs(results),
         case_text=toml.dumps(results.case),
     )
@@ -103,9 +103,9 @@ def _measured(value: float | None, verdict: Verdict) -> str:
 def _costs(results: Results) -> Mapping[str, str]:
     """What each model's stages took, and how near a reduction is."""
     costs = {}
-    for name, model in results.summary["models"].items():
-        parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model["seconds"].items()]
-        errors = dict(model.get("reduction_errors", {}))
+    for name, model in results.summary.models.items():
+        parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()]
+        errors = dict(model.reduction_errors)
         right_to = errors.pop("frequency_limit_in_hz", None)
         parts += [
             f"{what.replace('_', ' ')} of the reduction within {number(error, 2)}"
@@ -113,7 +113,7 @@ def _costs(results: Results) -> Mapping[str, str]:
         ]
         if right_to is not None:
             parts.append(f"its modes right up to {number(right_to, 2)} Hz")
-        if error := model.get("mesh_error"):
+        if error := model.mesh_error:
             parts.append(f"local compliance of the mesh within {number(error, 2)}")
         costs[name] = ", ".join(parts)
     return costs

@@ -55,7 +55,7 @@ class Pen:
         self.case = results.case
         self.data = results.trajectories
         self.ensembles = results.ensembles
-        self.summary = results.summary["models"]
+        self.summary = results.summary.models
         self.of_the_paper = bool(results.case.statements)
         self.rubs = rubs(results.case)
         self.folder = folder

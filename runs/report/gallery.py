@@ -17,7 +17,7 @@ from PIL import Image
 
 from runs.case.messages import BadInput
 from runs.folder.files import whole
-from runs.pipeline.results import FIELDS, Results, read_netcdf
+from runs.pipeline.results import FIELDS, Results, read_fields
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.rendering import TITLES, require_opengl, telling_instants
@@ -64,7 +64,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
         yield name, Image.open(path).convert("RGB")
     results = Results.load(runs / "paper")
     motion = results.trajectories.sel(model=MODEL)
-    shell = MovingShell.views(read_netcdf(runs / "paper" / FIELDS), motion)[0]
+    shell = MovingShell.views(read_fields(runs / "paper" / FIELDS), motion)[0]
     (overlap,) = shell.overlaps
     require_opengl()
     with rc_context(LETTERS):

@@ -17,7 +17,9 @@ def slow_peaks(pen: Pen) -> list[Figure]:
     found = {
         name: peaks
         for name in pen.with_play
-        if (peaks := (pen.summary[name].get("ensemble") or {}).get("slow_peaks")) and peaks["time"]
+        if (ensemble := pen.summary[name].ensemble)
+        and (peaks := ensemble.slow_peaks)
+        and peaks.time
     }
     if not found:
         return []
@@ -25,10 +27,10 @@ def slow_peaks(pen: Pen) -> list[Figure]:
     for name, peaks in found.items():
         stroke = pen.strokes[name]
         axes.errorbar(
-            peaks["time"],
-            MILLI * np.array(peaks["height"]),
-            xerr=peaks["time_spread"],
-            yerr=MILLI * np.array(peaks["height_spread"]),
+            peaks.time,
+            MILLI * np.array(peaks.height),
+            xerr=peaks.time_spread,
+            yerr=MILLI * np.array(peaks.height_spread),
             color=stroke.color,
             linestyle=stroke.linestyle,
             linewidth=0.7,
@@ -38,7 +40,7 @@ def slow_peaks(pen: Pen) -> list[Figure]:
             label=name,
         )
     axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, pen.time[-1]))
-    counts = [len(peaks["time"]) for peaks in found.values()]
+    counts = [len(peaks.time) for peaks in found.values()]
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
         "Peaks of the tip's slow motion, each with half the distance between the first and the "
@@ -51,21 +53,19 @@ def slow_peaks(pen: Pen) -> list[Figure]:
 
 def horizons(pen: Pen) -> list[Figure]:
     """Horizon against the size of the change, of each model whose growth has been measured."""
-    measured = {
-        name: found for name in pen.with_play if (found := pen.summary[name].get("horizons"))
-    }
+    measured = {name: found for name in pen.with_play if (found := pen.summary[name].horizons)}
     if not measured:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     shares: dict[float, str] = {}
     for name, found in measured.items():
         color = pen.strokes[name].color
-        logs = np.log10(found["relatives"])
-        times = np.array(found["times"], dtype=float)
-        for i, (share, dashes) in enumerate(zip(found["shares"], DASHES, strict=False)):
+        logs = np.log10(found.relatives)
+        times = np.array(found.times, dtype=float)
+        for i, (share, dashes) in enumerate(zip(found.shares, DASHES, strict=False)):
             shares[share] = dashes
             axes.plot(logs, times[:, i], color=color, linestyle=dashes, marker="o", markersize=4.5)
-            of_step = found["of_step"][i]
+            of_step = found.of_step[i]
             if of_step is not None:
                 axes.plot(logs[0], of_step, "s", color=color, mfc="white", ms=7, mew=1.4, zorder=4)
         axes.plot([], [], color=color, marker="o", markersize=4.5, label=name)

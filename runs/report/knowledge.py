@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from dynamics.predictability.horizon import SHARES
 from runs.pipeline.comparisons import DECIDES
 from runs.pipeline.results import Results
+from runs.pipeline.summary import CommonPeaks, Growth, Levels, ModelSummary, PeaksLevel, Whole
 from runs.report.model_tables import horizon
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, fixed, number, scientific, signed
@@ -27,13 +27,13 @@ VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial veloc
 
 def known_tables(results: Results) -> list[TextTable]:
     """What each model's ensembles tell; empty without any."""
-    models: Mapping[str, Any] = results.summary["models"]
-    sampled = {name: model for name, model in models.items() if "ensemble" in model}
-    measured = {name: model["horizons"] for name, model in models.items() if model.get("horizons")}
+    models = results.summary.models
+    sampled = {name: model for name, model in models.items() if model.ensemble}
+    measured = {name: model.horizons for name, model in models.items() if model.horizons}
     peaks = {
-        name: model["ensemble"]["slow_peaks"]
-        for name, model in sampled.items()
-        if model["ensemble"]["slow_peaks"] is not None
+        name: model.ensemble.slow_peaks
+        for name, model in models.items()
+        if model.ensemble and model.ensemble.slow_peaks
     }
     tables = []
     if sampled:
@@ -47,30 +47,32 @@ def known_tables(results: Results) -> list[TextTable]:
 
 def compared_tables(results: Results) -> list[TextTable]:
     """How the models differ from the reference; empty where nothing is compared."""
-    comparisons = results.summary.get("comparisons") or {}
-    reference = comparisons.get("reference", "")
+    comparisons = results.summary.comparisons
+    if comparisons is None:
+        return []
+    reference = comparisons.reference
     tables = []
-    if levels := comparisons.get("ensembles"):
+    if levels := comparisons.ensembles:
         tables += [
             _pointwise_table(reference, levels),
             _difference_table(reference, levels),
             _distribution_table(reference, levels),
         ]
-    if whole := comparisons.get("whole"):
+    if whole := comparisons.whole:
         tables.append(_whole_table(reference, whole))
     return tables
 
 
-def _horizon_table(results: Results, sampled: Mapping[str, Any]) -> TextTable:
+def _horizon_table(results: Results, sampled: Mapping[str, ModelSummary]) -> TextTable:
     duration = results.case.time.duration
     rows = []
     for name, model in sampled.items():
         horizons = [horizon(model, share, duration) for share in SHARES]
-        peaks = model["ensemble"]["slow_peaks"]
+        peaks = model.ensemble.slow_peaks if model.ensemble else None
         slow = (NONE, NONE)
         if peaks is not None:
-            period = _spread(peaks["period"], peaks["period_spread"], 3)
-            slow = (str(len(peaks["time"])), period)
+            period = _spread(peaks.period, peaks.period_spread, 3)
+            slow = (str(len(peaks.time)), period)
         rows.append((name, *horizons, *slow))
     headings = (
         "model",
@@ -78,33 +80,34 @@ def _horizon_table(results: Results, sampled: Mapping[str, Any]) -> TextTable:
         "common slow peaks",
         "period\ns",
     )
-    asked = results.summary["ensemble"]
+    asked = results.summary.ensemble
+    assert asked is not None
     notes = [
-        f"Ensembles of {asked['members']} members, {VARIED[asked['vary']]} changed by up to "
-        f"{scientific(asked['relative'])} of themselves. Horizon: when the members are that part "
+        f"Ensembles of {asked.members} members, {VARIED[asked.vary]} changed by up to "
+        f"{scientific(asked.relative)} of themselves. Horizon: when the members are that part "
         "of the tip's range around one another."
     ]
-    if asked["slow_below"] is not None:
+    if asked.slow_below is not None:
         notes.append(
-            f"Slow peaks are those of the motion below {number(asked['slow_below'])} Hz; common "
+            f"Slow peaks are those of the motion below {number(asked.slow_below)} Hz; common "
             "ones are those that all members have."
         )
     return TextTable("Horizons", headings, rows, notes, "horizons", ("S2", "S3"))
 
 
-def _growth_table(measured: Mapping[str, Any]) -> TextTable:
-    sizes = next(iter(measured.values()))["relatives"]
+def _growth_table(measured: Mapping[str, Growth]) -> TextTable:
+    sizes = next(iter(measured.values())).relatives
     rows = [
         (
             name,
             f"{PERCENT * share:g} %",
-            *(fixed(times[i], 2) for times in found["times"]),
-            fixed(found["of_step"][i], 2),
-            number(found["rate"][i], 2),
-            LIMITS[found["limits"][i]],
+            *(fixed(times[i], 2) for times in found.times),
+            fixed(found.of_step[i], 2),
+            number(found.rate[i], 2),
+            LIMITS[found.limits[i]],
         )
         for name, found in measured.items()
-        for i, share in enumerate(found["shares"])
+        for i, share in enumerate(found.shares)
     ]
     headings = (
         "model",
@@ -125,15 +128,15 @@ def _growth_table(measured: Mapping[str, Any]) -> TextTable:
     return TextTable("What better data would buy", headings, rows, notes, "growth")
 
 
-def _peak_table(peaks: Mapping[str, Any]) -> TextTable:
-    def cell(found: Mapping[str, Any], i: int) -> str:
-        if i >= len(found["time"]):
+def _peak_table(peaks: Mapping[str, CommonPeaks]) -> TextTable:
+    def cell(found: CommonPeaks, i: int) -> str:
+        if i >= len(found.time):
             return NONE
-        time = _spread(found["time"][i], found["time_spread"][i], 3)
-        height = _spread(found["height"][i], found["height_spread"][i], 2, MILLI)
+        time = _spread(found.time[i], found.time_spread[i], 3)
+        height = _spread(found.height[i], found.height_spread[i], 2, MILLI)
         return f"{time} s\n{height} mm"
 
-    most = max(len(found["time"]) for found in peaks.values())
+    most = max(len(found.time) for found in peaks.values())
     rows = [(str(i + 1), *(cell(found, i) for found in peaks.values())) for i in range(most)]
     notes = (
         "Mean of an ensemble's members ± half the distance between its extremes. A column ends "
@@ -142,12 +145,12 @@ def _peak_table(peaks: Mapping[str, Any]) -> TextTable:
     return TextTable("Slow peaks", ("peak", *peaks), rows, notes, "slow-peaks", ("S2", "S3"))
 
 
-def _pointwise_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
+def _pointwise_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
     rows = []
     for name, level in levels.items():
-        found = level["pointwise"]
-        shares = (fixed(found[key], 2, PERCENT) for key in ("largest", "rms"))
-        rows.append((name, fixed(found["until"], 2), *shares))
+        found = level.pointwise
+        shares = (fixed(part, 2, PERCENT) for part in (found.largest, found.rms))
+        rows.append((name, fixed(found.until, 2), *shares))
     return TextTable(
         f"Tip against {reference}, from moment to moment",
         ("model", "until\ns", "largest difference\n% of the range", "rms\n% of the range"),
@@ -158,17 +161,17 @@ def _pointwise_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
     )
 
 
-def _difference_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
-    def cell(found: Mapping[str, Any], i: int) -> str:
-        if i >= len(found["time"]):
+def _difference_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
+    def cell(found: PeaksLevel, i: int) -> str:
+        if i >= len(found.time):
             return NONE
-        time = _spread(found["time"][i], found["time_spread"][i], 0, MILLI, "+")
-        height = _spread(found["height"][i], found["height_spread"][i], 2, MILLI, "+")
-        mark = "" if found["explained"][i] else " *"
+        time = _spread(found.time[i], found.time_spread[i], 0, MILLI, "+")
+        height = _spread(found.height[i], found.height_spread[i], 2, MILLI, "+")
+        mark = "" if found.explained[i] else " *"
         return f"{time} ms\n{height} mm{mark}"
 
-    peaks = {name: level["peaks"] for name, level in levels.items()}
-    most = max(len(found["time"]) for found in peaks.values())
+    peaks = {name: level.peaks for name, level in levels.items()}
+    most = max(len(found.time) for found in peaks.values())
     rows = [(str(i + 1), *(cell(found, i) for found in peaks.values())) for i in range(most)]
     notes = (
         f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
@@ -179,15 +182,15 @@ def _difference_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
     return TextTable(title, ("peak", *peaks), rows, notes, "peaks-against", ("S3",))
 
 
-def _distribution_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
+def _distribution_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
     rows = []
     for name, level in levels.items():
-        found = level["distributions"]
+        found = level.distributions
         pairs = (
-            " / ".join(fixed(value, 1, MILLI) for value in reversed(found[key]))
-            for key in ("range", "mean", "deviation")
+            " / ".join(fixed(value, 1, MILLI) for value in reversed(both))
+            for both in (found.range, found.mean, found.deviation)
         )
-        rows.append((name, fixed(found["since"], 2), *pairs, fixed(found["distance"], 3)))
+        rows.append((name, fixed(found.since, 2), *pairs, fixed(found.distance, 3)))
     headings = (
         "model", "from\ns", "range\nmm", "mean\nmm", "standard deviation\nmm",
         "Kolmogorov–Smirnov\ndistance",
@@ -200,15 +203,15 @@ def _distribution_table(reference: str, levels: Mapping[str, Any]) -> TextTable:
     return TextTable(title, headings, rows, notes, "distributions")
 
 
-def _whole_table(reference: str, whole: Mapping[str, Any]) -> TextTable:
-    ends = next(iter(whole.values()))["until"]
+def _whole_table(reference: str, whole: Mapping[str, Whole]) -> TextTable:
+    ends = next(iter(whole.values())).until
     rows = [
         (
             name,
             *(
-                fixed(found[key][i], 2, PERCENT)
+                fixed(parts[i], 2, PERCENT)
                 for i in range(len(ends))
-                for key in ("largest", "rms")
+                for parts in (found.largest, found.rms)
             ),
         )
         for name, found in whole.items()

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from dynamics.predictability.horizon import SHARES
 from runs.case.build import contact_laws
 from runs.pipeline.comparisons import reference_of, rubs
 from runs.pipeline.results import Results
+from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, fixed, number
 
@@ -44,42 +43,42 @@ class ModelRow:
 
 def model_rows(results: Results) -> list[ModelRow]:
     """A row for each model that ran, in the case's order, and for each one that failed."""
-    models: Mapping[str, Any] = results.summary["models"]
+    models = results.summary.models
     duration = results.case.time.duration
-    shares = SHARES if any("ensemble" in model for model in models.values()) else ()
+    shares = SHARES if any(model.ensemble for model in models.values()) else ()
     rows = []
     for name, model in models.items():
-        peak_time, peak = _first_peak(model["first_peak"]["tip"], duration)
+        peak_time, peak = _first_peak(model.first_peak["tip"], duration)
         rows.append(
             ModelRow(
                 name=name,
-                kind=model["kind"],
-                degrees_of_freedom=str(model["degrees_of_freedom"]),
-                modes=str(model["modes"]),
-                step=number(MICRO * model["step"]),
-                first_contact=fixed(model["first_contact"], 4),
+                kind=model.kind,
+                degrees_of_freedom=str(model.degrees_of_freedom),
+                modes=str(model.modes),
+                step=number(MICRO * model.step),
+                first_contact=fixed(model.first_contact, 4),
                 tip_peak_time=peak_time,
                 tip_peak=peak,
                 horizons=tuple(horizon(model, share, duration) for share in shares),
-                peak_force=_in_kilo(model["peak_contact_force"]),
-                energy_residual=number(model["energy_residual"], 1),
-                seconds=fixed(sum(model["seconds"].values()), 1),
+                peak_force=_in_kilo(model.peak_contact_force),
+                energy_residual=number(model.energy_residual, 1),
+                seconds=fixed(sum(model.seconds.values()), 1),
             )
         )
     missing = ("failed", *(NONE,) * 5, tuple(NONE for _ in shares), *(NONE,) * 3)
     kinds = {model.name: model.kind for model in results.case.models}
-    failed = results.summary.get("failures", {})
+    failed = results.summary.failures
     return rows + [ModelRow(name, kinds[name], *missing) for name in failed]
 
 
-def horizon(model: Mapping[str, Any], share: float, duration: float) -> str:
+def horizon(model: ModelSummary, share: float, duration: float) -> str:
     """When the members of a model's ensemble are a share of the tip's range apart, in s.
 
     ``> 10`` where they are not within 10 s, ``NONE`` where the model has no ensemble.
     """
-    if "ensemble" not in model:
+    if model.ensemble is None:
         return NONE
-    time = model["ensemble"]["horizons"][f"{share:g}"]
+    time = model.ensemble.horizon(share)
     return f"> {duration:g}" if time is None else fixed(time, 2)
 
 
@@ -110,27 +109,27 @@ def model_table(results: Results) -> TextTable:
 
 def step_table(results: Results) -> TextTable:
     """How many steps each model took, and how many its motion needs."""
-    models: Mapping[str, Any] = results.summary["models"]
+    models = results.summary.models
     headings = ["model", "step\nµs", "steps", "openings and closings"]
     columns = [
         list(models),
-        [number(MICRO * model["step"]) for model in models.values()],
-        [_thousands(model["steps"]) for model in models.values()],
-        [_thousands(model["contact_changes"]) for model in models.values()],
+        [number(MICRO * model.step) for model in models.values()],
+        [_thousands(model.steps) for model in models.values()],
+        [_thousands(model.contact_changes) for model in models.values()],
     ]
     notes = ["Each opening or closing of a contact takes a step of its own, whatever the solver."]
-    tried = [model.get("steps_for_peaks") for model in models.values()]
+    tried = [model.steps_for_peaks for model in models.values()]
     if any(tried):
         headings.append("enough for slow peaks\nsteps")
-        columns.append([_thousands(found and found["fewest"]) for found in tried])
+        columns.append([_thousands(found.fewest if found else None) for found in tried])
         within = next(found for found in tried if found)
         notes.append(
-            f"Enough for slow peaks: the fewest steps tried that keep the first {within['peaks']} "
-            f"of them within {PERCENT * within['within']:g} %, beyond the ensemble's spread."
+            f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
+            f"of them within {PERCENT * within.within:g} %, beyond the ensemble's spread."
         )
-    if any("step_halving" in model for model in models.values()):
+    if any(model.step_halving is not None for model in models.values()):
         headings.append("change by half the step\n% of the tip's range")
-        columns.append([_in_percent(model.get("step_halving")) for model in models.values()])
+        columns.append([_in_percent(model.step_halving) for model in models.values()])
     if results.case.statements:
         notes.append(
             "The paper names at most 2000 steps for the series and more than 4000 for beam "
@@ -146,7 +145,7 @@ def law_table(results: Results) -> TextTable | None:
     models = [model for model in results.ran if not model.play_free]
     rows = []
     for model in models:
-        peak = results.summary["models"][model.name]["first_peak"]["tip"][1]
+        peak = results.summary.models[model.name].first_peak["tip"].height
         laws = contact_laws(results.case, model)
         for joint, law in zip(results.case.joints, laws, strict=True):
             if not joint.tied:
@@ -162,19 +161,17 @@ def law_table(results: Results) -> TextTable | None:
 
 def space_table(results: Results) -> TextTable | None:
     """First peaks along both directions against the reference; None for a flat boom."""
-    models: Mapping[str, Any] = results.summary["models"]
+    models = results.summary.models
     reference = reference_of(results.ran)
-    if reference is None or "tip_lateral" not in models[reference]["first_peak"]:
+    if reference is None or "tip_lateral" not in models[reference].first_peak:
         return None
     rows = []
     for name, model in models.items():
         cells = [name]
         for place in ("tip", "tip_lateral"):
-            peak = model["first_peak"][place]
+            peak = model.first_peak[place]
             cells += _first_peak(peak, results.case.time.duration)
-            height, other = peak[1], models[reference]["first_peak"][place][1]
-            known = height is not None and other is not None
-            cells.append(_in_percent(height / other - 1.0 if known else None))
+            cells.append(_off(peak.height, models[reference].first_peak[place].height))
         rows.append(tuple(cells))
     headings = (
         "model",
@@ -184,12 +181,16 @@ def space_table(results: Results) -> TextTable | None:
     return TextTable("First peaks of the tip in space", headings, rows, name="space")
 
 
-def _first_peak(peak: Sequence[float | None], duration: float) -> tuple[str, str]:
+def _first_peak(peak: Peak, duration: float) -> tuple[str, str]:
     """Time and height; where there is no peak the two say so together."""
     time, height = peak
     if height is None:
         return "no peak", f"within {duration:g} s"
     return fixed(time, 3), fixed(height, 1, MILLI)
+
+
+def _off(height: float | None, other: float | None) -> str:
+    return NONE if height is None or other is None else _in_percent(height / other - 1.0)
 
 
 def _thousands(count: int | None) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -25,9 +25,9 @@ from runs.pipeline.results import (
     SUMMARY,
     TRAJECTORIES,
     Results,
-    read_netcdf,
 )
 from runs.pipeline.run import Run
+from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
 from runs.report.document import render
 from runs.report.figures import draw
@@ -98,9 +98,11 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
     _write_csv(results.trajectories, folder / "trajectories.csv")
     _write_text(folder / CASE, toml.dumps(results.case))
-    shells = [model for model in results.case.models if model.meshed]
+    several = sum(model.meshed for model in results.case.models) > 1
+    fields = {}
     for name, shell in run.shells.items():
-        prefix = f"{name}-" if len(shells) > 1 else ""
+        prefix = f"{name}-" if several else ""
+        fields[f"{prefix}{FIELDS}"] = shell.fields
         shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
         shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
         # Of names joined by a hyphen two may be the same.
@@ -113,9 +115,9 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
             gmsh_file = mesh_folder / name / f"{segment}.msh"
             shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
     try:
-        write_snapshots(results, folder)
+        write_snapshots(results, fields, folder)
     except RenderingUnavailable as reason:
-        results.summary["snapshots"] = {"written": [], "skipped": str(reason)}
+        results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
     write_report(results, verdicts, folder)
 
 
@@ -127,13 +129,17 @@ def _series_times(fields: xr.Dataset) -> list[float]:
 
 
 def write_snapshots(
-    results: Results, folder: Path, times: Sequence[float] | None = None
+    results: Results,
+    shells: Mapping[str, xr.Dataset],
+    folder: Path,
+    times: Sequence[float] | None = None,
 ) -> list[str]:
-    """Render the deformed shells of a run's folder, and note it in the summary.
+    """Render the deformed shells of a run, and note it in the summary.
 
     Args:
-        results: of the folder.
-        folder: with the shells' fields; pictures of other instants stay in it.
+        results: of the run.
+        shells: fields by the name of their file, ``[SHELL-]fields.nc``.
+        folder: of the run; pictures of other instants stay in it.
         times: in s; the telling ones unless given.
 
     Returns:
@@ -145,18 +151,16 @@ def write_snapshots(
     written = []
     pictures = folder / SNAPSHOTS
     with beside(pictures) as easel:
-        for path in sorted(folder.glob(f"*{FIELDS}")):
-            fields = read_netcdf(path)
+        for file, fields in sorted(shells.items()):
             model = fields.attrs["model"]
-            prefix = path.name.removesuffix(FIELDS)
+            prefix = file.removesuffix(FIELDS)
             for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
                 pictures.mkdir(exist_ok=True)
                 written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
-    earlier = results.summary.get("snapshots", {}).get("written", [])
-    results.summary["snapshots"] = {
-        "written": list(dict.fromkeys([*earlier, *written])),
-        "skipped": None,
-    }
+    earlier = results.summary.snapshots.written
+    results.summary.snapshots = Snapshots(
+        written=list(dict.fromkeys([*earlier, *written])), skipped=None
+    )
     return written
 
 
@@ -174,7 +178,7 @@ def write_report(
         folder: gets them.
         surveyed: what a survey of the case's readings has found.
     """
-    _write_text(folder / SUMMARY, _json(results.summary))
+    _write_text(folder / SUMMARY, str(results.summary))
     if verdicts:
         _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in verdicts]))
     shutil.rmtree(folder / FIGURES, ignore_errors=True)
@@ -182,7 +186,7 @@ def write_report(
     figures = draw(results, folder / FIGURES)
     pictures = [
         snapshots.describe(results, folder / SNAPSHOTS / name)
-        for name in results.summary["snapshots"]["written"]
+        for name in results.summary.snapshots.written
     ]
     _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed))
 

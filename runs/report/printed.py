@@ -37,15 +37,15 @@ def print_models(results: Results, console: Console) -> None:
             row.seconds,
         )
     console.print(models)
-    for name, model in results.summary["models"].items():
-        if errors := model.get("reduction_errors"):
+    for name, model in results.summary.models.items():
+        if errors := model.reduction_errors:
             console.print(
-                f"{name}: {model['modes']} coordinates answer as the full shell does, contacts "
+                f"{name}: {model.modes} coordinates answer as the full shell does, contacts "
                 f"within {number(errors['contact_compliance'], 1)}, tip and head within "
                 f"{number(errors['readings'], 1)}",
                 markup=False,
             )
-        if (error := model.get("mesh_error")) is not None:
+        if (error := model.mesh_error) is not None:
             console.print(
                 f"{name}: the mesh answers where the segments touch as an infinitely fine one "
                 f"does, within {number(100.0 * error, 2)} % of what the walls give way",

@@ -15,38 +15,38 @@ def stress_history(pen: Pen) -> list[Figure]:
     """Largest von Mises stresses of each shell in each part of the run, place by place."""
     figures = []
     for name in pen.models:
-        stress = pen.summary[name].get("stress")
-        if stress is None or not stress["history"]["places"]:
+        stress = pen.summary[name].stress
+        if stress is None or not stress.history.places:
             continue
-        time = np.array(stress["history"]["time"])
-        rows = stress["history"]["places"]
-        places = sorted({row["x"] for row in rows})
+        time = np.array(stress.history.time)
+        rows = stress.history.places
+        places = sorted({row.x for row in rows})
         segments = [segment.name for segment in pen.case.segments]
         sheet, panels = new_sheet(len(places), 1.4 + 1.6 * len(places), share_y=True)
         for axes, x in zip(panels, places, strict=True):
-            for row in (row for row in rows if row["x"] == x):
-                color = PALETTE[segments.index(row["segment"]) % len(PALETTE)]
-                for kind, label, width in (
-                    ("von_mises_patch", "over a patch", 1.8),
-                    ("von_mises", "any triangle", 0.8),
+            for row in (row for row in rows if row.x == x):
+                color = PALETTE[segments.index(row.segment) % len(PALETTE)]
+                for largest, label, width in (
+                    (row.von_mises_patch, "over a patch", 1.8),
+                    (row.von_mises, "any triangle", 0.8),
                 ):
                     axes.plot(
                         time,
-                        np.array(row[kind]) / MEGA,
+                        np.array(largest) / MEGA,
                         color=color,
                         linewidth=width,
-                        label=f"{row['segment']}, {label}",
+                        label=f"{row.segment}, {label}",
                     )
             axes.set(title=f"x = {x:g} m", ylabel="stress (MPa)", xlim=(0.0, pen.time[-1]))
         panels[-1].set(xlabel="time (s)", ylim=(0.0, None))
         fullest = max(panels, key=lambda axes: len(axes.lines))
-        patch = max(max(row["von_mises_patch"]) for row in rows) / MEGA
+        patch = max(max(row.von_mises_patch) for row in rows) / MEGA
         title = (
-            f"{name}: von Mises stress up to {stress['von_mises'] / MEGA:.3g} MPa, over a patch "
+            f"{name}: von Mises stress up to {stress.von_mises / MEGA:.3g} MPa, over a patch "
             f"up to {patch:.3g} MPa"
         )
         caption = (
-            f"Largest von Mises stress of {name} at either face within {stress['band']:g} m of "
+            f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
             f"each station and support, in every {pen.time[-1] / time.size:.2g} s. Beside a line "
             "of contact the stress of a triangle grows as the mesh refines, and tells where and "
             "when alone; the mean over a patch of half a wall settles."

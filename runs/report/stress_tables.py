@@ -13,23 +13,20 @@ KILO, MEGA = 1.0e3, 1.0e6
 def wall_table(results: Results) -> TextTable | None:
     """Forces of the walls at the instant of the largest stress; None without shells."""
     rows, notes = [], []
-    for name, model in results.summary["models"].items():
-        stress = model.get("stress")
+    for name, model in results.summary.models.items():
+        stress = model.stress
         if stress is None:
             continue
         notes.append(
-            f"{name}, at {stress['time']:.3f} s: the largest von Mises stress of the run, "
-            f"{number(stress['von_mises'] / MEGA, 3)} MPa, at x = {stress['x']:.2f} m in "
-            f"{stress['segment']!r}, {stress['face']} face of the wall {stress['wall']!r}."
+            f"{name}, at {stress.time:.3f} s: the largest von Mises stress of the run, "
+            f"{number(stress.von_mises / MEGA, 3)} MPa, at x = {stress.x:.2f} m in "
+            f"{stress.segment!r}, {stress.face} face of the wall {stress.wall!r}."
         )
-        for section in stress["walls"]:
-            for wall, forces in section["forces"].items():
-                rows.append(
-                    (
-                        f"{name}, {section['segment']}, {section['x']:g} m, {wall}",
-                        *(fixed(forces[kind] / KILO, 2) for kind in ("axial", "shear", "moment")),
-                    )
-                )
+        for section in stress.walls:
+            for wall, forces in section.forces.items():
+                of_wall = (forces.axial, forces.shear, forces.moment)
+                place = f"{name}, {section.segment}, {section.x:g} m, {wall}"
+                rows.append((place, *(fixed(force / KILO, 2) for force in of_wall)))
     if not rows:
         return None
     notes.append(

@@ -61,13 +61,13 @@ def measure(results: Results, model: str) -> Measured:
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
-    summary = results.summary["models"][model]
+    summary = results.summary.models[model]
     return {
         "tip_amplitude": float(0.5 * np.ptp(tip)),
-        "peak_contact_force": summary["peak_contact_force"],
+        "peak_contact_force": summary.peak_contact_force,
         "settling_time": settling_time(time, tip),
-        "first_contact": summary["first_contact"],
-        "energy_residual": summary["energy_residual"],
+        "first_contact": summary.first_contact,
+        "energy_residual": summary.energy_residual,
     }
 
 

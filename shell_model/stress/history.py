@@ -9,13 +9,20 @@ fixed size settles.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from shell_model.stress.stresses import Face, Indices, ShellStress, wall_forces
+from shell_model.stress.summary import (
+    CarriedAt,
+    LargestPatch,
+    PlaceHistory,
+    StressHistory,
+    StressSummary,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -77,8 +84,8 @@ def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str
     )
 
 
-def sum_up(shell: ShellStress, history: xr.Dataset) -> dict[str, Any]:
-    """The largest stress of a run, that of a patch, and what the walls carry then, as JSON.
+def sum_up(shell: ShellStress, history: xr.Dataset) -> StressSummary:
+    """The largest stress of a run, that of a patch, and what the walls carry then.
 
     Args:
         shell: in motion.
@@ -93,40 +100,40 @@ def sum_up(shell: ShellStress, history: xr.Dataset) -> dict[str, Any]:
     faces: tuple[Face, ...] = ("outer", "inner")
     face = max(faces, key=lambda f: float(stress.von_mises(f)[worst.triangle]))
     x, y, z = (float(c) for c in shell.centroids[worst.triangle])
-    found: dict[str, Any] = {
-        "von_mises": worst.von_mises,
-        "time": time,
-        "segment": names[number],
-        "wall": shell.wall_name(worst.triangle),
-        "face": face,
-        "x": x,
-        "y": y,
-        "z": z,
-        "band": BAND,
-        "patch": None,
-        "walls": [],
-        "history": _summed_history(history),
-    }
+    patch = None
     patched = history["von_mises_patch"].values
     if np.isfinite(patched).any():
         step, segment, place = np.unravel_index(np.nanargmax(patched), patched.shape)
-        found["patch"] = {
-            "von_mises": float(patched[step, segment, place]),
-            "time": float(shell.time[step]),
-            "segment": names[segment],
-            "x": places[place],
-        }
-    for k, name in enumerate(names):
-        for x in places:
-            if shell.holds(k, x):
-                forces = wall_forces(shell, time, k, x)
-                walls = {wall: carried._asdict() for wall, carried in forces.items()}
-                found["walls"].append({"segment": name, "x": x, "forces": walls})
-    return found
+        patch = LargestPatch(
+            float(patched[step, segment, place]),
+            float(shell.time[step]),
+            names[segment],
+            places[place],
+        )
+    walls = [
+        CarriedAt(name, place, wall_forces(shell, time, k, place))
+        for k, name in enumerate(names)
+        for place in places
+        if shell.holds(k, place)
+    ]
+    return StressSummary(
+        von_mises=worst.von_mises,
+        time=time,
+        segment=names[number],
+        wall=shell.wall_name(worst.triangle),
+        face=face,
+        x=x,
+        y=y,
+        z=z,
+        band=BAND,
+        patch=patch,
+        walls=walls,
+        history=_summed_history(history),
+    )
 
 
-def _summed_history(history: xr.Dataset) -> dict[str, Any]:
-    """The largest values of each part of the run, as JSON."""
+def _summed_history(history: xr.Dataset) -> StressHistory:
+    """The largest values of each part of the run."""
     time = history["time"].values
     parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
     rows = []
@@ -134,13 +141,12 @@ def _summed_history(history: xr.Dataset) -> dict[str, Any]:
         for place in history["place"].values:
             here = history.sel(segment=name, place=place)
             if not here["von_mises"].isnull().any():
-                row: dict[str, Any] = {"segment": str(name), "x": float(place)}
-                for kind in ("von_mises", "von_mises_patch"):
-                    values = here[kind].values
-                    row[kind] = [float(f"{values[part].max():.4g}") for part in parts]
-                rows.append(row)
-    middles = [float(time[part].mean()) for part in parts]
-    return {"time": middles, "places": rows}
+                largest = (
+                    [float(f"{here[kind].values[part].max():.4g}") for part in parts]
+                    for kind in ("von_mises", "von_mises_patch")
+                )
+                rows.append(PlaceHistory(str(name), float(place), *largest))
+    return StressHistory([float(time[part].mean()) for part in parts], rows)
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from geometry.mesh import SegmentMesh
+from shell_model.stress.summary import WallForces
 
 Array = npt.NDArray[np.float64]
 Modes = npt.NDArray[np.float32]
@@ -209,22 +210,6 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
     """(num_triangles,) in m²."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
-
-
-class WallForces(NamedTuple):
-    """What one wall carries through a cross-section, at the side towards the tip.
-
-    Args:
-        axial: force along x in N, positive in tension.
-        shear: force in the wall's plane in N, along y in a flange and along z in a web or in any
-            wall steeper than 45°, of the part beyond the section on the part before it.
-        moment: of its axial stresses about the section's y-axis in N m, positive where they pull
-            at the top.
-    """
-
-    axial: float
-    shear: float
-    moment: float
 
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:

@@ -53,7 +53,7 @@ def test_a_changed_case_is_that_of_a_changed_file(example: ModuleType, tmp_path:
     expected = pt.run_case(pt.load_case(file), models=["kantorovich-5"])
     found = example.run(0.007)
     np.testing.assert_array_equal(found.trajectories["tip"], expected.trajectories["tip"])
-    assert found.summary["models"]["kantorovich-5"]["first_contact"] < 0.1
+    assert found.summary.models["kantorovich-5"].first_contact < 0.1
 
 
 @of("boom_in_python")

@@ -15,6 +15,7 @@ from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.pipeline.results import Results
 from runs.report.verdict import Verdict
+from tests.runs.summaries import model_summary, summary_of
 
 PAPER = CASES / "paper.toml"
 FIRST_CONTACT = 0.12
@@ -77,16 +78,16 @@ def verdicts(
     models = {}
     for name in motion:
         trajectory = Trajectory(data.sel(model=name), np.zeros((0, 0)))
-        models[name] = {
+        found: dict[str, Any] = {
             "first_contact": FIRST_CONTACT,
             "first_peak": {place: trajectory.first_peak(place) for place in ("tip", "head")},
-            "steps": 2_400_000,
-            "contact_changes": 2400,
             "energy_residual": 1.0e-4,
-            "ensemble": {"horizons": {"0.01": 0.8, "0.2": 3.2}},
-            **(summary or {}).get(name, {}),
-        }
-    whole = {"models": models, "ensemble": {"slow_below": 1.67}}
+            "ensemble": {
+                "horizons": {"0.01": 0.8, "0.2": 3.2}, "energy_residual": 1e-4, "slow_peaks": None,
+            },
+        }  # fmt: skip
+        models[name] = model_summary(**found | dict((summary or {}).get(name, {})))
+    whole = summary_of(models, ensemble={"members": 32, "slow_below": 1.67})
     return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
 
 

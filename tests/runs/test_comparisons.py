@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -71,35 +69,33 @@ def test_a_model_that_is_late_and_low_is_so_at_each_level() -> None:
         for name, scale, shift in (("kantorovich-4", 0.5, 0.05), ("kantorovich-5", 1.0, 0.0))
     }
     data = trajectories(kantorovich_4=members["kantorovich-4"][0], kantorovich_5=swing())
-    summary = {"ensemble": {"slow_below": CUTOFF}}
-    found = compare_models(case_of(*SERIES), data, ensembles(members), summary)
+    found = compare_models(case_of(*SERIES), data, ensembles(members), CUTOFF)
     assert found is not None
-    assert found["reference"] == "kantorovich-5"
-    assert "whole" not in found
-    (level,) = found["ensembles"].values()
-    json.dumps(found, allow_nan=False)
-    assert level["pointwise"]["until"] == pytest.approx(4.0, abs=2e-3)
+    assert found.reference == "kantorovich-5"
+    assert not found.whole
+    (level,) = found.ensembles.values()
+    assert level.pointwise.until == pytest.approx(4.0, abs=2e-3)
     apart = np.abs(members["kantorovich-4"][0] - swing())[TIME <= 4.0]
-    assert level["pointwise"]["largest"] == pytest.approx(apart.max(), rel=1e-6)
-    assert level["pointwise"]["rms"] == pytest.approx(np.sqrt(np.mean(apart**2)), rel=1e-3)
+    assert level.pointwise.largest == pytest.approx(apart.max(), rel=1e-6)
+    assert level.pointwise.rms == pytest.approx(np.sqrt(np.mean(apart**2)), rel=1e-3)
     # The filter leans on the jump at 4 s: the first two peaks are far from it.
-    assert level["peaks"]["time"][:2] == pytest.approx([0.05, 0.05], abs=5e-3)
-    assert level["peaks"]["height"][:2] == pytest.approx([-0.5, -0.5], abs=1e-2)
-    assert level["peaks"]["explained"][:2] == [False, False]
-    spread = level["distributions"]
-    assert spread["range"] == pytest.approx([1.0, 0.5], rel=1e-3)
-    assert spread["mean"] == pytest.approx([0.5, 0.25], abs=1e-2)
-    assert spread["deviation"] == pytest.approx([0.5 / np.sqrt(2.0), 0.25 / np.sqrt(2.0)], rel=0.02)
+    assert level.peaks.time[:2] == pytest.approx([0.05, 0.05], abs=5e-3)
+    assert level.peaks.height[:2] == pytest.approx([-0.5, -0.5], abs=1e-2)
+    assert level.peaks.explained[:2] == [False, False]
+    spread = level.distributions
+    assert spread.range == pytest.approx([1.0, 0.5], rel=1e-3)
+    assert spread.mean == pytest.approx([0.5, 0.25], abs=1e-2)
+    assert spread.deviation == pytest.approx([0.5 / np.sqrt(2.0), 0.25 / np.sqrt(2.0)], rel=0.02)
     # All values of the half are below 0.5: half of the whole one's are.
-    assert spread["distance"] == pytest.approx(0.5, abs=0.02)
+    assert spread.distance == pytest.approx(0.5, abs=0.02)
 
 
 def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
     members = ensembles({name: [swing(), swing()] for name in SERIES})
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     case = case_of(*SERIES)
-    assert compare_models(case, data, members, {"ensemble": {"slow_below": None}}) is None
-    assert compare_models(case, data, None, {}) is None
+    assert compare_models(case, data, members, None) is None
+    assert compare_models(case, data, None, None) is None
 
 
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
@@ -108,28 +104,27 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
     data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_tied=0.1 * swing())
     case = case_of(*SERIES, "beam-fe-tied", friction=0.2)
     assert rubs(case)
-    found = compare_models(case, data, None, {})
+    found = compare_models(case, data, None, None)
     assert found is not None
-    assert list(found["whole"]) == ["kantorovich-4", "beam-fe-tied"]
-    whole = found["whole"]["kantorovich-4"]
-    assert whole["until"] == [5.0, 10.0]
-    assert whole["largest"] == pytest.approx([0.1, 0.3 / 1.2], rel=1e-2)
-    assert whole["rms"] == pytest.approx([0.1, np.sqrt(0.5 * (0.1**2 + 0.3**2)) / 1.2], rel=1e-2)
-    assert found["whole"]["beam-fe-tied"]["largest"] == pytest.approx([0.9, 0.9], rel=1e-6)
+    assert list(found.whole) == ["kantorovich-4", "beam-fe-tied"]
+    whole = found.whole["kantorovich-4"]
+    assert whole.until == [5.0, 10.0]
+    assert whole.largest == pytest.approx([0.1, 0.3 / 1.2], rel=1e-2)
+    assert whole.rms == pytest.approx([0.1, np.sqrt(0.5 * (0.1**2 + 0.3**2)) / 1.2], rel=1e-2)
+    assert found.whole["beam-fe-tied"].largest == pytest.approx([0.9, 0.9], rel=1e-6)
 
 
 def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:
     data = trajectories(kantorovich_4=0.9 * swing(), kantorovich_5=swing())
     case = case_of(*SERIES, friction=0.2)
-    found = compare_models(case, data.sel(time=slice(None, 2.0)), None, {})
+    found = compare_models(case, data.sel(time=slice(None, 2.0)), None, None)
     assert found is not None
-    assert found["whole"]["kantorovich-4"]["until"] == [2.0]
-    assert found["whole"]["kantorovich-4"]["largest"] == pytest.approx([0.1], rel=1e-6)
+    assert found.whole["kantorovich-4"].until == [2.0]
+    assert found.whole["kantorovich-4"].largest == pytest.approx([0.1], rel=1e-6)
 
 
 def test_a_model_alone_is_compared_with_nothing() -> None:
     members = ensembles({"kantorovich-4": [swing(), swing()]})
     data = trajectories(kantorovich_4=swing())
-    summary = {"ensemble": {"slow_below": CUTOFF}}
     case = case_of("kantorovich-4", friction=0.2)
-    assert compare_models(case, data, members, summary) is None
+    assert compare_models(case, data, members, CUTOFF) is None

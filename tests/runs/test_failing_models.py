@@ -64,7 +64,7 @@ def test_the_others_are_written_and_it_is_told(capsys: pytest.CaptureFixture[str
     assert "failed: kantorovich-4: the energy residual is " in out
     results = Results.load(Path("out"))
     assert results.trajectories["model"].values.tolist() == ["kantorovich-5"]
-    why = results.summary["failures"]["kantorovich-4"]
+    why = results.summary.failures["kantorovich-4"]
     first = judge(results)[0]
     assert (first.id, first.verdict) == ("S1", "undecided")
     assert first.why == f"'kantorovich-4' failed: {why}."

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
-from dynamics.predictability.low_pass import slow_peaks
+from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
@@ -35,17 +35,14 @@ def five_terms() -> tuple[GapSystem, float]:
     return build(case, boom, model).system, cutoff
 
 
-def peaks_of(system: GapSystem, cutoff: float, spread: float) -> dict[str, Any]:
+def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
     """Slow peaks of one run as those of an ensemble."""
     run = integrate(Motion(system, 4.0, STEP))
     times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
-    return {
-        "time": times.tolist(),
-        "time_spread": np.full(times.size, spread).tolist(),
-        "height": heights.tolist(),
-        "height_spread": (spread * heights).tolist(),
-        "period": float(np.diff(times).mean()),
-    }
+    period = float(np.diff(times).mean())
+    return SlowPeaks(
+        times, np.full(times.size, spread), heights, spread * heights, period, period_spread=0.0
+    )
 
 
 def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
@@ -53,29 +50,28 @@ def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, 
     system, cutoff = five_terms
     found = steps_for_peaks(Motion(system, 4.0, STEP), peaks_of(system, cutoff, 0.1), cutoff)
     assert found is not None
-    assert {trial["integrator"] for trial in found["trials"]} == {"splitting", "events"}
+    assert {trial.integrator for trial in found.trials} == {"splitting", "events"}
     for integrator in ("splitting", "events"):
-        steps = [t["steps"] for t in found["trials"] if t["integrator"] == integrator]
+        steps = [t.steps for t in found.trials if t.integrator == integrator]
         # One run more or less of a chaotic motion counts some contacts more or less.
         assert min(steps) < 0.9 * steps[0]
-    sizes = [trial["step"] for trial in found["trials"] if trial["integrator"] == "splitting"]
+    sizes = [trial.step for trial in found.trials if trial.integrator == "splitting"]
     assert sizes == pytest.approx([2.0**i * sizes[0] for i in range(len(sizes))], rel=0.1)
-    holding = [trial["steps"] for trial in found["trials"] if trial["holds"]]
-    assert found["fewest"] == min(holding)
-    assert 2000 < found["fewest"] < 20_000
+    holding = [trial.steps for trial in found.trials if trial.holds]
+    assert found.fewest == min(holding)
+    assert 2000 < found.fewest < 20_000
 
 
 def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, float]) -> None:
     system, cutoff = five_terms
     peaks = peaks_of(system, cutoff, 0.0)
-    peaks["height"] = [1.05 * height for height in peaks["height"]]
+    peaks = replace(peaks, heights=1.05 * peaks.heights)
     found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
     assert found is not None
-    assert found["fewest"] is None
+    assert found.fewest is None
 
 
 def test_too_few_peaks_are_not_asked_for(five_terms: tuple[GapSystem, float]) -> None:
     system, cutoff = five_terms
-    two = {"time": [0.5, 1.6]}
-    assert len(two["time"]) < PEAKS
+    two = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
     assert steps_for_peaks(Motion(system, 4.0, STEP), two, cutoff) is None

@@ -25,6 +25,7 @@ from runs.report.energy_figures import energies, residuals
 from runs.report.figure_context import Figure, Pen, new_sheet
 from runs.report.figures import draw
 from runs.report.horizon_figures import horizons
+from tests.runs.summaries import changed
 
 pytestmark = pytest.mark.slow
 
@@ -170,7 +171,7 @@ def test_one_colour_per_model_in_all_figures(
     for stem in ("tip", "tip-close-up", "head", "contact-first", "contact-peaks"):
         for axes in sheets[stem].axes:
             for line in axes.get_lines():
-                if str(line.get_label()) in results.summary["models"]:
+                if str(line.get_label()) in results.summary.models:
                     colours.setdefault(str(line.get_label()), set()).add(str(line.get_color()))
     assert set(colours) == {*WITH_PLAY, "beam-fe-tied"}
     assert all(len(shades) == 1 for shades in colours.values())
@@ -185,12 +186,12 @@ def test_close_up_marks_first_contacts_and_peaks(
     for line in sheets["tip-close-up"].axes[0].get_lines():
         if line.get_marker() in marks and np.size(line.get_xdata()):
             marks[line.get_marker()].add(float(np.asarray(line.get_xdata())[0]))
-    models = results.summary["models"]
-    assert marks["o"] == {models[name]["first_contact"] for name in WITH_PLAY}
-    peaks = {model["first_peak"]["tip"][0] for model in models.values()} - {None}
+    models = results.summary.models
+    assert marks["o"] == {models[name].first_contact for name in WITH_PLAY}
+    peaks = {model.first_peak["tip"].time for model in models.values()} - {None}
     assert peaks
     assert marks["v"] == peaks
-    peakless = [name for name, model in models.items() if model["first_peak"]["tip"][0] is None]
+    peakless = [name for name, model in models.items() if model.first_peak["tip"].time is None]
     assert peakless
     assert figure.caption.endswith(f" No peak within 0.6 s: {', '.join(peakless)}.")
 
@@ -352,13 +353,10 @@ def test_horizons_are_drawn_where_they_are_measured(
         "times": [[1.5, 6.0], [1.0, None]],
         "of_step": [1.2, None],
         "rate": [27.6, None],
+        "step_change": None,
         "limits": ["step", "physics"],
     }
-    models = results.summary["models"]
-    summary = results.summary | {
-        "models": models | {"beam-fe": models["beam-fe"] | {"horizons": measured}}
-    }
-    draw_some(horizons, replace(results, summary=summary), tmp_path)
+    draw_some(horizons, changed(results, "beam-fe", horizons=measured), tmp_path)
     (axes,) = sheets["horizons"].axes
     points = [np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_xydata().size]
     first, of_step, last = points

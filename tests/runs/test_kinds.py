@@ -31,11 +31,11 @@ def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
     path.write_text(text, encoding="utf-8")
     finished = run_case(case_file.load(str(path)), "", None, tmp_path, lambda *_: None)
     assert finished is not None
-    summary = finished.results.summary["models"]["bodies"]
-    assert (summary["kind"], summary["degrees_of_freedom"]) == ("rigid", 2)
-    assert summary["energy_residual"] < 1e-5
+    summary = finished.results.summary.models["bodies"]
+    assert (summary.kind, summary.degrees_of_freedom) == ("rigid", 2)
+    assert summary.energy_residual < 1e-5
     # A uniform load on a free body turns it nowhere.
-    assert summary["first_contact"] == pytest.approx(np.sqrt(2.0 * 7.0e-3 / 1.0), abs=1e-5)
+    assert summary.first_contact == pytest.approx(np.sqrt(2.0 * 7.0e-3 / 1.0), abs=1e-5)
 
 
 def test_rigid_segments_that_cannot_move_are_refused(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from runs.pipeline.results import Results
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.tables import TextTable
+from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 COARSE = CASES / "coarse.toml"
 MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")
@@ -24,31 +25,15 @@ def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> R
     case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
     joints = tuple(joint.model_copy(update={"friction": friction}) for joint in case.joints)
     time = case.time.model_copy(update={"duration": 10.0})
-    model = {
-        "kind": "kantorovich",
-        "degrees_of_freedom": 4,
-        "modes": 4,
-        "step": 4.2e-6,
-        "steps": 2_380_952,
-        "contact_changes": 2020,
-        "first_contact": 0.11856,
-        "first_peak": {"tip": [0.554, 0.16888]},
-        "peak_contact_force": 441_005.9,
-        "energy_residual": 5.6e-5,
-        "seconds": {"build": 0.1, "motion": 0.2},
-    }
-    models = {name: dict(model) for name in MODELS}
-    models["kantorovich-4"] |= changes
-    summary = {
-        "models": models,
-        "ensemble": {"members": 32, "relative": 1e-9, "vary": "load", "slow_below": 1.67},
-        "comparisons": comparisons,
-    }
+    models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
+    asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
+    summary = summary_of(models, ensemble=asked, comparisons=comparisons)
     case = case.model_copy(update={"time": time, "joints": joints})
     return Results(case, xr.Dataset(), summary)
 
 
 ENSEMBLE = {
+    "energy_residual": 1e-4,
     "horizons": {"0.01": 0.802, "0.2": None},
     "slow_peaks": {
         "time": [0.5469, 1.5906],
@@ -82,6 +67,7 @@ MEASURED = {
     "times": [[1.5, 6.0], [1.0, None]],
     "of_step": [1.2, None],
     "rate": [27.63, None],
+    "step_change": None,
     "limits": ["step", "physics"],
 }
 
@@ -158,8 +144,7 @@ def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
                              "2\N{NO-BREAK SPACE}020")  # fmt: skip
     assert statements(plain) == ("S10",)
     assert statements(step_table(results(friction=0.2))) == ("S8", "S10")
-    needed = {"peaks": 3, "within": 0.01, "fewest": 1500}
-    more = step_table(results(steps_for_peaks=needed, step_halving=0.0123))
+    more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_halving=0.0123))
     assert [row[-2:] for row in more.rows] == [
         ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
     ]  # fmt: skip

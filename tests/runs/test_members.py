@@ -20,6 +20,7 @@ from runs.case.schema import Case, EnsembleTable
 from runs.pipeline.members import slow_below
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
+from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 
@@ -73,18 +74,20 @@ def test_member_0_is_the_trajectory(run: Run) -> None:
 
 def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
     """Reference: non-regression; the first press parts members within a second."""
-    models = run.results.summary["models"]
-    assert "ensemble" not in models["beam-fe-tied"]
+    models = run.results.summary.models
+    assert models["beam-fe-tied"].ensemble is None
     for name in SERIES:
-        ensemble = models[name]["ensemble"]
-        assert 0.5 < ensemble["horizons"]["0.01"] < 1.5
-        peaks = ensemble["slow_peaks"]
-        assert 0.5 < peaks["time"][0] < 0.6
-        assert 0.14 < peaks["height"][0] < 0.17
-        assert peaks["height_spread"][0] < peaks["height_spread"][1] < 0.05
-        assert 0.9 < peaks["period"] < 1.2
-        assert models[name]["seconds"]["ensemble"] > 0.0
-    json.dumps(run.results.summary, allow_nan=False)
+        ensemble = models[name].ensemble
+        assert ensemble is not None
+        assert 0.5 < (ensemble.horizon(0.01) or 0.0) < 1.5
+        peaks = ensemble.slow_peaks
+        assert peaks is not None
+        assert 0.5 < peaks.time[0] < 0.6
+        assert 0.14 < peaks.height[0] < 0.17
+        assert peaks.height_spread[0] < peaks.height_spread[1] < 0.05
+        assert 0.9 < (peaks.period or 0.0) < 1.2
+        assert models[name].seconds["ensemble"] > 0.0
+    assert json.loads(str(run.results.summary))["models"].keys() == models.keys()
 
 
 def test_progress_of_the_ensembles_is_told(run: Run, told: list[tuple[str, str, float]]) -> None:
@@ -123,7 +126,7 @@ def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
     assert run.results.ensembles is not None
     xr.testing.assert_equal(results.ensembles, run.results.ensembles)
     assert results.ensembles["tip"].attrs["units"] == "m"
-    assert results.ensembles.attrs["case_hash"] == results.summary["case_hash"]
+    assert results.ensembles.attrs["case_hash"] == results.summary.case_hash
     assert results.case.ensemble == run.results.case.ensemble
 
 
@@ -164,9 +167,14 @@ def test_figures_have_bands_and_horizons(
             for line in axes.get_lines()
             if len(np.asarray(line.get_xdata())) == 2
         }
-        horizons = [run.results.summary["models"][n]["ensemble"]["horizons"] for n in SERIES]
+        horizons = [ensembles_of(run)[n].horizons for n in SERIES]
         assert marks == {t for h in horizons for t in h.values() if t is not None}
         assert marks
+
+
+def ensembles_of(run: Run) -> dict[str, EnsembleSummary]:
+    models = run.results.summary.models.items()
+    return {name: model.ensemble for name, model in models if model.ensemble}
 
 
 def test_slow_peaks_are_drawn_with_their_spreads(
@@ -180,29 +188,31 @@ def test_slow_peaks_are_drawn_with_their_spreads(
     assert tuple(known["slow-peaks"].statements) == ("S2", "S3")
     (axes,) = sheets["slow-peaks"].axes
     for name, container in zip(SERIES, axes.containers, strict=True):
-        peaks = run.results.summary["models"][name]["ensemble"]["slow_peaks"]
+        peaks = ensembles_of(run)[name].slow_peaks
+        assert peaks is not None
         points, _, (across, along) = container.lines
         drawn = np.asarray(points.get_xydata(), dtype=float)
-        np.testing.assert_allclose(drawn[:, 0], peaks["time"])
-        np.testing.assert_allclose(drawn[:, 1], 1000.0 * np.array(peaks["height"]))
+        np.testing.assert_allclose(drawn[:, 0], peaks.time)
+        np.testing.assert_allclose(drawn[:, 1], 1000.0 * np.array(peaks.height))
         widths = [np.ptp(segment[:, 0]) for segment in across.get_segments()]
         heights = [np.ptp(segment[:, 1]) for segment in along.get_segments()]
-        np.testing.assert_allclose(widths, 2.0 * np.array(peaks["time_spread"]), atol=1e-9)
-        np.testing.assert_allclose(heights, 2000.0 * np.array(peaks["height_spread"]), atol=1e-9)
+        np.testing.assert_allclose(widths, 2.0 * np.array(peaks.time_spread), atol=1e-9)
+        np.testing.assert_allclose(heights, 2000.0 * np.array(peaks.height_spread), atol=1e-9)
 
 
 def test_models_are_compared_in_the_summary(run: Run) -> None:
     """Reference: the series' slow peaks in the same summary."""
-    found = run.results.summary["comparisons"]
-    assert found["reference"] == "kantorovich-5"
-    assert list(found["ensembles"]) == ["kantorovich-4"]
-    level = found["ensembles"]["kantorovich-4"]
-    four, five = (run.results.summary["models"][name]["ensemble"] for name in SERIES)
-    until = min(ensemble["horizons"]["0.01"] for ensemble in (four, five))
-    assert level["pointwise"]["until"] == pytest.approx(until, abs=2e-3)
-    count = len(level["peaks"]["time"])
-    apart = np.subtract(four["slow_peaks"]["time"][:count], five["slow_peaks"]["time"][:count])
-    np.testing.assert_allclose(level["peaks"]["time"], apart, atol=1e-3)
+    found = run.results.summary.comparisons
+    assert found is not None
+    assert found.reference == "kantorovich-5"
+    assert list(found.ensembles) == ["kantorovich-4"]
+    level = found.ensembles["kantorovich-4"]
+    four, five = (ensembles_of(run)[name] for name in SERIES)
+    until = min(ensemble.horizons["0.01"] for ensemble in (four, five))
+    assert level.pointwise.until == pytest.approx(until, abs=2e-3)
+    count = len(level.peaks.time)
+    apart = np.subtract(four.slow_peaks.time[:count], five.slow_peaks.time[:count])
+    np.testing.assert_allclose(level.peaks.time, apart, atol=1e-3)
 
 
 @pytest.mark.parametrize(

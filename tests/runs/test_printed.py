@@ -16,6 +16,7 @@ from runs.paper.verdict_table import decisive, print_verdicts
 from runs.pipeline.results import Results
 from runs.report.printed import print_models
 from runs.report.verdict import Judgement, Verdict
+from tests.runs.summaries import model_summary, summary_of
 
 
 def judged(case: str, **judgements: Judgement) -> list[Verdict]:
@@ -71,10 +72,9 @@ def test_runs_that_are_not_judged_show_no_table() -> None:
 
 def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPatch) -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
-    shell = {"modes": 110, "reduction_errors": errors, "mesh_error": 0.0083}
-    summary = {"models": {"shell": shell}}
+    shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = case_file.load(str(CASES / "paper.toml"))
-    results = Results(case, xr.Dataset(), summary)
+    results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
     monkeypatch.setattr("runs.report.printed.model_rows", lambda results: [])
     monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)

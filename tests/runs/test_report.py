@@ -22,10 +22,12 @@ from runs.paper.statements import STATEMENTS
 from runs.paper.verdict_table import print_verdicts
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
+from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.printed import print_models
 from runs.report.tables import TextTable
+from tests.runs.summaries import changed
 
 COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
@@ -77,6 +79,11 @@ def printed(results: Results, width: int = 100) -> str:
     return console.file.getvalue()
 
 
+def skipping(results: Results, why: str) -> Summary:
+    """The summary of a run without snapshots."""
+    return results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=why)})
+
+
 def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
     page = Page(render(results, judge(results), figures, []))
     for verdict in judge(results):
@@ -91,12 +98,12 @@ def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> N
 def test_shows_every_model_and_where_it_comes_from(results: Results, figures: list[Figure]) -> None:
     page = Page(render(results, judge(results), figures, []))
     cells = re.sub(r"\s+", " ", page.text)
-    for name, model in results.summary["models"].items():
-        assert f"{name} {model['kind']}" in cells
-    contact = results.summary["models"]["kantorovich-4"]["first_contact"]
+    for name, model in results.summary.models.items():
+        assert f"{name} {model.kind}" in cells
+    contact = results.summary.models["kantorovich-4"].first_contact
     assert f"{contact:.4f}" in cells
-    assert results.summary["case_hash"] in page.text
-    assert results.summary["versions"]["numpy"] in page.text
+    assert results.summary.case_hash in page.text
+    assert results.summary.versions["numpy"] in page.text
     assert toml.dumps(results.case) in page.text
 
 
@@ -151,9 +158,7 @@ def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]
 
 def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
     """Reference: the summary; the run ends before the first peak of the series."""
-    peaks = {
-        name: model["first_peak"]["tip"][1] for name, model in results.summary["models"].items()
-    }
+    peaks = {name: model.first_peak["tip"].height for name, model in results.summary.models.items()}
     assert (peaks["kantorovich-4"], peaks["beam-fe-tied"]) == (
         None,
         pytest.approx(0.0193, rel=0.01),
@@ -189,7 +194,7 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     attack = "<script>alert('x')</script> & \"so\""
     case = results.case.model_copy(update={"title": attack})
     verdicts = [replace(verdict, why=attack) for verdict in judge(results)]
-    summary = results.summary | {"snapshots": {"written": [], "skipped": attack}}
+    summary = skipping(results, attack)
     page = Page(render(replace(results, case=case, summary=summary), verdicts, figures, []))
     assert not page.all("script")
     assert page.text.count(attack) == 2 + len(verdicts) + 1  # title, heading; whys; snapshots
@@ -199,7 +204,7 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
 def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]) -> None:
     assert "Snapshots" not in Page(render(results, judge(results), figures, [])).text
     reason = "no GL here"
-    summary = results.summary | {"snapshots": {"written": [], "skipped": reason}}
+    summary = skipping(results, reason)
     page = Page(render(replace(results, summary=summary), judge(results), figures, []))
     assert f"Skipped: {reason}" in page.text
 
@@ -222,9 +227,9 @@ def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> 
 
 def test_terminal_shows_both_tables(results: Results) -> None:
     text = printed(results)
-    for name, model in results.summary["models"].items():
+    for name, model in results.summary.models.items():
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [name]]
-        assert line.split()[1] == str(model["degrees_of_freedom"])
+        assert line.split()[1] == str(model.degrees_of_freedom)
     for verdict in judge(results):
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [verdict.id]]
         assert line.split()[1] == verdict.verdict
@@ -260,9 +265,7 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     for error, cautions in ((0.009, []), (0.93, [name])):
         errors = {"contact_compliance": error, "readings": 0.0}
-        model = {**results.summary["models"][name], "modes": 6, "reduction_errors": errors}
-        models = {**results.summary["models"], name: model}
-        poor = replace(results, summary={**results.summary, "models": models})
+        poor = changed(results, name, modes=6, reduction_errors=errors)
         assert poor.cautions() == [
             f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow "
             "more modes, or --modes auto"
@@ -273,10 +276,8 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
 def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     errors = {"contact_compliance": 2.4e-9, "readings": 0.013, "frequency_limit_in_hz": 84.6}
-    model = {**results.summary["models"][name], "reduction_errors": errors, "mesh_error": 0.26}
-    model["seconds"] = {"reduction": 1.204}
-    models = {**results.summary["models"], name: model}
-    page = render(replace(results, summary={**results.summary, "models": models}), [], [], [])
+    shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
+    page = render(changed(results, name, **shell), [], [], [])
     assert (
         "reduction 1.20 s, contact compliance of the reduction within 2.4 × 10⁻⁹, readings of the "
         "reduction within 0.013, its modes right up to 85 Hz, local compliance of the mesh within "
@@ -287,9 +288,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
 def test_cautions_against_a_poor_mesh(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     for error, cautions in ((0.009, []), (0.34, [name]), (None, [])):
-        model = {**results.summary["models"][name], "mesh_error": error}
-        models = {**results.summary["models"], name: model}
-        poor = replace(results, summary={**results.summary, "models": models})
+        poor = changed(results, name, mesh_error=error)
         assert poor.cautions() == [
             f"caution: the mesh of {name} errs by 34 % of what the walls give way where the "
             "segments touch; give a smaller mesh_size"

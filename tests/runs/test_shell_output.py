@@ -49,5 +49,5 @@ def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
     }
     assert {name: fields[name].values.tolist() for name in expected} == expected
     assert left.stresses["place"].values.tolist() == [0.0, 2.0, 9.0, 9.5, 10.0]
-    assert left.summary["von_mises"] == 0.0
+    assert left.largest.von_mises == 0.0
     assert set(left.meshes) == {"outer", "inner"}

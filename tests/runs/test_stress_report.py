@@ -18,6 +18,7 @@ from runs.report import theme
 from runs.report.figure_context import Pen
 from runs.report.stress_figures import stress_history
 from runs.report.stress_tables import wall_table
+from tests.runs.summaries import model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"
 STRESS: dict[str, Any] = {
@@ -55,8 +56,8 @@ def results(stress: dict[str, Any] | None) -> Results:
         {"tip": (("model", "time"), np.zeros((1, 601)))},
         coords={"model": ["shell"], "time": np.arange(601) / 1000},
     )
-    summary = {"models": {"shell": {} if stress is None else {"stress": stress}}}
-    return Results(case, data, summary)
+    changes = {} if stress is None else {"stress": stress}
+    return Results(case, data, summary_of({"shell": model_summary(**changes)}))
 
 
 def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:

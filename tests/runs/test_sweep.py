@@ -255,7 +255,7 @@ def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> N
         case = case_file.select(case_file.load("single.toml"), "", FAST)
         single = run_case(case, "", None, tmp_path, lambda *_: None)
         assert single is not None
-        for name, summary in single.results.summary["models"].items():
+        for name, summary in single.results.summary.models.items():
             there = data.sel({"joint.play": play, "model": name})
             tip = single.results.trajectories["tip"].sel(model=name).values
             assert float(there["tip_amplitude"]) == 0.5 * (tip.max() - tip.min()) > 0.0
@@ -263,7 +263,7 @@ def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> N
             lower = measure(replace(single.results, trajectories=sagging), name)
             assert lower["tip_amplitude"] == pytest.approx(float(there["tip_amplitude"]), rel=1e-12)
             for key in ("peak_contact_force", "first_contact", "energy_residual"):
-                expected = math.nan if summary[key] is None else summary[key]
+                expected = math.nan if getattr(summary, key) is None else getattr(summary, key)
                 assert float(there[key]) == pytest.approx(expected, rel=1e-12, nan_ok=True)
 
 

@@ -29,6 +29,7 @@ from tests.runs.paper_curves import (
     swing,
     verdicts,
 )
+from tests.runs.summaries import steps_for_peaks
 
 
 @pytest.fixture
@@ -333,7 +334,7 @@ def test_s10_counts_the_steps_that_the_peaks_need(
     case: Case, series: int, elements: int, expected: str
 ) -> None:
     needed = {"kantorovich-4": 1000, "kantorovich-5": series, "beam-fe": elements}
-    summary = {name: {"steps_for_peaks": {"fewest": steps}} for name, steps in needed.items()}
+    summary = {name: {"steps_for_peaks": steps_for_peaks(steps)} for name, steps in needed.items()}
     verdict = verdicts(case, curves(), summary)["S10"]
     assert (verdict.verdict, verdict.measured) == (expected, series)
 

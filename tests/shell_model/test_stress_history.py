@@ -70,13 +70,12 @@ def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
     """With a band it is the spot; without, what all triangles have at some instants."""
     found = sum_up(shell, near_places(shell, places, ["box"]))
     if not places:
-        assert found["von_mises"] == pytest.approx(1.0e6, rel=1e-3)
-        assert found["patch"] is None
+        assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)
+        assert found.patch is None
         return
-    assert found["time"] == pytest.approx(0.701)
-    assert (found["segment"], found["wall"], found["face"]) == ("box", "top", "outer")
-    assert found["x"] == pytest.approx(3.05, abs=0.05)
-    history = found["history"]
-    assert len(history["time"]) == 80
-    spotted = next(row for row in history["places"] if row["x"] == 3.0)
-    assert max(spotted["von_mises"]) == pytest.approx(found["von_mises"], rel=1e-3)
+    assert found.time == pytest.approx(0.701)
+    assert (found.segment, found.wall, found.face) == ("box", "top", "outer")
+    assert found.x == pytest.approx(3.05, abs=0.05)
+    assert len(found.history.time) == 80
+    spotted = next(row for row in found.history.places if row.x == 3.0)
+    assert max(spotted.von_mises) == pytest.approx(found.von_mises, rel=1e-3)

@@ -37,9 +37,9 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     assert all(figure.path.stat().st_size > 10_000 for figure in figures)
     assert case.title in page
     assert ("First peaks of the tip in space" in page) == (name == "spatial")
-    models = results.summary["models"]
+    models = results.summary.models
     assert list(models) == [model.name for model in case.models]
-    assert max(model["energy_residual"] for model in models.values()) < 1e-3
+    assert max(model.energy_residual for model in models.values()) < 1e-3
     with_play = [
         str(model) for model in results.trajectories["model"].values if model[-4:] != "tied"
     ]

@@ -163,6 +163,20 @@ def test_a_time_outside_the_run_is_one_line(
     )
 
 
+def test_fields_of_another_version_are_one_line(
+    whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: a folder whose fields do not name their plates, as those of a version."""
+    again = tmp_path / "out"
+    shutil.copytree(whole, again)
+    fields = xr.load_dataset(again / "fields.nc", engine="scipy")
+    fields.drop_vars("plate_1").to_netcdf(again / "fields.nc", engine="scipy")
+    assert protractile("snapshot", again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: fields.nc: cannot be understood ('plate_1'); run the case again\n"
+    )
+
+
 def test_a_run_without_opengl_says_so_and_goes_on(
     whole: Path,
     tmp_path: Path,

@@ -44,12 +44,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
     finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
     assert finished is not None
-    finished.results.summary["models"]["kantorovich-5"]["horizons"] = {
+    finished.results.summary.models["kantorovich-5"].horizons = {
         "relatives": [1e-12, 1e-9, 1e-6, 1e-3],
         "shares": [0.01, 0.2],
         "times": [[1.5, 1.9], [1.2, None], [0.9, None], [0.6, None]],
         "of_step": [1.3, None],
         "rate": [23.0, None],
+        "step_change": None,
         "limits": ["step", "physics"],
     }
     out = output.prepare(str(tmp_path_factory.mktemp("run") / "out"), "")

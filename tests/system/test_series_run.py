@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from hashlib import sha256
 from pathlib import Path
@@ -127,6 +128,23 @@ def test_a_damaged_folder_is_one_line(
     assert protractile("report", again) == 2
     assert capsys.readouterr().err == (
         f"protractile: {again}: {name}: missing; give the folder of a run that has finished\n"
+    )
+
+
+@pytest.mark.parametrize("command", ["report", "snapshot"])
+def test_a_summary_of_another_version_is_one_line(
+    series: Path, tmp_path: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: a folder as a version has written it that did not know one of today's keys."""
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    summary = json.loads((series / "summary.json").read_text(encoding="utf-8"))
+    del summary["models"]["kantorovich-5"]["refused_steps"]
+    (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    assert protractile(command, again) == 2
+    assert capsys.readouterr().err == (
+        f"protractile: {again}: summary.json: models: kantorovich-5: refused_steps: Field "
+        "required; is damaged or another version's; run the case again\n"
     )
 
 

@@ -17,6 +17,7 @@ from dynamics.trajectory import Trajectory
 from runs.folder import records
 from runs.folder.cache import Cache, Files, key
 from runs.folder.versions import program
+from runs.pipeline.summary import ModelSummary
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +25,7 @@ class Finished:
     """A motion that has ended; ``ensemble`` where the case asks for one."""
 
     trajectory: Trajectory
-    summary: dict[str, Any]
+    summary: ModelSummary
     ensemble: xr.Dataset | None
 
 

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a run says of itself and of each model: the content of ``summary.json``.
+
+Fields are the file's keys, in its order; SI units. A field that was never set has no key; one that
+is None stands in the file as null.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+
+from runs.case.schema import EnsembleTable
+from shell_model.stress.summary import StressSummary
+
+
+def _known(number: Any) -> Any:
+    return None if isinstance(number, float) and not math.isfinite(number) else number
+
+
+# A number, and None for NaN and infinity, which JSON does not have.
+Known = Annotated[float | None, BeforeValidator(_known)]
+
+
+class Entry(BaseModel):
+    """A table of the summary, which has no other keys than its own."""
+
+    model_config = ConfigDict(extra="forbid", validate_assignment=True)
+
+
+class Peak(NamedTuple):
+    """Time in s and height in m; None where there is no peak."""
+
+    time: Known
+    height: Known
+
+
+class CommonPeaks(Entry):
+    """Peaks of the slow motion that all members of an ensemble have.
+
+    Means in s and m, and half the distance between the members' extremes; ``period`` in s.
+    """
+
+    time: list[float]
+    time_spread: list[float]
+    height: list[float]
+    height_spread: list[float]
+    period: Known
+    period_spread: Known
+
+
+class EnsembleSummary(Entry):
+    """What a model's ensemble tells.
+
+    ``horizons`` has the time in s from which the members are a part of the tip's range apart, by
+    that part; ``energy_residual`` is the largest of all members.
+    """
+
+    horizons: dict[str, Known]
+    energy_residual: float
+    slow_peaks: CommonPeaks | None
+
+    def horizon(self, share: float) -> float | None:
+        """In s, for one of :data:`dynamics.predictability.horizon.SHARES`."""
+        return self.horizons[f"{share:g}"]
+
+
+class Growth(Entry):
+    """When changes of several sizes have grown to parts of the tip's range.
+
+    ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
+    ``limits`` (shares) as :class:`dynamics.predictability.horizon.Horizons` has them.
+    """
+
+    relatives: list[float]
+    shares: list[float]
+    times: list[list[Known]]
+    of_step: list[Known]
+    rate: list[Known]
+    step_change: Known
+    limits: list[str]
+
+
+class Trial(Entry):
+    """A motion in longer steps: ``step`` in s, and whether it keeps the slow peaks."""
+
+    integrator: str
+    step: float
+    steps: int
+    energy_residual: float
+    holds: bool
+
+
+class StepsForPeaks(Entry):
+    """How few steps keep so many slow peaks ``within`` a part; ``duration`` in s.
+
+    ``fewest`` is None where no trial holds.
+    """
+
+    peaks: int
+    within: float
+    duration: float
+    fewest: int | None
+    trials: list[Trial]
+
+
+class ModelSummary(Entry):
+    """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
+
+    ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_halving`` is what half the step
+    changes at the tip, as a part of its range; ``refused_steps`` says why steps were halved. The
+    last four are a shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N,
+    ``mesh_error`` as a part of it.
+    """
+
+    kind: str
+    degrees_of_freedom: int
+    modes: int
+    frequencies: list[float]
+    seconds: dict[str, float]
+    step: float
+    steps: int
+    first_contact: Known
+    contact_changes: int
+    energy_residual: float
+    first_peak: dict[str, Peak]
+    peak_contact_force: Known
+    step_halving: float | None = None
+    ensemble: EnsembleSummary | None = None
+    horizons: Growth | None = None
+    steps_for_peaks: StepsForPeaks | None = None
+    refused_steps: list[str]
+    reduction_errors: dict[str, Known] = {}
+    local_compliance: list[Known] = []
+    mesh_error: Known = None
+    stress: StressSummary | None = None
+
+
+class PointwiseLevel(Entry):
+    """The tip from moment to moment ``until`` a time in s; parts of its range."""
+
+    until: float
+    largest: float
+    rms: float
+
+
+class PeaksLevel(Entry):
+    """Slow peaks less those of the reference, in s and m, and whether spreads explain it."""
+
+    time: list[float]
+    time_spread: list[float]
+    height: list[float]
+    height_spread: list[float]
+    explained: list[bool]
+
+
+class DistributionsLevel(Entry):
+    """All values from a time in s on, of (reference, model) in m, and Kolmogorov's distance."""
+
+    since: Known
+    range: list[Known]
+    mean: list[Known]
+    deviation: list[Known]
+    distance: Known
+
+
+class Levels(Entry):
+    """Two ensembles compared, at three levels."""
+
+    pointwise: PointwiseLevel
+    peaks: PeaksLevel
+    distributions: DistributionsLevel
+
+
+class Whole(Entry):
+    """Two tips until several times in s, as parts of the larger range."""
+
+    until: list[float]
+    largest: list[Known]
+    rms: list[Known]
+
+
+class Comparisons(Entry):
+    """Each model against the reference, by its name; ``whole`` where segments rub."""
+
+    reference: str
+    ensembles: dict[str, Levels] = {}
+    whole: dict[str, Whole] = {}
+
+
+class Ensembles(EnsembleTable):
+    """What the case asks of ensembles, and the cut-off of the slow motion in Hz."""
+
+    slow_below: float | None
+
+
+class Snapshots(Entry):
+    """Names of the pictures, or why there are none."""
+
+    written: list[str]
+    skipped: str | None
+
+
+class Summary(Entry):
+    """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not."""
+
+    title: str
+    case_hash: str
+    versions: dict[str, str | None]
+    models: dict[str, ModelSummary]
+    failures: dict[str, str]
+    ensemble: Ensembles | None = None
+    comparisons: Comparisons | None = None
+    snapshots: Snapshots = Snapshots(written=[], skipped=None)
+
+    @classmethod
+    def load(cls, path: Path) -> Summary:
+        """Read a file.
+
+        Raises:
+            OSError, ValidationError: it cannot be read, or holds something else.
+        """
+        return cls.model_validate_json(path.read_bytes())
+
+    def __str__(self) -> str:
+        """The file's content."""
+        content = self.model_dump(exclude_unset=True)
+        return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Summaries of runs that nobody has made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from runs.pipeline.results import Results
+from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
+
+_MODEL = {
+    "kind": "kantorovich",
+    "degrees_of_freedom": 4,
+    "modes": 4,
+    "frequencies": [1.0],
+    "step": 4.2e-6,
+    "steps": 2_380_952,
+    "contact_changes": 2020,
+    "first_contact": 0.11856,
+    "first_peak": {"tip": [0.554, 0.16888]},
+    "peak_contact_force": 441_005.9,
+    "energy_residual": 5.6e-5,
+    "seconds": {"build": 0.1, "motion": 0.2},
+    "refused_steps": [],
+}
+
+
+def model_summary(**changes: Any) -> ModelSummary:
+    """A series', but for what is given as JSON has it."""
+    return ModelSummary.model_validate(_MODEL | changes)
+
+
+def steps_for_peaks(fewest: int | None) -> StepsForPeaks:
+    """So many steps keep three peaks."""
+    return StepsForPeaks(peaks=3, within=0.01, duration=4.0, fewest=fewest, trials=[])
+
+
+def summary_of(models: Mapping[str, ModelSummary], **more: Any) -> Summary:
+    """Of a run of these models."""
+    plain = {"title": "A boom", "case_hash": "", "versions": {}, "failures": {}}
+    return Summary.model_validate(plain | {"models": models} | more)
+
+
+def changed(results: Results, model: str, **changes: Any) -> Results:
+    """Results whose summary says something else of a model."""
+    summary = results.summary.model_copy(deep=True)
+    for name, value in changes.items():
+        setattr(summary.models[model], name, value)
+    return replace(results, summary=summary)

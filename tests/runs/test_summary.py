@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A summary is written as it was read, and says what it cannot be read for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pydantic import ValidationError
+
+from runs.folder.records import pack, unpack
+from runs.pipeline.summary import Summary
+from tests.runs.summaries import model_summary, summary_of
+
+# Of runs before summaries had types, all their keys among them.
+EARLIER = Path(__file__).parent / "data" / "summary.json"
+
+
+def content() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(EARLIER.read_text(encoding="utf-8"))
+    return found
+
+
+def test_keys_and_values_are_those_that_they_were() -> None:
+    """Reference: what was written before, to the last digit and in its order."""
+    text = json.dumps(content(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    assert str(Summary.load(EARLIER)) == text
+
+
+def test_a_summary_comes_back_from_a_cache() -> None:
+    """What was never set is not null afterwards."""
+    summary = Summary.load(EARLIER)
+    files = {name: memoryview(b"".join(parts)) for name, parts in pack(summary).items()}
+    assert str(unpack(files, Summary)) == str(summary)
+
+
+def test_what_is_no_number_is_null() -> None:
+    nan, infinite = float("nan"), float("inf")
+    model = model_summary(first_contact=nan, first_peak={"tip": (nan, nan)})
+    model.mesh_error = infinite
+    found = json.loads(str(summary_of({"boom": model})))["models"]["boom"]
+    assert (found["first_contact"], found["first_peak"]["tip"]) == (None, [None, None])
+    assert found["mesh_error"] is None
+    assert "step_halving" not in found
+
+
+@pytest.mark.parametrize(
+    ("model", "key", "wrong"),
+    [
+        ("shell", "steps", None),
+        ("shell", "kind", 3),
+        ("kantorovich-4", "ensemble", {}),
+        ("beam-fe-tied", "first_peak", {"tip": [1.0]}),
+        ("shell", "stress", {"von_mises": 1.0}),
+        ("shell", "colour", "red"),
+    ],
+)
+def test_another_version_s_is_refused(tmp_path: Path, model: str, key: str, wrong: Any) -> None:
+    other = content()
+    other["models"][model][key] = wrong
+    (tmp_path / "summary.json").write_text(json.dumps(other), encoding="utf-8")
+    with pytest.raises(ValidationError) as refused:
+        Summary.load(tmp_path / "summary.json")
+    assert refused.value.errors()[0]["loc"][:3] == ("models", model, key)
