@@ -12,7 +12,7 @@ import os
 import platform
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -40,14 +40,16 @@ from runs.benchmarks.generic_solvers import (
     generic,
     matched,
 )
-from runs.benchmarks.timing import NOISE, by_turns, shown
+from runs.benchmarks.timing import NOISE, by_turns, leave
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.pipeline.models import build, workshop
-from runs.report.tables import TextTable, wide_console, write
+from runs.report.tables import wide_console
+from runs.report.theme import repeated
+from runs.studies.study import Table
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")
@@ -133,98 +135,80 @@ def five_terms(case: Case) -> GapSystem:
     return build(case, build_boom(case), model).system
 
 
-def compare(
-    case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes
-) -> tuple[TextTable, dict[str, Any]]:
+def compare(case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes) -> Table:
     """Event-driven motion at a tolerance against generic solvers that leave no more energy."""
     system = five_terms(case)
     rates = {NUMPY: array_rates(system), COMPILED: compiled_rates(system)}
     stretch = {name: sizes.slow_duration if name in SLOW else sizes.duration for name in solvers}
+
+    def own(solver: str, tolerance: str, integrator: Integrator, duration: float) -> Method:
+        run = partial(integrator, Motion(system, duration, OUTPUT_STEP))
+        return Method(solver, "", tolerance, duration, run().energy_residual, run)
+
     methods = [
-        _own("event-driven", f"{tolerance:.1e}", Events(tolerance), system, duration)
+        own("event-driven", f"{tolerance:.1e}", Events(tolerance), duration)
         for duration in sorted(set(stretch.values()), reverse=True)
     ]
-    own = {method.duration: number for number, method in enumerate(methods)}
+    ours = {method.duration: number for number, method in enumerate(methods)}
     fixed = by_splitting(Motion(system, sizes.duration, OUTPUT_STEP))
-    methods.append(_own("splitting", f"step {fixed.step:.1e} s", fixed, system, sizes.duration))
+    methods.append(own("splitting", f"step {fixed.step:.1e} s", fixed, sizes.duration))
     failed = []
     for name, duration in stretch.items():
-        target = methods[own[duration]].energy_residual
+        target = methods[ours[duration]].energy_residual
         loosest, residual = matched(name, system, rates[COMPILED], duration, target)
         if loosest is None:
-            failed.append({"solver": name, "energy_residual": residual})
+            failed.append(f"{name} leaves more, {residual:.1e} at the best of the tolerances that "
+                          "were tried.")  # fmt: skip
             continue
         for kind, side in rates.items():
             run = partial(generic, name, side, 2 * system.num_modes, duration, loosest)
             methods.append(Method(name, kind, f"{loosest:.1e}", duration, residual, run))
-    runs = [method.run for method in methods]
-    seconds = by_turns(runs, sizes.most, sizes.budget)
-    entries: list[dict[str, Any]] = [
-        {
-            "solver": method.solver,
-            "rates": method.rates,
-            "tolerance": method.tolerance,
-            "duration": method.duration,
-            "energy_residual": method.energy_residual,
-            "seconds": taken,
-            "ratios": [
-                theirs / ours
-                for theirs, ours in zip(taken, seconds[own[method.duration]], strict=False)
-            ],
-        }
-        for method, taken in zip(methods, seconds, strict=True)
+    seconds = by_turns([method.run for method in methods], sizes.most, sizes.budget)
+    ratios = [
+        [theirs / mine for theirs, mine in zip(taken, seconds[ours[of.duration]], strict=False)]
+        for of, taken in zip(methods, seconds, strict=True)
     ]
-    table = TextTable(
+    return Table(
+        f"residual-{tolerance:.0e}",
         f"Five-term series, at the energy residual of event-driven motion at {tolerance:.0e}",
-        ("solver", "right-hand side", "motion s", "tolerance", "energy residual", "wall s",
-         "over event-driven"),
+        {
+            "solver": "",
+            "right-hand side": "",
+            "motion s": ".3g",
+            "tolerance": "",
+            "energy residual": ".2g",
+            "wall s": "~",
+            "over event-driven": "~",
+        },
         [
-            (
-                entry["solver"],
-                entry["rates"],
-                f"{entry['duration']:g}",
-                entry["tolerance"],
-                f"{entry['energy_residual']:.1e}",
-                shown(entry["seconds"]),
-                shown(entry["ratios"]),
-            )
-            for entry in entries
+            (of.solver, of.rates, of.duration, of.tolerance, of.energy_residual, taken, ratio)
+            for of, taken, ratio in zip(methods, seconds, ratios, strict=True)
         ],
         [
-            *(_verdict(entries, kind) for kind in (NUMPY, COMPILED)),
-            *(
-                f"{entry['solver']} leaves more, {entry['energy_residual']:.1e} at the best of the "
-                "tolerances that were tried."
-                for entry in failed
-            ),
+            *(_verdict(methods, ratios, kind) for kind in (NUMPY, COMPILED)),
+            *failed,
             "Ours labels its outputs and their energies within that time; the others leave states. "
             "Their tolerances are matched with the compiled right-hand side, and their absolute "
             "ones are a thousandth.",
         ],
-    )  # fmt: skip
-    return table, {"tolerance": tolerance, "methods": entries, "failed": failed, "goal": RATIO_GOAL}
+    )
 
 
-def _own(
-    solver: str, tolerance: str, integrator: Integrator, system: GapSystem, duration: float
-) -> Method:
-    run = partial(integrator, Motion(system, duration, OUTPUT_STEP))
-    return Method(solver, "", tolerance, duration, run().energy_residual, run)
-
-
-def _verdict(entries: Sequence[dict[str, Any]], kind: str) -> str:
-    """What the fastest solvers take with one kind of right-hand side."""
-    ratios = {entry["solver"]: entry["ratios"] for entry in entries if entry["rates"] == kind}
-    methods = sorted(ratios.keys() & METHODS, key=lambda name: median(ratios[name]))
+def _verdict(methods: Sequence[Method], every: Sequence[Sequence[float]], kind: str) -> str:
+    """What the fastest solvers take with one kind of right-hand side, over ours."""
+    ratios = {
+        of.solver: ratio for of, ratio in zip(methods, every, strict=True) if of.rates == kind
+    }
+    fastest = sorted(ratios.keys() & METHODS, key=lambda name: median(ratios[name]))
     how = "as one writes it in NumPy" if kind == NUMPY else "compiled by numba"
-    if not methods:
+    if not fastest:
         return f"With the same right-hand side {how}, no method of solve_ivp leaves so little."
-    best = ratios[methods[0]]
+    best = ratios[fastest[0]]
     goal = "reached" if median(best) >= RATIO_GOAL else "not reached"
-    fortran = shown(ratios["odeint"]) if "odeint" in ratios else ""
+    fortran = repeated(ratios["odeint"]) if "odeint" in ratios else ""
     return (
-        f"With the same right-hand side {how}, the best of solve_ivp is {methods[0]} with "
-        f"{shown(best)} times the wall time: the goal of {RATIO_GOAL:g} is {goal}."
+        f"With the same right-hand side {how}, the best of solve_ivp is {fastest[0]} with "
+        f"{repeated(best)} times the wall time: the goal of {RATIO_GOAL:g} is {goal}."
     ) + (f" odeint, whose loop is in Fortran: {fortran} times." if fortran else "")
 
 
@@ -248,7 +232,7 @@ def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
     )
 
 
-def steps(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+def steps(sizes: Sizes) -> Table:
     """What a step of the splitting costs, by modes and rows."""
     kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
     made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
@@ -260,24 +244,20 @@ def steps(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
         )
         for n, m in kinds
     ]
-    seconds = by_turns(runs, sizes.most, sizes.budget)
-    cost = {
-        (n, m): [1e9 * part / made[n] for part in taken]
-        for (n, m), taken in zip(kinds, seconds, strict=True)
-    }
-    table = TextTable(
+    seconds = dict(zip(kinds, by_turns(runs, sizes.most, sizes.budget), strict=True))
+    return Table(
+        "steps",
         "Splitting, ns per step while every row presses",
-        ("modes", *(f"{m} rows" for m in sizes.rows)),
-        [(str(n), *(shown(cost[n, m]) for m in sizes.rows)) for n in sizes.modes],
+        {"modes": ".0f", **{f"{m} rows": "~" for m in sizes.rows}},
+        [
+            (n, *([1e9 * part / made[n] for part in seconds[n, m]] for m in sizes.rows))
+            for n in sizes.modes
+        ],
         ("Steps in flight are cheaper, and many are made at once.",),
     )
-    entries = [
-        {"modes": n, "rows": m, "steps": made[n], "nanoseconds": cost[n, m]} for n, m in kinds
-    ]
-    return table, {"step": STEP, "costs": entries}
 
 
-def ensembles(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+def ensembles(case: Case, sizes: Sizes) -> Table:
     """What ensembles cost, by threads."""
     system = five_terms(case)
     cores = len(os.sched_getaffinity(0))
@@ -310,20 +290,16 @@ def ensembles(case: Case, sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
     notes = [f"The goal of {ENSEMBLE_GOAL:g} s for the series is {goal}."]
     if sizes.shell_members and shell is None:
         notes.append("No shells: FEniCSx cannot be imported.")
-    table = TextTable(
+    return Table(
+        "ensembles",
         f"Ensembles, {sizes.duration:g} s, loads within {CHANGE:g}",
-        ("ensemble", "threads", "repetitions", "wall s"),
+        {"ensemble": "", "threads": ".0f", "repetitions": ".0f", "wall s": "~"},
         [
-            (name, str(threads), str(len(taken)), shown(taken))
+            (name, threads, len(taken), taken)
             for (name, threads, _), taken in zip(what, seconds, strict=True)
         ],
-        notes,
+        [*notes, NOISE],
     )
-    entries = [
-        {"ensemble": name, "threads": threads, "seconds": taken}
-        for (name, threads, _), taken in zip(what, seconds, strict=True)
-    ]
-    return table, {"goal": ENSEMBLE_GOAL, "ensembles": entries}
 
 
 def _shell_system(case: Case) -> GapSystem | None:
@@ -346,31 +322,14 @@ def _shell_system(case: Case) -> GapSystem | None:
 def bench(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``bench.json`` and ``bench.md``."""
     case = case_file.load(str(PAPER))
-    data: dict[str, Any] = {
-        "sizes": asdict(sizes),
-        "machine": {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()},
-        "comparisons": [],
-    }
-    tables = []
-
-    def show(table: TextTable) -> None:
-        table.show(console)
-        tables.append(table)
-
-    for tolerance, solvers in sizes.levels:
-        table, found = compare(case, tolerance, solvers, sizes)
-        data["comparisons"].append(found)
-        show(table)
-    parts: dict[str, Callable[[], tuple[TextTable, dict[str, Any]]]] = {
-        "steps": partial(steps, sizes),
-        "ensembles": partial(ensembles, case, sizes),
-    }
-    for name, part in parts.items():
-        table, data[name] = part()
-        show(table)
-    console.print(NOISE)
-    closing = replace(tables[-1], notes=(*tables[-1].notes, NOISE))
-    write(folder, "bench", "What the integrators cost", data, [*tables[:-1], closing])
+    parts: list[Callable[[], Table]] = [
+        *(partial(compare, case, *level, sizes) for level in sizes.levels),
+        partial(steps, sizes),
+        partial(ensembles, case, sizes),
+    ]
+    machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
+    data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
+    leave(folder, "bench", "What the integrators cost", data, (part() for part in parts), console)
 
 
 if __name__ == "__main__":

@@ -12,8 +12,9 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -25,12 +26,15 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from dynamics.trajectory import Trajectory
 from runs import CASES
+from runs.benchmarks.timing import leave
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
-from runs.report.tables import TextTable, wide_console, write
+from runs.report.tables import wide_console
+from runs.studies.study import Table
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")
@@ -66,128 +70,111 @@ class Sizes:
     duration: float = 10.0
 
 
-def by_size(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+def by_size(sizes: Sizes) -> Iterator[Table]:
     """Wall time and peak memory of each stage against the size of the paper's boom."""
     ranks = sizes.ranks[-1]
     runs = [_measured(ranks, "reduce", "friction", mesh) for mesh in sizes.meshes]
-    dofs = [run["degrees_of_freedom"] for run in runs]
-    # What starts up with the processes is there without any shell.
-    exponents = {
-        "seconds": _exponent(dofs, [run["total_seconds"] for run in runs]),
-        "peak": _exponent(dofs, [run["peak"] - run["idle"] for run in runs]),
-    }
-    last = runs[-1]
-    seconds, peak = MILLION_GOALS
-    reached = exponents["seconds"] <= EXPONENT_GOAL
-    table = TextTable(
+    segments = [run["degrees_of_freedom"] // 2 for run in runs]
+    yield Table(
+        "scaling",
         f"The paper's boom as shells, {ranks} ranks",
-        ("mesh m", "dofs a segment", *(f"{stage} s" for stage in STAGES), "all s", "peak GB",
-         "compliance error"),
+        {
+            "mesh m": ".2g",
+            "dofs a segment": ".0f",
+            **{f"{stage} s": ".2f" for stage in STAGES},
+            "all s": ".1f",
+            "peak GB": ".2f",
+            "compliance error": ".1g",
+        },
         [
             (
-                f"{mesh:g}",
-                f"{run['degrees_of_freedom'] // 2}",
-                *(f"{run['seconds'][stage]:.2f}" for stage in STAGES),
-                f"{run['total_seconds']:.1f}",
-                f"{run['peak']:.2f}",
-                f"{run['errors']['contact_compliance']:.0e}",
+                mesh,
+                dofs,
+                *(run["seconds"][stage] for stage in STAGES),
+                run["total_seconds"],
+                run["peak"],
+                run["errors"]["contact_compliance"],
             )
-            for mesh, run in zip(sizes.meshes, runs, strict=True)
+            for mesh, dofs, run in zip(sizes.meshes, segments, runs, strict=True)
         ],
-        (
-            f"Wall time grows with the size to the power {exponents['seconds']:.2f} (goal "
-            f"{EXPONENT_GOAL:g}, {'' if reached else 'not '}reached), peak memory beyond that of "
-            f"idle processes to the power {exponents['peak']:.2f}. Peaks are sums over the ranks, "
-            "of each rank's own largest resident set.",
-            f"The largest takes {last['total_seconds']:.0f} s and {last['peak']:.1f} GB (goals "
-            f"{seconds:g} s and {peak:g} GB).",
-        ),
-        name="scaling",
-    )  # fmt: skip
-    data = {"ranks": ranks, "runs": runs, "exponents": exponents, "exponent_goal": EXPONENT_GOAL}
-    return table, data
-
-
-def memory_by_stage(data: Mapping[str, Any]) -> TextTable:
-    """Peak memory when each stage ends, of the runs of :func:`by_size`."""
+        ("Peaks are sums over the ranks, of each rank's own largest resident set.",),
+    )
     stages = ("mesh", "assembly", "reduction", "fields")
-    return TextTable(
+    yield Table(
+        "scaling-memory",
         "Peak memory when a stage ends, GB over all ranks",
-        ("dofs a segment", "idle", *stages),
+        {"dofs a segment": ".0f", "idle": ".2f", **{stage: ".2f" for stage in stages}},
         [
-            (
-                f"{run['degrees_of_freedom'] // 2}",
-                f"{run['idle']:.2f}",
-                *(f"{run['peaks'][stage]:.2f}" for stage in stages),
-            )
-            for run in data["runs"]
+            (dofs, run["idle"], *(run["peaks"][stage] for stage in stages))
+            for dofs, run in zip(segments, runs, strict=True)
         ],
-        name="scaling-memory",
+    )
+    last, (seconds, peak) = runs[-1], MILLION_GOALS
+    wall = _exponent(segments, [run["total_seconds"] for run in runs])
+    # What starts up with the processes is there without any shell.
+    memory = _exponent(segments, [run["peak"] - run["idle"] for run in runs])
+    yield Table(
+        "scaling-goals",
+        "What growing takes",
+        {"what": "", "measured": ".3g", "goal": ".3g"},
+        [
+            ("power of the size with which wall time grows", wall, EXPONENT_GOAL),
+            ("the same of peak memory beyond that of idle processes", memory, None),
+            ("wall s of the largest", last["total_seconds"], seconds),
+            ("peak GB of the largest", last["peak"], peak),
+        ],
     )
 
 
-def default_mesh(sizes: Sizes) -> tuple[TextTable, dict[str, Any]]:
+def default_mesh(sizes: Sizes) -> Iterator[Table]:
     """The default mesh from plates to the gap system and its motion, by ranks."""
     runs = [
         _measured(ranks, "move", name, sizes.default, sizes.duration)
         for ranks in sizes.ranks
         for name in SIZED
     ]
-    table = TextTable(
+    yield Table(
+        "scaling-default",
         f"Mesh of {sizes.default:g} m: from plates to the gap system",
-        ("case", "ranks", *(f"{stage} s" for stage in STAGES), "all s", "modes"),
+        {
+            "case": "",
+            "ranks": ".0f",
+            **{f"{stage} s": ".2f" for stage in STAGES},
+            "all s": ".2f",
+            "modes": ".0f",
+        },
         [
             (
                 run["case"],
-                str(run["ranks"]),
-                *(f"{run['seconds'][stage]:.2f}" for stage in STAGES),
-                f"{run['total_seconds']:.2f}",
-                str(run["modes"]),
+                run["ranks"],
+                *(run["seconds"][stage] for stage in STAGES),
+                run["total_seconds"],
+                run["modes"],
             )
             for run in runs
         ],
         (f"Goal: {DEFAULT_GOAL:g} s on two cores.",),
-        name="scaling-default",
     )
-    return table, {"runs": runs, "goals": {"reduction": DEFAULT_GOAL, "motion": MOTION_GOAL}}
-
-
-def motions(data: Mapping[str, Any], sizes: Sizes) -> TextTable:
-    """The motions of the runs of :func:`default_mesh`."""
-    return TextTable(
+    yield Table(
+        "scaling-motion",
         f"{sizes.duration:g} s of motion",
-        ("case", "ranks", "step s", "motion s", "in flight s", "ns a step", "contact changes",
-         "energy residual"),
-        [
-            (
-                run["case"],
-                str(run["ranks"]),
-                f"{motion['step']:g}",
-                *_of_motion(motion, sizes.duration),
-            )
-            for run in data["runs"]
-            for motion in run["motions"]
-        ],
+        {
+            "case": "",
+            "ranks": ".0f",
+            "step s": ".2g",
+            "motion s": ".2f",
+            "in flight s": ".2f",
+            "ns a step": ".0f",
+            "contact changes": ".0f",
+            "energy residual": ".1g",
+        },
+        [(run["case"], run["ranks"], *motion) for run in runs for motion in run["motions"]],
         (
             f"Goal: {MOTION_GOAL:g} s at a step of {STEPS[0]:g} s, at which contact with the light "
-            "local modes of a shell is not stable: what counts is a step that keeps the energy. In "
-            "flight: the same without contacts and friction, when many steps are made at once. The "
-            "motion is one rank's work.",
+            "local modes of a shell is not stable: what counts is a step that keeps the energy. "
+            "No motion is shown that is not finite. In flight: the same without contacts and "
+            "friction, when many steps are made at once. The motion is one rank's work.",
         ),
-        name="scaling-motion",
-    )  # fmt: skip
-
-
-def _of_motion(motion: Mapping[str, Any], duration: float) -> tuple[str, ...]:
-    """The cells of one motion."""
-    if motion["energy_residual"] is None:
-        return "", f"{motion['flight']:.2f}", "", "", "not finite"
-    return (
-        f"{motion['seconds']:.2f}",
-        f"{motion['flight']:.2f}",
-        f"{1e9 * motion['seconds'] * motion['step'] / duration:.0f}",
-        str(motion["contact_changes"]),
-        f"{motion['energy_residual']:.0e}",
     )
 
 
@@ -258,8 +245,10 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     print(json.dumps(told))
 
 
-def _motion(system: GapSystem, duration: float, step: float) -> dict[str, Any]:
-    """What a motion takes, and what it leaves of the energy; None if it is not finite."""
+def _motion(system: GapSystem, duration: float, step: float) -> list[float | None]:
+    """The step, the seconds of a motion and of one in flight, the nanoseconds of a step, changes of
+    contact and the energy residual; None for what is not finite.
+    """
     flying = replace(
         system,
         rows=system.rows[:0],
@@ -268,21 +257,24 @@ def _motion(system: GapSystem, duration: float, step: float) -> dict[str, Any]:
         friction_rows=system.friction_rows[:0],
         frictions=[],
     )
-    told: dict[str, Any] = {"step": step, "contact_changes": "", "energy_residual": None}
-    for kind, moving in (("seconds", system), ("flight", flying)):
-        # The first output compiles.
-        integrate(Motion(moving, 1.0e-3), step=step, energy_bound=math.inf)
-        start = perf_counter()
-        try:
-            motion = integrate(Motion(moving, duration), step=step, energy_bound=math.inf)
-        except NumericsError:
-            told[kind] = None
-            continue
-        told[kind] = perf_counter() - start
-        if kind == "seconds" and math.isfinite(motion.energy_residual):
-            told["contact_changes"] = motion.data.attrs["contact_changes"]
-            told["energy_residual"] = motion.energy_residual
-    return told
+    flight, _ = _timed(flying, duration, step)
+    seconds, motion = _timed(system, duration, step)
+    if motion is None or not math.isfinite(motion.energy_residual):
+        return [step, None, flight, None, None, None]
+    changes = motion.data.attrs["contact_changes"]
+    return [step, seconds, flight, 1e9 * seconds * step / duration, changes, motion.energy_residual]
+
+
+def _timed(system: GapSystem, duration: float, step: float) -> tuple[float, Trajectory | None]:
+    """Wall s of a motion, and the motion; None where its numbers leave all bounds."""
+    # The first output compiles.
+    integrate(Motion(system, 1.0e-3), step=step, energy_bound=math.inf)
+    start = perf_counter()
+    try:
+        motion = integrate(Motion(system, duration), step=step, energy_bound=math.inf)
+    except NumericsError:
+        return math.nan, None
+    return perf_counter() - start, motion
 
 
 def _peak() -> float:
@@ -295,16 +287,8 @@ def _peak() -> float:
 
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``scaling.json`` and ``scaling.md``."""
-    default, of_default = default_mesh(sizes)
-    tables = [default, motions(of_default, sizes)]
-    for each in tables:
-        each.show(console)
-    table, of_sizes = by_size(sizes)
-    tables += [table, memory_by_stage(of_sizes)]
-    for each in tables[2:]:
-        each.show(console)
-    data = {"sizes": asdict(sizes), "default": of_default, "by_size": of_sizes}
-    write(folder, "scaling", "What a shell costs", data, tables)
+    tables = chain(default_mesh(sizes), by_size(sizes))
+    leave(folder, "scaling", "What a shell costs", {"sizes": asdict(sizes)}, tables, console)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall times, and as many of their digits as mean something."""
+"""Wall times of what is compared, taken in turns; and where tables of them go."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from statistics import median
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from time import perf_counter
+from typing import Any
+
+from rich.console import Console
+
+from runs.report.tables import write
+from runs.studies.study import Table
 
 # What takes less is run as often as takes so many seconds together, and the mean counts.
 MEASURABLE = 0.05
@@ -15,24 +20,6 @@ NOISE = (
     "Medians. The last digit shown is the first that the spread, half the range of the "
     "repetitions, reaches; ~ where the noise exceeds one digit. One repetition shows one digit."
 )
-
-
-def shown(values: Sequence[float]) -> str:
-    """The median with the digits that the spread leaves, ``~`` before it if not one is left.
-
-    The spread is half the range; its first digit is the last that is shown. A single value
-    has no known spread and is shown with one digit.
-    """
-    middle = median(values)
-    if middle == 0.0 or not math.isfinite(middle):
-        return f"{middle:g}"
-    spread = 0.5 * (max(values) - min(values))
-    leading = math.floor(math.log10(abs(middle)))
-    last = math.floor(math.log10(spread)) if spread > 0.0 else leading
-    digits = max(1, min(leading - last + 1, 3)) if len(values) > 1 else 1
-    place = leading - digits + 1
-    text = f"{round(middle, -place):.{max(0, -place)}f}"
-    return f"~{text}" if len(values) > 1 and last >= leading and spread > 0.0 else text
 
 
 def by_turns(runs: Sequence[Callable[[], object]], most: int, budget: float) -> list[list[float]]:
@@ -59,3 +46,29 @@ def _mean(run: Callable[[], object]) -> float:
         count += 1
         seconds = perf_counter() - start
     return seconds / count
+
+
+def leave(
+    folder: Path,
+    name: str,
+    title: str,
+    data: Mapping[str, Any],
+    tables: Iterable[Table],
+    console: Console,
+) -> None:
+    """Print tables as they are made, and write them as NAME.json and NAME.md.
+
+    Args:
+        folder: made where it is missing.
+        name: of the files.
+        title: heading of the Markdown file.
+        data: beside the tables' own in the JSON file.
+        tables: of what was measured.
+        console: for the tables.
+    """
+    shown = []
+    for table in tables:
+        table.text.show(console)
+        shown.append(table)
+    everything = {**data, **{table.name: table.data for table in shown}}
+    write(folder, name, title, everything, [table.text for table in shown])

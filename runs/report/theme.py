@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import median
 from typing import Any
 
 from matplotlib.colors import to_rgb
@@ -122,3 +123,21 @@ def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
         return NONE
     # Adding zero takes the sign of what is rounded to nothing.
     return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
+
+
+def repeated(values: Sequence[float]) -> str:
+    """The median of repetitions with the digits that their spread leaves.
+
+    There is a ``~`` before it if not one is left. The spread is half the range; its first digit is
+    the last that is shown. A single value has no known spread and is shown with one digit.
+    """
+    middle = median(values)
+    if middle == 0.0 or not math.isfinite(middle):
+        return f"{middle:g}"
+    spread = 0.5 * (max(values) - min(values))
+    leading = math.floor(math.log10(abs(middle)))
+    last = math.floor(math.log10(spread)) if spread > 0.0 else leading
+    digits = max(1, min(leading - last + 1, 3)) if len(values) > 1 else 1
+    place = leading - digits + 1
+    text = f"{round(middle, -place):.{max(0, -place)}f}"
+    return f"~{text}" if len(values) > 1 and last >= leading and spread > 0.0 else text

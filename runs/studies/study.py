@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
+from runs.report.theme import fixed, number, repeated
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
-Cell = str | float | None
+Cell = str | float | list[float] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,8 @@ class Table:
         name: of its place in the report and in the JSON file.
         title: above it.
         columns: heading → how its numbers are shown: ".2f" with two decimals, ".3g" with three
-            significant digits, "" where there is text alone.
+            significant digits, "~" repetitions with the digits that they have in common, "" where
+            there is text alone.
         rows: a cell for each heading, numbers in the heading's unit; None for none.
         notes: sentences below it.
     """
@@ -133,11 +134,13 @@ class Study:
 def _shown(cell: Cell, form: str) -> str:
     if isinstance(cell, str):
         return cell
+    if isinstance(cell, list):
+        return repeated(cell)
     digits = int(form[1:-1])
     return fixed(cell, digits) if form.endswith("f") else number(cell, digits)
 
 
 def _plain(cell: Cell) -> Cell:
-    if isinstance(cell, str) or cell is None:
+    if isinstance(cell, str | list) or cell is None:
         return cell
     return float(cell) if math.isfinite(cell) else None

@@ -9,7 +9,8 @@ from functools import partial
 import pytest
 
 from runs.benchmarks import timing
-from runs.benchmarks.timing import MEASURABLE, by_turns, shown
+from runs.benchmarks.timing import MEASURABLE, by_turns
+from runs.report.theme import repeated
 
 
 class Clock:
@@ -71,4 +72,4 @@ def test_what_takes_little_is_averaged(clock: Clock) -> None:
 )
 def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
     """Reference: half the range by hand; its first digit is the last shown."""
-    assert shown(values) == text
+    assert repeated(values) == text
