@@ -164,7 +164,7 @@ def snapshot(
     from runs.paper import readings
     from runs.paper.rules import judge
     from runs.pipeline.results import FIELDS, Results, read_fields
-    from runs.report import output
+    from runs.report import output, snapshots
     from shell_model.pictures.rendering import RenderingUnavailable
 
     with alone(Path(folder)):
@@ -181,12 +181,12 @@ def snapshot(
         with changed_folder(Path(folder)) as part:
             try:
                 times = sorted(set(time)) if time else None
-                drawn = output.write_snapshots(results, shells, part, times)
+                drawn = snapshots.draw_snapshots(results, shells, part, times)
             except RenderingUnavailable as reason:
-                raise BadInput(folder, output.SNAPSHOTS, f"cannot be made: {reason}") from None
+                raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
             output.write_report(results, judge(results), part, surveyed)
     for name in drawn:
-        print(printable(str(Path(folder) / output.SNAPSHOTS / name)))
+        print(printable(str(Path(folder) / snapshots.SNAPSHOTS / name)))
     return 0
 
 

@@ -11,14 +11,12 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Figure
 from runs.report.knowledge import compared_tables, known_tables
-from runs.report.model_tables import law_table, model_table, space_table, step_table
+from runs.report.model_tables import model_tables
 from runs.report.pages import MARKS, page
-from runs.report.stress_tables import wall_table
+from runs.report.stress_tables import wall_tables
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, number
 from runs.report.verdict import Verdict
-
-_STYLES = {"reproduced": "green", "contradicted": "bold red", "undecided": "yellow"}
 
 
 def render(
@@ -37,13 +35,12 @@ def render(
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
     """
-    models = [model_table(results), step_table(results)]
-    more = (law_table(results), space_table(results), wall_table(results))
-    models += [table for table in more if table is not None]
+    models = [table.text for table in (*model_tables(results), *wall_tables(results))]
+    known = [table.text for table in known_tables(results)]
+    compared = [table.text for table in compared_tables(results)]
     motion, knowledge = (
         [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")
     )
-    known, compared = known_tables(results), compared_tables(results)
     shown = [
         *_numbered("Table", chain(models, known, compared, readings)),
         *_numbered("Figure", chain(motion, knowledge, snapshots)),

@@ -3,14 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 
 from dynamics.predictability.horizon import SHARES
 from runs.pipeline.comparisons import DECIDES
 from runs.pipeline.results import Results
-from runs.pipeline.summary import CommonPeaks, Growth, Levels, ModelSummary, PeaksLevel, Whole
-from runs.report.model_tables import horizon
-from runs.report.tables import TextTable
+from runs.pipeline.summary import (
+    CommonPeaks,
+    Ensembles,
+    Growth,
+    Levels,
+    ModelSummary,
+    PeaksLevel,
+    Whole,
+)
+from runs.report.model_tables import horizon_column
+from runs.report.tables import Column, Table
 from runs.report.theme import NONE, fixed, number, scientific, signed
 
 MILLI = 1.0e3
@@ -25,63 +34,58 @@ LIMITS = {
 VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
-def known_tables(results: Results) -> list[TextTable]:
+def known_tables(results: Results) -> list[Table]:
     """What each model's ensembles tell; empty without any."""
-    models = results.summary.models
+    models, asked = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
-    peaks = {
-        name: model.ensemble.slow_peaks
-        for name, model in models.items()
-        if model.ensemble and model.ensemble.slow_peaks
-    }
     tables = []
-    if sampled:
-        tables.append(_horizon_table(results, sampled))
+    if asked is not None and sampled:
+        tables.append(_horizon_table(asked, sampled, results.case.time.duration))
     if measured:
         tables.append(_growth_table(measured))
+    peaks = {name: found for name, model in sampled.items() if (found := _slow_peaks(model))}
     if peaks:
-        tables.append(_peak_table(peaks))
+        title = "Mean of an ensemble's members ± half the distance between its extremes. A column "
+        tables.append(
+            Table(
+                "Slow peaks",
+                _peak_columns({name: _heights(found) for name, found in peaks.items()}),
+                (f"{title}ends where not all members have the next peak.",),
+                "slow-peaks",
+                ("S2", "S3"),
+            )
+        )
     return tables
 
 
-def compared_tables(results: Results) -> list[TextTable]:
+def compared_tables(results: Results) -> list[Table]:
     """How the models differ from the reference; empty where nothing is compared."""
-    comparisons = results.summary.comparisons
-    if comparisons is None:
-        return []
-    reference = comparisons.reference
-    tables = []
-    if levels := comparisons.ensembles:
-        tables += [
-            _pointwise_table(reference, levels),
-            _difference_table(reference, levels),
-            _distribution_table(reference, levels),
-        ]
-    if whole := comparisons.whole:
-        tables.append(_whole_table(reference, whole))
+    compared = results.summary.comparisons
+    tables: list[Table] = []
+    if compared is not None and compared.ensembles:
+        tables += _level_tables(compared.reference, compared.ensembles)
+    if compared is not None and compared.whole:
+        tables.append(_whole_table(compared.reference, compared.whole))
     return tables
 
 
-def _horizon_table(results: Results, sampled: Mapping[str, ModelSummary]) -> TextTable:
-    duration = results.case.time.duration
-    rows = []
-    for name, model in sampled.items():
-        horizons = [horizon(model, share, duration) for share in SHARES]
-        peaks = model.ensemble.slow_peaks if model.ensemble else None
-        slow = (NONE, NONE)
-        if peaks is not None:
-            period = _spread(peaks.period, peaks.period_spread, 3)
-            slow = (str(len(peaks.time)), period)
-        rows.append((name, *horizons, *slow))
-    headings = (
-        "model",
-        *(f"horizon {PERCENT * share:g} %\ns" for share in SHARES),
-        "common slow peaks",
-        "period\ns",
+def _slow_peaks(model: ModelSummary) -> CommonPeaks | None:
+    return model.ensemble.slow_peaks if model.ensemble else None
+
+
+def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], duration: float) -> Table:
+    models = list(sampled.values())
+    peaks = [_slow_peaks(model) for model in models]
+    columns = (
+        Column("model", list(sampled)),
+        *(horizon_column(models, share, duration) for share in SHARES),
+        Column("common slow peaks", [len(found.time) if found else None for found in peaks]),
+        Column(
+            "period\ns",
+            [_spread(found.period, found.period_spread, 3) if found else None for found in peaks],
+        ),
     )
-    asked = results.summary.ensemble
-    assert asked is not None
     notes = [
         f"Ensembles of {asked.members} members, {VARIED[asked.vary]} changed by up to "
         f"{scientific(asked.relative)} of themselves. Horizon: when the members are that part "
@@ -92,30 +96,24 @@ def _horizon_table(results: Results, sampled: Mapping[str, ModelSummary]) -> Tex
             f"Slow peaks are those of the motion below {number(asked.slow_below)} Hz; common "
             "ones are those that all members have."
         )
-    return TextTable("Horizons", headings, rows, notes, "horizons", ("S2", "S3"))
+    return Table("Horizons", columns, notes, "horizons", ("S2", "S3"))
 
 
-def _growth_table(measured: Mapping[str, Growth]) -> TextTable:
+def _growth_table(measured: Mapping[str, Growth]) -> Table:
+    rows = [(name, found, i) for name, found in measured.items() for i in range(len(found.shares))]
     sizes = next(iter(measured.values())).relatives
-    rows = [
-        (
-            name,
-            f"{PERCENT * share:g} %",
-            *(fixed(times[i], 2) for times in found.times),
-            fixed(found.of_step[i], 2),
-            number(found.rate[i], 2),
-            LIMITS[found.limits[i]],
-        )
-        for name, found in measured.items()
-        for i, share in enumerate(found.shares)
-    ]
-    headings = (
-        "model",
-        "part of the range",
-        *(f"change {scientific(size)}\ns" for size in sizes),
-        "finer step\ns",
-        "growth\n1/s",
-        "limited by",
+    columns = (
+        Column("model", [name for name, _, _ in rows]),
+        Column("part of the range", [f"{PERCENT * found.shares[i]:g} %" for _, found, i in rows]),
+        *(
+            Column(
+                f"change {scientific(size)}\ns", [found.times[k][i] for _, found, i in rows], ".2f"
+            )
+            for k, size in enumerate(sizes)
+        ),
+        Column("finer step\ns", [found.of_step[i] for _, found, i in rows], ".2f"),
+        Column("growth\n1/s", [found.rate[i] for _, found, i in rows], ".2g"),
+        Column("limited by", [LIMITS[found.limits[i]] for _, found, i in rows]),
     )
     notes = (
         "When runs whose data differ by so much of themselves are that part of the tip's range "
@@ -125,106 +123,107 @@ def _growth_table(measured: Mapping[str, Growth]) -> TextTable:
         "from the run. Earlier than for the largest of these changes, the step is the limit and a "
         "finer one would help; later, the motion itself is: data are not known as well as that.",
     )
-    return TextTable("What better data would buy", headings, rows, notes, "growth")
+    return Table("What better data would buy", columns, notes, "growth")
 
 
-def _peak_table(peaks: Mapping[str, CommonPeaks]) -> TextTable:
-    def cell(found: CommonPeaks, i: int) -> str:
-        if i >= len(found.time):
-            return NONE
-        time = _spread(found.time[i], found.time_spread[i], 3)
-        height = _spread(found.height[i], found.height_spread[i], 2, MILLI)
-        return f"{time} s\n{height} mm"
+def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
+    """A row for each peak, a column for each model."""
+    most = max(map(len, peaks.values()))
+    numbers = [str(i) for i in range(1, most + 1)]
+    return [Column("peak", numbers), *(Column(*column) for column in peaks.items())]
 
-    most = max(len(found.time) for found in peaks.values())
-    rows = [(str(i + 1), *(cell(found, i) for found in peaks.values())) for i in range(most)]
-    notes = (
-        "Mean of an ensemble's members ± half the distance between its extremes. A column ends "
-        "where not all members have the next peak.",
+
+def _heights(found: CommonPeaks) -> list[str]:
+    """Time and height of each peak."""
+    times = map(partial(_spread, decimals=3), found.time, found.time_spread)
+    heights = map(partial(_spread, decimals=2, factor=MILLI), found.height, found.height_spread)
+    return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
+
+
+def _differences(found: PeaksLevel) -> list[str]:
+    """By how much each peak is later and higher than that of the reference."""
+    signed_milli = partial(_spread, factor=MILLI, sign="+")
+    times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
+    heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
+    marks = ("" if explained else " *" for explained in found.explained)
+    rows = zip(times, heights, marks, strict=True)
+    return [f"{time} ms\n{height} mm{mark}" for time, height, mark in rows]
+
+
+def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
+    """From moment to moment, peak by peak, and of all values after the horizons."""
+    points = [level.pointwise for level in levels.values()]
+    spreads = [level.distributions for level in levels.values()]
+    models = Column("model", list(levels))
+    pointwise = (
+        models,
+        Column("until\ns", [found.until for found in points], ".2f"),
+        Column(
+            "largest difference\n% of the range",
+            [found.largest for found in points],
+            ".2f",
+            PERCENT,
+        ),
+        Column("rms\n% of the range", [found.rms for found in points], ".2f", PERCENT),
     )
-    return TextTable("Slow peaks", ("peak", *peaks), rows, notes, "slow-peaks", ("S2", "S3"))
-
-
-def _pointwise_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
-    rows = []
-    for name, level in levels.items():
-        found = level.pointwise
-        shares = (fixed(part, 2, PERCENT) for part in (found.largest, found.rms))
-        rows.append((name, fixed(found.until, 2), *shares))
-    return TextTable(
-        f"Tip against {reference}, from moment to moment",
-        ("model", "until\ns", "largest difference\n% of the range", "rms\n% of the range"),
-        rows,
-        (DECIDES["pointwise"],),
-        "pointwise",
-        ("S4",),
+    distributions = (
+        models,
+        Column("from\ns", [found.since for found in spreads], ".2f"),
+        Column("range\nmm", [_both(found.range) for found in spreads]),
+        Column("mean\nmm", [_both(found.mean) for found in spreads]),
+        Column("standard deviation\nmm", [_both(found.deviation) for found in spreads]),
+        Column("Kolmogorov–Smirnov\ndistance", [found.distance for found in spreads], ".3f"),
     )
-
-
-def _difference_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
-    def cell(found: PeaksLevel, i: int) -> str:
-        if i >= len(found.time):
-            return NONE
-        time = _spread(found.time[i], found.time_spread[i], 0, MILLI, "+")
-        height = _spread(found.height[i], found.height_spread[i], 2, MILLI, "+")
-        mark = "" if found.explained[i] else " *"
-        return f"{time} ms\n{height} mm{mark}"
-
-    peaks = {name: level.peaks for name, level in levels.items()}
-    most = max(len(found.time) for found in peaks.values())
-    rows = [(str(i + 1), *(cell(found, i) for found in peaks.values())) for i in range(most)]
-    notes = (
-        f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
-        "in time or in height.",
-        DECIDES["peaks"],
-    )
-    title = f"Slow peaks against {reference}"
-    return TextTable(title, ("peak", *peaks), rows, notes, "peaks-against", ("S3",))
-
-
-def _distribution_table(reference: str, levels: Mapping[str, Levels]) -> TextTable:
-    rows = []
-    for name, level in levels.items():
-        found = level.distributions
-        pairs = (
-            " / ".join(fixed(value, 1, MILLI) for value in reversed(both))
-            for both in (found.range, found.mean, found.deviation)
-        )
-        rows.append((name, fixed(found.since, 2), *pairs, fixed(found.distance, 3)))
-    headings = (
-        "model", "from\ns", "range\nmm", "mean\nmm", "standard deviation\nmm",
-        "Kolmogorov–Smirnov\ndistance",
-    )  # fmt: skip
-    notes = (
-        f"All values of all members after the horizons: the model's / that of {reference}.",
-        DECIDES["distributions"],
-    )
-    title = f"Distribution of the tip against {reference}"
-    return TextTable(title, headings, rows, notes, "distributions")
-
-
-def _whole_table(reference: str, whole: Mapping[str, Whole]) -> TextTable:
-    ends = next(iter(whole.values())).until
-    rows = [
-        (
-            name,
-            *(
-                fixed(parts[i], 2, PERCENT)
-                for i in range(len(ends))
-                for parts in (found.largest, found.rms)
+    return [
+        Table(
+            f"Tip against {reference}, from moment to moment",
+            pointwise,
+            (DECIDES["pointwise"],),
+            "pointwise",
+            ("S4",),
+        ),
+        Table(
+            f"Slow peaks against {reference}",
+            _peak_columns({name: _differences(level.peaks) for name, level in levels.items()}),
+            (
+                f"Each model's slow peak less that of {reference}, ± both spreads together. * "
+                "beyond them in time or in height.",
+                DECIDES["peaks"],
             ),
-        )
-        for name, found in whole.items()
+            "peaks-against",
+            ("S3",),
+        ),
+        Table(
+            f"Distribution of the tip against {reference}",
+            distributions,
+            (
+                f"All values of all members after the horizons: the model's / that of {reference}.",
+                DECIDES["distributions"],
+            ),
+            "distributions",
+        ),
     ]
-    headings = [
-        f"{what}\nto {end:g} s, %" for end in ends for what in ("largest difference", "rms")
-    ]
+
+
+def _both(values: Sequence[float | None]) -> str:
+    """The model's / that of the reference, in mm."""
+    return " / ".join(fixed(value, 1, MILLI) for value in reversed(values))
+
+
+def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
+    columns = [Column("model", list(whole))]
+    for i, end in enumerate(next(iter(whole.values())).until):
+        largest = [found.largest[i] for found in whole.values()]
+        rms = [found.rms[i] for found in whole.values()]
+        columns += [
+            Column(f"largest difference\nto {end:g} s, %", largest, ".2f", PERCENT),
+            Column(f"rms\nto {end:g} s, %", rms, ".2f", PERCENT),
+        ]
     notes = (
         "Parts of the larger range of both within that time. What is well above the change by half "
         "the step, in the table of steps, is the models' own.",
     )
-    title = f"Tip against {reference}, over the whole run"
-    return TextTable(title, ("model", *headings), rows, notes, "whole", ("S7",))
+    return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole", ("S7",))
 
 
 def _spread(

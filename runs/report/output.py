@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -33,19 +33,14 @@ from runs.report.document import render
 from runs.report.figures import draw
 from runs.report.tables import TextTable
 from runs.report.verdict import Verdict
-from shell_model.pictures.field_series import write_field_series
-from shell_model.pictures.rendering import RenderingUnavailable, render_snapshots
+from shell_model.pictures.field_series import series_times, write_field_series
+from shell_model.pictures.rendering import RenderingUnavailable
 
 REPORT = "report.html"
 VERDICTS = "verdicts.json"
-SNAPSHOTS = "snapshots"
 STRESSES = "stress.nc"
 SERIES = "fields"
 FIGURES = "figures"
-
-# The time series of fields has so many frames at most, and fewer of a fine mesh: all triangles of
-# all frames, of about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
-FRAMES, TRIANGLES = 51, 1_000_000
 
 
 def prepare(out: str, file: str) -> Path:
@@ -109,59 +104,16 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
-        write_field_series(shell.fields, series, _series_times(shell.fields))
+        write_field_series(shell.fields, series, series_times(shell.fields))
         for segment, mesh in shell.meshes.items():
             mesh.write(meshes / f"{segment}.vtu")
             gmsh_file = mesh_folder / name / f"{segment}.msh"
             shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
     try:
-        write_snapshots(results, fields, folder)
+        snapshots.draw_snapshots(results, fields, folder)
     except RenderingUnavailable as reason:
         results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
     write_report(results, verdicts, folder)
-
-
-def _series_times(fields: xr.Dataset) -> list[float]:
-    """Evenly spread over the run, its ends included, in s."""
-    times = fields["time"].values
-    frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
-    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
-
-
-def write_snapshots(
-    results: Results,
-    shells: Mapping[str, xr.Dataset],
-    folder: Path,
-    times: Sequence[float] | None = None,
-) -> list[str]:
-    """Render the deformed shells of a run, and note it in the summary.
-
-    Args:
-        results: of the run.
-        shells: fields by the name of their file, ``[SHELL-]fields.nc``.
-        folder: of the run; pictures of other instants stay in it.
-        times: in s; the telling ones unless given.
-
-    Returns:
-        The names of the pictures.
-
-    Raises:
-        RenderingUnavailable: no picture can be made here.
-    """
-    written = []
-    pictures = folder / SNAPSHOTS
-    with beside(pictures) as easel:
-        for file, fields in sorted(shells.items()):
-            model = fields.attrs["model"]
-            prefix = file.removesuffix(FIELDS)
-            for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
-                pictures.mkdir(exist_ok=True)
-                written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
-    earlier = results.summary.snapshots.written
-    results.summary.snapshots = Snapshots(
-        written=list(dict.fromkeys([*earlier, *written])), skipped=None
-    )
-    return written
 
 
 def write_report(
@@ -184,10 +136,7 @@ def write_report(
     shutil.rmtree(folder / FIGURES, ignore_errors=True)
     (folder / FIGURES).mkdir()
     figures = draw(results, folder / FIGURES)
-    pictures = [
-        snapshots.describe(results, folder / SNAPSHOTS / name)
-        for name in results.summary.snapshots.written
-    ]
+    pictures = snapshots.describe(results, folder)
     _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed))
 
 

@@ -3,39 +3,41 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Literal
+
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from runs.pipeline.results import Results
-from runs.report.model_tables import model_rows
+from runs.report.model_tables import model_table
 from runs.report.theme import number
+
+# Columns of the models' table that fit a terminal → their headings there.
+SHOWN = {
+    "model": "model",
+    "degrees of freedom": "dofs",
+    "first contact\ns": "first contact s",
+    "first tip peak\ns": "first tip peak s",
+    "\nmm": "mm",
+    "energy residual\nof the work": "energy\nresidual",
+    "wall time\ns": "wall s",
+}
 
 
 def print_models(results: Results, console: Console) -> None:
     """Print the table of a run's models, and what they are not worth."""
+    found = model_table(results)
+    columns = [column for column in found.columns if column.heading in SHOWN]
     models = Table(title=Text(results.case.title), title_justify="left", box=SIMPLE_HEAD)
-    models.add_column("model", no_wrap=True)
-    for heading in (
-        "dofs",
-        "first contact s",
-        "first tip peak s",
-        "mm",
-        "energy\nresidual",
-        "wall s",
-    ):
-        models.add_column(heading, justify="right", no_wrap="\n" in heading)
-    for row in model_rows(results):
-        models.add_row(
-            Text(row.name),
-            row.degrees_of_freedom,
-            row.first_contact,
-            row.tip_peak_time,
-            row.tip_peak,
-            row.energy_residual,
-            row.seconds,
-        )
+    for i, column in enumerate(columns):
+        heading = SHOWN[column.heading]
+        justify: Literal["left", "right"] = "right" if i else "left"
+        models.add_column(heading, justify=justify, no_wrap=i == 0 or "\n" in heading)
+    for row in replace(found, columns=columns).text.rows:
+        models.add_row(*map(Text, row))
     console.print(models)
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:

@@ -1,18 +1,30 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is to be seen in each snapshot of a run."""
+"""Snapshots of a run: rendered, and what is to be seen in each."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import xarray as xr
 
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
-from runs.pipeline.results import Results
+from runs.folder.files import beside
+from runs.pipeline.results import FIELDS, Results
+from runs.pipeline.summary import Snapshots
 from runs.report.figure_context import MILLI, Figure
-from shell_model.pictures.rendering import ANIMATED, ANIMATION, SHOWN, TITLES, telling_instants
+from shell_model.pictures.rendering import (
+    ANIMATED,
+    ANIMATION,
+    SHOWN,
+    TITLES,
+    render_snapshots,
+    telling_instants,
+)
+
+SNAPSHOTS = "snapshots"
 
 # What an arrow stands for where there is more than one point to a station.
 ON_SURFACES = (
@@ -27,7 +39,51 @@ _NAME = re.compile(
 )
 
 
-def describe(results: Results, path: Path) -> Figure:
+def draw_snapshots(
+    results: Results,
+    shells: Mapping[str, xr.Dataset],
+    folder: Path,
+    times: Sequence[float] | None = None,
+) -> list[str]:
+    """Render the deformed shells of a run, and note it in the summary.
+
+    Args:
+        results: of the run.
+        shells: fields by the name of their file, ``[SHELL-]fields.nc``.
+        folder: of the run; pictures of other instants stay in it.
+        times: in s; the telling ones unless given.
+
+    Returns:
+        The names of the pictures.
+
+    Raises:
+        RenderingUnavailable: no picture can be made here.
+    """
+    written = []
+    pictures = folder / SNAPSHOTS
+    with beside(pictures) as easel:
+        for file, fields in sorted(shells.items()):
+            model = fields.attrs["model"]
+            prefix = file.removesuffix(FIELDS)
+            for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
+                pictures.mkdir(exist_ok=True)
+                written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
+    earlier = results.summary.snapshots.written
+    results.summary.snapshots = Snapshots(
+        written=list(dict.fromkeys([*earlier, *written])), skipped=None
+    )
+    return written
+
+
+def describe(results: Results, folder: Path) -> list[Figure]:
+    """The snapshots of a run's folder, each with a title and a caption."""
+    return [
+        describe_one(results, folder / SNAPSHOTS / name)
+        for name in results.summary.snapshots.written
+    ]
+
+
+def describe_one(results: Results, path: Path) -> Figure:
     """A snapshot with a title and a caption.
 
     Args:

@@ -4,40 +4,42 @@
 from __future__ import annotations
 
 from runs.pipeline.results import Results
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
+from runs.report.tables import Column, Table
+from runs.report.theme import number
 
-KILO, MEGA = 1.0e3, 1.0e6
+PER_KILO, PER_MEGA = 1.0e-3, 1.0e-6
 
 
-def wall_table(results: Results) -> TextTable | None:
-    """Forces of the walls at the instant of the largest stress; None without shells."""
-    rows, notes = [], []
-    for name, model in results.summary.models.items():
-        stress = model.stress
-        if stress is None:
-            continue
-        notes.append(
-            f"{name}, at {stress.time:.3f} s: the largest von Mises stress of the run, "
-            f"{number(stress.von_mises / MEGA, 3)} MPa, at x = {stress.x:.2f} m in "
-            f"{stress.segment!r}, {stress.face} face of the wall {stress.wall!r}."
-        )
-        for section in stress.walls:
-            for wall, forces in section.forces.items():
-                of_wall = (forces.axial, forces.shear, forces.moment)
-                place = f"{name}, {section.segment}, {section.x:g} m, {wall}"
-                rows.append((place, *(fixed(force / KILO, 2) for force in of_wall)))
-    if not rows:
-        return None
-    notes.append(
+def wall_tables(results: Results) -> list[Table]:
+    """Forces of the walls at the instant of the largest stress; none without shells."""
+    shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
+    walls = [
+        (name, section, wall, carried)
+        for name, stress in shells.items()
+        for section in stress.walls
+        for wall, carried in section.forces.items()
+    ]
+    if not walls:
+        return []
+    columns = (
+        Column("model", [name for name, *_ in walls]),
+        Column("segment", [section.segment for _, section, _, _ in walls]),
+        Column("at x\nm", [f"{section.x:g}" for _, section, _, _ in walls]),
+        Column("wall", [wall for _, _, wall, _ in walls]),
+        Column("axial force\nkN", [carried.axial for *_, carried in walls], ".2f", PER_KILO),
+        Column("shear force\nkN", [carried.shear for *_, carried in walls], ".2f", PER_KILO),
+        Column("moment\nkN m", [carried.moment for *_, carried in walls], ".2f", PER_KILO),
+    )
+    largest = [
+        f"{name}, at {stress.time:.3f} s: the largest von Mises stress of the run, "
+        f"{number(PER_MEGA * stress.von_mises, 3)} MPa, at x = {stress.x:.2f} m in "
+        f"{stress.segment!r}, {stress.face} face of the wall {stress.wall!r}."
+        for name, stress in shells.items()
+    ]
+    means = (
         "Means over the row of elements at x, at a mesh line of that towards the tip. Axial forces "
         "pull; shear forces act on the part before the section, along z in the webs (right, left) "
         "and along y in the flanges; moments about the section's y-axis pull at the top."
     )
-    return TextTable(
-        "What the walls carry at the instant of the largest stress",
-        ("shell, segment, x, wall", "axial (kN)", "shear (kN)", "moment (kN\N{NO-BREAK SPACE}m)"),
-        rows,
-        tuple(notes),
-        name="walls",
-    )
+    title = "What the walls carry at the instant of the largest stress"
+    return [Table(title, columns, (*largest, means), "walls")]

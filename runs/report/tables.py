@@ -6,15 +6,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
+from rich.table import Table as Grid
 from rich.text import Text
 
 from runs.folder.files import whole
+from runs.report.theme import NONE, count, fixed, number
 
 # Letters that fit in a line of the report with its usual font, and in one of a file.
 ROOMY = 115
@@ -64,9 +66,9 @@ class TextTable:
 
     def show(self, console: Console) -> None:
         """Print it."""
-        table = Table(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD)
-        for number, heading in enumerate(self.headings):
-            table.add_column(heading, justify="right" if number else "left")
+        table = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD)
+        for i, heading in enumerate(self.headings):
+            table.add_column(heading, justify="right" if i else "left")
         for row in self.rows:
             table.add_row(*map(Text, row))
         console.print(table)
@@ -81,6 +83,64 @@ class TextTable:
         return "\n".join(
             [f"## {self.title}", "", *lines, "", *(f"{note}\n" for note in self.notes)]
         )
+
+
+Cell = str | float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Numbers under a heading.
+
+    Args:
+        heading: with the unit in its second line.
+        cells: one for each row; None for none, a text for what is no number.
+        form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
+        factor: from the unit of the numbers to that of the heading.
+    """
+
+    heading: str
+    cells: Sequence[Cell]
+    form: str = ""
+    factor: float = 1.0
+
+    @property
+    def text(self) -> list[str]:
+        """The cells as they are shown."""
+        return [self._shown(cell) for cell in self.cells]
+
+    def _shown(self, cell: Cell) -> str:
+        if isinstance(cell, str):
+            return cell
+        if cell is None:
+            return NONE
+        if not self.form:
+            return count(cell)
+        digits = int(self.form[1:-1])
+        if self.form.endswith("f"):
+            return fixed(cell, digits, self.factor)
+        return number(self.factor * cell, digits)
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Numbers for people; as :class:`TextTable`, but for the columns.
+
+    A column may end before the others: there are none of its numbers then.
+    """
+
+    title: str
+    columns: Sequence[Column]
+    notes: Sequence[str] = ()
+    name: str = ""
+    statements: Sequence[str] = ()
+
+    @property
+    def text(self) -> TextTable:
+        """As it is shown."""
+        rows = list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
+        headings = tuple(column.heading for column in self.columns)
+        return TextTable(self.title, headings, rows, self.notes, self.name, self.statements)
 
 
 def write(

@@ -141,3 +141,8 @@ def repeated(values: Sequence[float]) -> str:
     place = leading - digits + 1
     text = f"{round(middle, -place):.{max(0, -place)}f}"
     return f"~{text}" if len(values) > 1 and last >= leading and spread > 0.0 else text
+
+
+def count(whole: float) -> str:
+    """``11 194 798``, with blanks that do not break."""
+    return f"{whole:,.0f}".replace(",", "\N{NO-BREAK SPACE}")

@@ -14,6 +14,17 @@ import xarray as xr
 
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress
 
+# A series has so many frames at most, and fewer of a fine mesh: all triangles of all frames, of
+# about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
+FRAMES, TRIANGLES = 51, 1_000_000
+
+
+def series_times(fields: xr.Dataset) -> list[float]:
+    """As many as a series may have, evenly spread over the run, its ends included, in s."""
+    times = fields["time"].values
+    frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
+    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
+
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
     """Write displacement and stresses at some times; a program opens them by the ``.pvd``.

@@ -75,7 +75,6 @@ def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPat
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = case_file.load(str(CASES / "paper.toml"))
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
-    monkeypatch.setattr("runs.report.printed.model_rows", lambda results: [])
     monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)
     print_models(results, console)

@@ -13,7 +13,7 @@ import xarray as xr
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
-from runs.report.snapshots import describe
+from runs.report.snapshots import describe_one
 
 COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
@@ -54,7 +54,7 @@ def results(*shells: str) -> Results:
 )
 def test_a_caption_says_what_is_seen(name: str, title: str, seen: str) -> None:
     """Reference: analytic, a tip of 50 mm (1 − cos 2πt)."""
-    figure = describe(results("shell"), Path(name))
+    figure = describe_one(results("shell"), Path(name))
     assert figure.title.startswith(title)
     assert seen in figure.caption
     assert "'shell'" in figure.caption
@@ -67,12 +67,12 @@ def test_arrows_over_a_surface_are_sums() -> None:
     case = lines.case.model_copy(update={"models": (table,)})
     for name in ("overlap-first-peak.png", "stress-first-peak.png"):
         told = "each arrow is the sum of the forces of the points nearest to its station."
-        assert describe(replace(lines, case=case), Path(name)).caption.endswith(told)
-        assert told not in describe(lines, Path(name)).caption
+        assert describe_one(replace(lines, case=case), Path(name)).caption.endswith(told)
+        assert told not in describe_one(lines, Path(name)).caption
 
 
 def test_of_several_shells_the_right_one_is_named() -> None:
     both = results("shell", "shell-fine")
     for name in ("shell", "shell-fine"):
-        assert f"{name!r}" in describe(both, Path(f"{name}-boom-first-peak.png")).caption
-        assert f"{name!r}" in describe(both, Path(f"{name}-motion.gif")).caption
+        assert f"{name!r}" in describe_one(both, Path(f"{name}-boom-first-peak.png")).caption
+        assert f"{name!r}" in describe_one(both, Path(f"{name}-motion.gif")).caption

@@ -17,7 +17,7 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Pen
 from runs.report.stress_figures import stress_history
-from runs.report.stress_tables import wall_table
+from runs.report.stress_tables import wall_tables
 from tests.runs.summaries import model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -70,12 +70,11 @@ def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
 
 
 def test_the_table_says_what_each_wall_carries() -> None:
-    table = wall_table(results(STRESS))
-    assert table is not None
-    assert list(table.rows) == [("shell, outer, 2 m, top", "−12.50", "0.00", "3.06")]
+    (table,) = wall_tables(results(STRESS))
+    assert table.text.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
     assert "91.6 MPa, at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
 
 
 def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
-    assert wall_table(results(None)) is None
+    assert wall_tables(results(None)) == []
     assert stress_history(Pen(results(None), tmp_path)) == []

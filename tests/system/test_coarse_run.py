@@ -186,7 +186,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("runs.report.output.render_snapshots", refuse)
+    monkeypatch.setattr("runs.report.snapshots.render_snapshots", refuse)
     again = tmp_path / "out"
     shutil.copytree(whole, again)
     assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
@@ -212,7 +212,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         Image.new("RGB", (8, 8)).save(path)
         return [path]
 
-    monkeypatch.setattr("runs.report.output.render_snapshots", draw)
+    monkeypatch.setattr("runs.report.snapshots.render_snapshots", draw)
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")
