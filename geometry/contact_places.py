@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from geometry.boom import Boom, Direction, Joint
+from geometry.boom import Boom, Direction, Joint, Stop
 from geometry.section import Offset, Side
 from geometry.segment import Segment
 
@@ -86,6 +86,8 @@ class Pad:
         weight: the part of the joint's law on this side that the pad carries.
         rubs: the direction in which it slides.
         normal_force: of its friction in N; None where its own contact presses.
+        pressed: what it presses of the corners of the inner and of the outer segment.
+        patch: the wall that it covers; None where it is a point.
     """
 
     station: int
@@ -99,6 +101,35 @@ class Pad:
     weight: float
     rubs: Direction
     normal_force: float | None
+    pressed: tuple[Stretch, Stretch]
+    patch: Patch | None
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """Where a stop presses a segment's corners.
+
+    Args:
+        station: position in ``Boom.stations``.
+        stop: the stop.
+        pressed: of the corners.
+    """
+
+    station: int
+    stop: Stop
+    pressed: Stretch
+
+
+def rests(boom: Boom) -> list[Rest]:
+    """Every stop of a boom whose sections are known."""
+    return [
+        Rest(
+            station,
+            stop,
+            Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop)),
+        )
+        for station, stop in boom.numbered_stops
+    ]
 
 
 def pads(boom: Boom) -> list[Pad]:
@@ -113,8 +144,11 @@ def pads(boom: Boom) -> list[Pad]:
         for number, joint in enumerate(boom.joints):
             if joint.tied:
                 continue
+            length = boom.contact_length(joint)
+            inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
+                pressed = Stretch.on(inner_segment, x, length), Stretch.on(outer_segment, x, length)
                 for side, inner, outer, weight in _points(boom, joint, direction):
                     found.append(
                         Pad(
@@ -132,6 +166,8 @@ def pads(boom: Boom) -> list[Pad]:
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
+                            pressed=pressed,
+                            patch=_patch(boom, joint, x, direction, side),
                         )
                     )
                 station += 1
@@ -159,17 +195,16 @@ def _points(
             yield side, within, around, 0.5
 
 
-def patch(boom: Boom, pad: Pad) -> Patch | None:
-    """The wall that a pad covers; None for a joint whose pads are points.
+def _patch(boom: Boom, joint: Joint, x: float, direction: Direction, side: Side) -> Patch | None:
+    """The wall that a pad covers; None where pads are points, or plates not known.
 
     It is centred at its station, but moved inwards where the overlap ends, and reaches from the
     corner of the inner box inwards.
     """
-    size, section = pad.joint.pad, boom.segments[pad.joint.inner].section
-    if size is None:
+    size, section = joint.pad, boom.segments[joint.inner].section
+    if size is None or section is None:
         return None
-    assert section is not None
-    first, last = boom.overlap(pad.joint)
-    start = min(max(pad.x - 0.5 * size.length, first), last - size.length)
-    half = 0.5 * section.face(pad.direction, pad.side or 1).width
+    first, last = boom.overlap(joint)
+    start = min(max(x - 0.5 * size.length, first), last - size.length)
+    half = 0.5 * section.face(direction, side or 1).width
     return Patch(start, start + size.length, half - size.width, half)

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Pad, Stretch, pads, patch
+from geometry.contact_places import ContactLine, Patch, Stretch, pads, rests
 from geometry.grading import Spot
 from geometry.section import Direction, Face, Section
 
@@ -57,15 +57,15 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
     across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
         yield (x, *low), (x, *high), _WALLS * across, _WALLS_GROWTH
-    for stop in boom.stops:
-        if stop.segment == number:
-            stretch = Stretch.on(segment, stop.x, boom.contact_length(stop))
+    for rest in rests(boom):
+        if rest.stop.segment == number:
             for face in _faces(section, "z"):
-                yield _corner(stretch, face)
+                yield _corner(rest.pressed, face)
     for pad in pads(boom):
-        if number in (pad.joint.outer, pad.joint.inner):
-            for face in _faces(section, pad.direction):
-                yield _pressed(boom, pad, number, face, line)
+        for end, stretch in zip((pad.joint.inner, pad.joint.outer), pad.pressed, strict=True):
+            if end == number:
+                for face in _faces(section, pad.direction):
+                    yield _pressed(pad.patch, stretch, face, line)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -104,12 +104,10 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
     return low, high, size, _CORNER_GROWTH
 
 
-def _pressed(boom: Boom, pad: Pad, number: int, face: Face, line: ContactLine) -> _Measured:
+def _pressed(covered: Patch | None, stretch: Stretch, face: Face, line: ContactLine) -> _Measured:
     """What a pad presses of a segment's face."""
-    covered = patch(boom, pad)
     if covered is None:
-        length = boom.contact_length(pad.joint)
-        low, high, size, growth = _corner(Stretch.on(boom.segments[number], pad.x, length), face)
+        low, high, size, growth = _corner(stretch, face)
         return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
     size = _PAD * min(covered.end - covered.start, covered.far - covered.near)
     low, high = (

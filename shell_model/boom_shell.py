@@ -310,7 +310,7 @@ def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Rea
     for name, (number, x) in boom.observed().items():
         outline = shells[number].outline(x)
         for suffix, (row, unit) in readings.items():
-            observed[name + suffix] = ({number: row(outline)}, unit)
+            observed[name + suffix] = (Reading({number: row(outline)}), unit)
     return observed
 
 

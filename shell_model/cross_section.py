@@ -8,7 +8,6 @@ way round is a force that is spread over the section.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,45 +16,47 @@ import numpy.typing as npt
 from geometry.section import COMPONENT, Direction, Plate, Section
 
 Array = npt.NDArray[np.float64]
-Row = Mapping[int, float]
-
-# Number of a segment → what is read of it, with its sign.
-Reading = Mapping[int, Row]
 
 _X = 0
 
 
-def combine(*terms: tuple[float, Row]) -> Row:
-    """The sum of rows, each with its factor."""
-    total: dict[int, float] = {}
-    for factor, row in terms:
-        for dof, weight in row.items():
-            total[dof] = total.get(dof, 0.0) + factor * weight
-    return total
+class Row(dict[int, float]):
+    """A sum of degrees of freedom: global number → weight."""
+
+    @classmethod
+    def of(cls, dofs: npt.NDArray[np.int64], weights: Array) -> Row:
+        """Of degrees of freedom, each with its weight; one may come twice."""
+        row = cls()
+        for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
+            row[dof] = row.get(dof, 0.0) + weight
+        return row
+
+    def __add__(self, other: Row) -> Row:
+        return Row(self | {dof: self.get(dof, 0.0) + weight for dof, weight in other.items()})
+
+    def __rmul__(self, factor: float) -> Row:
+        return Row({dof: factor * weight for dof, weight in self.items()})
+
+    def __neg__(self) -> Row:
+        return -1.0 * self
+
+    def __sub__(self, other: Row) -> Row:
+        return self + -other
 
 
-def relative(inner: tuple[int, Row], outer: tuple[int, Row]) -> Reading:
-    """u − w of two places, each with the number of its segment."""
-    return {inner[0]: inner[1], outer[0]: combine((-1.0, outer[1]))}
+class Reading(dict[int, Row]):
+    """What is read of a boom's segments: number of a segment → row."""
 
+    def __add__(self, other: Reading) -> Reading:
+        return Reading({number: row + other[number] for number, row in self.items()})
 
-def row_of(dofs: npt.NDArray[np.int64], weights: Array) -> Row:
-    """The sum of degrees of freedom, each with its weight; one may come twice."""
-    return combine(*((w, {d: 1.0}) for d, w in zip(dofs.tolist(), weights.tolist(), strict=True)))
+    def __rmul__(self, factor: float) -> Reading:
+        return Reading({number: factor * row for number, row in self.items()})
 
 
 def quadratic(s: Array) -> Array:
     """(..., 3) shape functions of an edge's first end, middle and last end at the parts s of it."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
-
-
-def combine_readings(terms: Sequence[tuple[float, Reading]]) -> Reading:
-    """Readings of the same segments, each with its factor."""
-    numbers = terms[0][1]
-    return {
-        number: combine(*((factor, reading[number]) for factor, reading in terms))
-        for number in numbers
-    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,20 +82,20 @@ class Outline:
     def mean_displacement(self, component: int) -> Row:
         """One displacement component averaged over the section's area, in m."""
         nodes, areas = self._area_weights()
-        return row_of(self.dofs[nodes, component], areas / areas.sum())
+        return Row.of(self.dofs[nodes, component], areas / areas.sum())
 
     def rotation(self, direction: Direction = "z") -> Row:
         """Slope w′ of the plane that fits u_x = −w′ z best over the section's area, in rad."""
         nodes, areas = self._area_weights()
         z = self.places[nodes, COMPONENT[direction]]
         z = z - (areas @ z) / areas.sum()
-        return row_of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
+        return Row.of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
         """How much taller the section has become: mean u_z of the top less the bottom, in m."""
         faces = (self.section.face("z", side) for side in (1, -1))
         top, bottom = (self._mean(self.section.plates[face.plate], "z") for face in faces)
-        return combine((1.0, top), (-1.0, bottom))
+        return top - bottom
 
     def wall_deflection(self, direction: Direction) -> Row:
         """u_z or u_y averaged over the plates that carry its shear force in their own plane, in m.
@@ -103,7 +104,7 @@ class Outline:
         """
         carriers = self.section.carriers(direction)
         plates = self.section.plates
-        return combine(*((part, self._mean(plates[n], direction)) for n, part in carriers))
+        return sum((part * self._mean(plates[n], direction) for n, part in carriers), Row())
 
     def twist(self) -> Row:
         """Turn about x in rad: the circulation of the displacement over twice the enclosed area.
@@ -111,13 +112,13 @@ class Outline:
         That of a rigid turn by Stokes' theorem; a box's distortion into a parallelogram, which
         turns webs and flanges by opposite angles, is not read.
         """
-        terms = []
+        turn = Row()
         for plate in self.section.plates:
             part = plate.length / (2.0 * self.section.enclosed_area)
             for direction, slope in zip(COMPONENT, plate.tangent.tolist(), strict=True):
                 if slope != 0.0:
-                    terms.append((part * slope, self._mean(plate, direction)))
-        return combine(*terms)
+                    turn += part * slope * self._mean(plate, direction)
+        return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
         """u_z of a flange, averaged over the two points ±y, in m.
@@ -128,7 +129,8 @@ class Outline:
         """
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
-        return combine(*((0.5, self._interpolated(nodes, along, place)) for place in (y, -y)))
+        right, left = (self._interpolated(nodes, along, place) for place in (y, -y))
+        return 0.5 * right + 0.5 * left
 
     def _interpolated(self, nodes: npt.NDArray[np.int64], along: Array, place: float) -> Row:
         """u_z at one place along a plate."""
@@ -136,12 +138,12 @@ class Outline:
         edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
         left, _, right = along[2 * edge : 2 * edge + 3]
         shapes = quadratic(np.asarray((place - left) / (right - left)))
-        return row_of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
+        return Row.of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
 
     def _mean(self, plate: Plate, direction: Direction) -> Row:
         """Mean displacement over one plate's line, in m."""
         nodes, lengths = self._simpson(plate)
-        return row_of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
+        return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def _along(self, plate: Plate) -> tuple[npt.NDArray[np.int64], Array]:
         """Nodes of one plate's line, ends and middles in turn, and where they are along it in m.

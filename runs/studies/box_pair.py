@@ -25,8 +25,8 @@ from geometry.boom import Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from runs.studies.motions import SLOW
-from shell_model.contact.surface import gauss
-from shell_model.cross_section import Outline, Row, combine
+from shell_model.contact.wall_points import gauss
+from shell_model.cross_section import Outline, Row
 from shell_model.reduction.krylov import KrylovOptions, reduce_family
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
@@ -79,19 +79,18 @@ class Probe(NamedTuple):
 
     def row(self, outline: Callable[[float], Outline]) -> Row:
         """Over all places; ``outline`` gives the section at x."""
-        return combine(*((weight, self.read(outline(x))) for x, weight in self.places.items()))
+        return sum((weight * self.read(outline(x)) for x, weight in self.places.items()), Row())
 
 
 def pad_squeeze(outline: Outline) -> Row:
     """How much farther the flanges are apart under pads in the corners, in m."""
     half = 0.5 * outline.section.size("y")
-    return combine(
-        *(
-            (side * weight, outline.flange_deflection(side, y))
-            for side in (1.0, -1.0)
-            for y, weight in zip(*gauss(half - PAD_WIDTH, half, 4), strict=True)
-        )
+    rows = (
+        side * weight * outline.flange_deflection(side, y)
+        for side in (1.0, -1.0)
+        for y, weight in zip(*gauss(half - PAD_WIDTH, half, 4), strict=True)
     )
+    return sum(rows, Row())
 
 
 PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from geometry.contact_places import Patch, pads, patch
+from geometry.contact_places import Patch, pads
 from runs.case.build import build_boom
 from runs.case.contact import PadTable
 from runs.case.schema import Case
@@ -62,7 +62,7 @@ def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
 
 def _middles(boom: Boom) -> Boom:
     """The boom with its stations in the middles of their pads."""
-    places = {pad.x: patch(boom, pad) for pad in pads(boom)}
+    places = {pad.x: pad.patch for pad in pads(boom)}
     joints = tuple(
         replace(joint, stations=tuple(_middle(x, places[x]) for x in joint.stations))
         for joint in boom.joints

@@ -22,7 +22,7 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.studies.motions import friction_case
 from runs.studies.study import Cell, Proof, Study, Table
-from shell_model.cross_section import Outline, Row, combine
+from shell_model.cross_section import Outline, Row
 from shell_model.reduction.products import gram, times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
@@ -129,7 +129,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
     flexibilities = []
     for x in stations:
         top, bottom = (_corners(standing.outline(x), side) for side in (1.0, -1.0))
-        both = _compliance(standing, solve, combine((0.5, top), (0.5, bottom)))
+        both = _compliance(standing, solve, 0.5 * top + 0.5 * bottom)
         one = _compliance(standing, solve, top)
         flexibilities.append((both - _timoshenko(held, x), one - both))
     solve.destroy()
@@ -184,7 +184,9 @@ def racking(outline: Outline) -> Row:
     Twice the twist, with its flanges the other way round.
     """
     along_y = set(outline.dofs[:, 1].tolist())
-    return {dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()}
+    return Row(
+        {dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()}
+    )
 
 
 def racking_stiffness(
@@ -221,15 +223,13 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
     ring = _piece(Material(young, 0.0, 7850.0), section, length, collars=collars)
     shell = _shell(ring, size, (0.5 * length,))
     across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))
-    row = combine(
-        *(
-            (weight * side, shell.outline(x).flange_deflection(side, 0.0))
-            for x, weight in across
-            for side in (1.0, -1.0)
-        )
+    rows = (
+        weight * side * shell.outline(x).flange_deflection(side, 0.0)
+        for x, weight in across
+        for side in (1.0, -1.0)
     )
     solve = ShiftedSolver(shell, STATIC)
-    found = _compliance(shell, solve, row)
+    found = _compliance(shell, solve, sum(rows, Row()))
     solve.destroy()
     return found * length
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from geometry.contact_places import Stretch
 from geometry.section import COMPONENT, Direction, Offset
-from shell_model.cross_section import Row, combine, quadratic, row_of
+from shell_model.cross_section import Row, quadratic
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
@@ -43,7 +43,7 @@ class _Line(NamedTuple):
         forces = (high - low) * [1 / 6, 4 / 6, 1 / 6] * stretch.density(places)
         weights = np.einsum("ep,epn->en", forces, quadratic((places - left) / (right - left)))
         nodes = 2 * edges[:, None] + np.arange(3)
-        return row_of(self.dofs[nodes, COMPONENT[direction]].ravel(), weights.ravel())
+        return Row.of(self.dofs[nodes, COMPONENT[direction]].ravel(), weights.ravel())
 
 
 class CornerLines:
@@ -78,7 +78,5 @@ class CornerLines:
         first, last = sorted((plate.start, plate.end))
         middle, half = 0.5 * (face.low + face.high), 0.5 * face.width
         along = (across - middle) / half
-        return combine(
-            (0.5 * (1.0 - along), self._lines[first].mean(stretch, direction)),
-            (0.5 * (1.0 + along), self._lines[last].mean(stretch, direction)),
-        )
+        low, high = (self._lines[end].mean(stretch, direction) for end in (first, last))
+        return 0.5 * (1.0 - along) * low + 0.5 * (1.0 + along) * high

@@ -9,13 +9,13 @@ leaves the stations to friction.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.gap_builder import Contact, GapBuilder
-from geometry.boom import Boom, BoomError, Direction, Stop
-from geometry.contact_places import ContactLine, Pad, Stretch, pads, patch
-from geometry.section import Side
+from geometry.boom import Boom, BoomError, Direction
+from geometry.contact_places import ContactLine, Pad, pads, rests
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.stations import (
     Touch,
@@ -23,12 +23,13 @@ from shell_model.contact.stations import (
     corner,
     corner_patch,
     flange_patches,
+    flanges,
     half_of,
     near_webs,
 )
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_points import WallPoints
-from shell_model.cross_section import Reading, relative
+from shell_model.cross_section import Outline, Reading, Row
 from shell_model.segment_shell import SegmentShell
 
 
@@ -58,16 +59,17 @@ def gap_rows(
     by_points = line == "across" or any(joint.pad for joint in boom.joints)
     walls = [WallPoints(shell) for shell in shells] if by_points else []
     for pad in pads(boom):
-        touch = _touch(boom, pad, corners, walls, line)
+        touch = _touch(pad, corners, walls, line)
         if line == "surface":
             pressing = tuple(i for i, point in enumerate(points) if _presses(point, pad))
         else:
             law = laws[pad.direction][pad.number]
             pressing = rows.press(pad.station, law, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
-    for station, stop in boom.numbered_stops:
+    for rest in rests(boom):
+        stop = rest.stop
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        rows.stop(station, law, _flanges(boom, stop, corners[stop.segment]))
+        rows.stop(rest.station, law, flanges(rest, corners[stop.segment]))
     return rows
 
 
@@ -81,54 +83,40 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
         if not joint.tied:
             continue
         for x in joint.stations:
-            numbers = joint.inner, joint.outer
-            ends = [(number, shells[number].outline(x)) for number in numbers]
-            inner, outer = ((number, end.wall_deflection("z")) for number, end in ends)
-            found.append(relative(inner, outer))
-            if boom.spatial:
-                inner, outer = ((number, end.wall_deflection("y")) for number, end in ends)
-                found.append(relative(inner, outer))
-                inner, outer = ((number, end.twist()) for number, end in ends)
-                found.append(relative(inner, outer))
+            ends = joint.inner, joint.outer
+            outlines = [shells[number].outline(x) for number in ends]
+            for read in _TIED_IN_SPACE if boom.spatial else _TIED_IN_PLANE:
+                inner, outer = (read(outline) for outline in outlines)
+                found.append(Reading({joint.inner: inner, joint.outer: -outer}))
     return found
 
 
-def _flanges(boom: Boom, stop: Stop, corners: CornerLines) -> list[tuple[Side, float, Reading]]:
-    """A stop meets a flange above its webs, both at once."""
-    stretch = Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop))
-    sides: tuple[Side, Side] = (1, -1)
-    return [
-        (side, 1.0, {stop.segment: corners.deflection(stretch, "z", 0.0, side)}) for side in sides
-    ]
+_TIED_IN_PLANE: Sequence[Callable[[Outline], Row]] = (
+    partial(Outline.wall_deflection, direction="z"),
+)
+_TIED_IN_SPACE: Sequence[Callable[[Outline], Row]] = (
+    *_TIED_IN_PLANE,
+    partial(Outline.wall_deflection, direction="y"),
+    Outline.twist,
+)
 
 
 def _touch(
-    boom: Boom,
-    pad: Pad,
-    corners: Sequence[CornerLines],
-    walls: Sequence[WallPoints],
-    line: ContactLine,
+    pad: Pad, corners: Sequence[CornerLines], walls: Sequence[WallPoints], line: ContactLine
 ) -> Touch:
     """What a pad reads."""
-    inner, outer = pad.joint.inner, pad.joint.outer
-    covered = patch(boom, pad)
-    if not boom.spatial and covered is not None:
-        return flange_patches(pad, covered, walls[inner], walls[outer])
-    length = boom.contact_length(pad.joint)
-    pressed = (
-        Stretch.on(boom.segments[inner], pad.x, length),
-        Stretch.on(boom.segments[outer], pad.x, length),
-    )
-    if boom.spatial:
-        touch = corner(pad, corners[inner], corners[outer], pressed)
-        if covered is None:
+    ends = pad.joint.inner, pad.joint.outer
+    lines = [corners[number] for number in ends]
+    if pad.side:
+        touch = corner(pad, *lines)
+        if pad.patch is None:
             return touch
-        return corner_patch(pad, covered, touch, walls[inner], walls[outer])
-    section = boom.segments[inner].section
-    assert section is not None
+        return corner_patch(pad, pad.patch, touch, *(walls[number] for number in ends))
+    if pad.patch is not None:
+        return flange_patches(pad, pad.patch, *(walls[number] for number in ends))
     if line == "across":
-        return across(pad, walls[inner], walls[outer], pressed, section)
-    return near_webs(pad, corners[inner], corners[outer], pressed)
+        return across(pad, *(walls[number] for number in ends))
+    return near_webs(pad, *lines)
 
 
 def _presses(point: SurfacePoint, pad: Pad) -> bool:

@@ -13,12 +13,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from geometry.contact_places import Pad, Patch, Stretch
-from geometry.section import Direction, Section, Side
+from geometry.contact_places import Pad, Patch, Rest, Stretch
+from geometry.section import Direction, Side
 from shell_model.contact.corner_lines import CornerLines
-from shell_model.contact.surface import gauss
-from shell_model.contact.wall_points import Wall, WallPoints
-from shell_model.cross_section import Reading, Row, combine_readings, relative
+from shell_model.contact.wall_points import Wall, WallPoints, gauss
+from shell_model.cross_section import Reading, Row
 
 Array = npt.NDArray[np.float64]
 
@@ -26,9 +25,6 @@ _SIDES: tuple[Side, Side] = (1, -1)
 
 # Gauss's rule over a patch, along x and across.
 _POINTS = 4
-
-# What a station presses of the inner and of the outer segment's corners.
-Pressed = tuple[Stretch, Stretch]
 
 
 class Touch(NamedTuple):
@@ -38,42 +34,40 @@ class Touch(NamedTuple):
     slide: Reading
 
 
-def near_webs(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
+def near_webs(pad: Pad, inner: CornerLines, outer: CornerLines) -> Touch:
     """A station of a flat boom, from web to web; both flanges together slide as their mean does."""
 
     def along(side: Side) -> Reading:
         rows = (
             lines.deflection(stretch, "z", 0.0, side)
-            for lines, stretch in zip((inner, outer), pressed, strict=True)
+            for lines, stretch in zip((inner, outer), pad.pressed, strict=True)
         )
         return _approach(pad, *rows)
 
     return _sliding_as_its_mean([(side, 1.0, along(side)) for side in _SIDES])
 
 
-def across(
-    pad: Pad, inner: WallPoints, outer: WallPoints, pressed: Pressed, section: Section
-) -> Touch:
+def across(pad: Pad, inner: WallPoints, outer: WallPoints) -> Touch:
     """A station of a flat boom over the width of the inner section's faces. Collective."""
     points = []
     for side in _SIDES:
-        for y, weight in zip(*_half_gauss(section.face("z", side).width), strict=True):
+        for y, weight in zip(*_half_gauss(inner.section.face("z", side).width), strict=True):
             rows = (
                 walls.mean(Wall("z", side), *_line(stretch, y), "z")
-                for walls, stretch in zip((inner, outer), pressed, strict=True)
+                for walls, stretch in zip((inner, outer), pad.pressed, strict=True)
             )
             points.append((side, weight, _approach(pad, *rows)))
     return _sliding_as_its_mean(points)
 
 
-def corner(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -> Touch:
+def corner(pad: Pad, inner: CornerLines, outer: CornerLines) -> Touch:
     """A pad of a boom in space."""
 
     def along(direction: Direction) -> Reading:
         rows = (
             lines.deflection(stretch, direction, *offset)
             for lines, stretch, offset in zip(
-                (inner, outer), pressed, (pad.inner, pad.outer), strict=True
+                (inner, outer), pad.pressed, (pad.inner, pad.outer), strict=True
             )
         )
         return _approach(pad, *rows)
@@ -83,16 +77,10 @@ def corner(pad: Pad, inner: CornerLines, outer: CornerLines, pressed: Pressed) -
 
 def flange_patches(pad: Pad, patch: Patch, inner: WallPoints, outer: WallPoints) -> Touch:
     """A station of a flat boom with pads of a size; it slides as :func:`near_webs`. Collective."""
-    points = [
-        (
-            side,
-            1.0,
-            combine_readings(
-                [(0.5, _mean_approach(pad, patch, side, half, inner, outer)) for half in (1, -1)]
-            ),
-        )
-        for side in _SIDES
-    ]
+    points = []
+    for side in _SIDES:
+        right, left = (_mean_approach(pad, patch, side, half, inner, outer) for half in (1, -1))
+        points.append((side, 1.0, 0.5 * right + 0.5 * left))
     return _sliding_as_its_mean(points)
 
 
@@ -102,6 +90,18 @@ def corner_patch(
     """A pad of a size in space; it slides as its corner does. Collective."""
     reading = _mean_approach(pad, patch, pad.side, half_of(pad), inner, outer)
     return Touch([(pad.side, pad.weight, reading)], at_corner.slide)
+
+
+def flanges(rest: Rest, corners: CornerLines) -> list[tuple[Side, float, Reading]]:
+    """Side, weight and approach of a stop, which meets a flange above its webs, both at once."""
+    return [
+        (
+            side,
+            1.0,
+            Reading({rest.stop.segment: corners.deflection(rest.pressed, "z", 0.0, side)}),
+        )
+        for side in _SIDES
+    ]
 
 
 def half_of(pad: Pad) -> int:
@@ -126,7 +126,8 @@ def _mean_approach(
 
 
 def _sliding_as_its_mean(points: Sequence[tuple[Side, float, Reading]]) -> Touch:
-    return Touch(points, combine_readings([(0.5 * weight, row) for _, weight, row in points]))
+    first, *others = (0.5 * weight * approach for _, weight, approach in points)
+    return Touch(points, sum(others, first))
 
 
 def _half_gauss(width: float) -> tuple[Array, Array]:
@@ -144,4 +145,5 @@ def _line(stretch: Stretch, y: float) -> tuple[Array, Array]:
 
 
 def _approach(pad: Pad, inner: Row, outer: Row) -> Reading:
-    return relative((pad.joint.inner, inner), (pad.joint.outer, outer))
+    """u − w of the two points."""
+    return Reading({pad.joint.inner: inner, pad.joint.outer: -outer})

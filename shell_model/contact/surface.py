@@ -19,8 +19,8 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom, Direction, Joint
-from shell_model.contact.wall_points import Wall, WallPoints
-from shell_model.cross_section import Reading, combine_readings, relative
+from shell_model.contact.wall_points import Wall, WallPoints, gauss
+from shell_model.cross_section import Reading
 from shell_model.reduction.products import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
@@ -157,7 +157,7 @@ class _Patch:
         found = []
         for i, (weight, station) in enumerate(zip(self.weights, stations.tolist(), strict=True)):
             if not spatial:
-                mean = combine_readings([(0.5, right[i]), (0.5, left[i])])
+                mean = 0.5 * right[i] + 0.5 * left[i]
                 found.append(SurfacePoint(mean, law.shared(weight), station, self.wall.side, 0))
                 continue
             part = law.shared(0.5 * weight)
@@ -168,17 +168,11 @@ class _Patch:
     def _approaches(self, walls: Sequence[WallPoints], half: int) -> list[Reading]:
         """u − w along the wall's normal at the places on one half of it."""
         places = np.column_stack([self.x, half * self.across])
-        inner, outer = (
-            [(number, row) for row in walls[number].rows(self.wall, places, self.wall.normal)]
-            for number in (self.joint.inner, self.joint.outer)
-        )
-        return [relative(*pair) for pair in zip(inner, outer, strict=True)]
-
-
-def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
-    """Places of Gauss's rule on an interval, and weights that sum to one, (count,) each."""
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
+        ends = self.joint.inner, self.joint.outer
+        rows = (walls[number].rows(self.wall, places, self.wall.normal) for number in ends)
+        return [
+            Reading({ends[0]: inner, ends[1]: -outer}) for inner, outer in zip(*rows, strict=True)
+        ]
 
 
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:

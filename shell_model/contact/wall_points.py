@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
-from shell_model.cross_section import Row, combine
+from shell_model.cross_section import Row
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
@@ -50,10 +50,14 @@ class _Candidate(NamedTuple):
 
 
 class WallPoints:
-    """The triangles of a segment's walls with their nodes. Collective."""
+    """The triangles of a segment's walls with their nodes. Collective.
+
+    Attributes:
+        section: whose walls these are.
+    """
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._shell = shell
+        self._comm, self.section = shell.comm, shell.section
         displacement, to_parent = shell.space.sub(0).collapse()
         local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
         rows = shell.space.dofmap.index_map.local_to_global(local.ravel())
@@ -74,7 +78,7 @@ class WallPoints:
         """
         cells = self._near(wall, places[:, 0])
         found = [self._candidate(cells, wall, place, direction) for place in places]
-        on_ranks = self._shell.comm.allgather(found)
+        on_ranks = self._comm.allgather(found)
         rows: list[Row] = []
         for place, candidates in zip(places, zip(*on_ranks, strict=True), strict=True):
             held = [candidate for candidate in candidates if candidate is not None]
@@ -86,13 +90,12 @@ class WallPoints:
     def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
         """The sum of the rows of places, each with its weight. Collective."""
         rows = self.rows(wall, places, direction)
-        return combine(*zip(weights.tolist(), rows, strict=True))
+        return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
     def _near(self, wall: Wall, x: Array) -> npt.NDArray[np.int64]:
         """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
-        section = self._shell.section
-        margin = section.near
-        plate = section.plates[section.face(wall.normal, wall.side).plate]
+        margin = self.section.near
+        plate = self.section.plates[self.section.face(wall.normal, wall.side).plate]
         flat = plate.distance(self._places[:, 1:]) < margin
         along = self._places[self._cells[:, :3], 0]
         close = (along.max(axis=1) >= x.min() - margin) & (along.min(axis=1) <= x.max() + margin)
@@ -125,8 +128,14 @@ class WallPoints:
         dofs = self._dofs[nodes, COMPONENT[direction]].tolist()
         return _Candidate(
             tuple(corners[cell][order].ravel().tolist()),
-            dict(zip(dofs, map(float, weights), strict=True)),
+            Row(zip(dofs, map(float, weights), strict=True)),
         )
+
+
+def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
+    """Places of Gauss's rule on an interval, and weights that sum to one, (count,) each."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
 
 
 def _shares(corners: Array, place: Array) -> Array:

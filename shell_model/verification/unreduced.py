@@ -28,7 +28,7 @@ from dynamics.gap_builder import Contact, Friction
 from geometry.boom import Boom, BoomError
 from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
 from shell_model.contact.rows import gap_rows
-from shell_model.cross_section import Reading
+from shell_model.cross_section import Reading, Row
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
 from shell_model.verification.resisting_rows import ResistingRows
@@ -128,7 +128,7 @@ def assemble_boom(
         rows.contacts,
         rows.frictions,
         {
-            name: {number: shells[number].outline(x).mean_deflection()}
+            name: Reading({number: shells[number].outline(x).mean_deflection()})
             for name, (number, x) in boom.observed().items()
         },
     )
@@ -229,5 +229,5 @@ def _march(
 
 def _rows(readings: Sequence[Reading], number: int, shell: SegmentShell) -> scipy.sparse.csr_matrix:
     """(num_readings, num_owned) this rank's part of what readings read of a segment."""
-    parts = [shell.row(reading.get(number, {})) for reading in readings]
+    parts = [shell.row(reading.get(number, Row())) for reading in readings]
     return scipy.sparse.csr_matrix(np.array(parts).reshape(-1, shell.free.size))

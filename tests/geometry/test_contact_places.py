@@ -17,9 +17,12 @@ def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
     axis = (0.0, 0.0)
+    outer, inner = paper_boom.segments
+    # A tenth of the overlap from 9 to 10 m.
+    tail, head = ((Stretch.on(inner, x, 0.1), Stretch.on(outer, x, 0.1)) for x in joint.stations)
     assert pads(boom) == [
-        Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0),
-        Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0),
+        Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0, tail, None),
+        Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0, head, None),
     ]
 
 
