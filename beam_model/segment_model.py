@@ -77,7 +77,7 @@ def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:
 def _observed(boom: Boom, modes: BoomModes) -> dict[str, tuple[Array, str]]:
     """Deflections of the boom's ends, with their unit."""
     observed = {}
-    for name, (segment, x) in boom.observed().items():
+    for name, (segment, x) in boom.observed.items():
         observed[name] = modes.displacement(segment, x, "z"), "m"
         if boom.spatial:
             observed[f"{name}_lateral"] = modes.displacement(segment, x, "y"), "m"

@@ -252,6 +252,7 @@ class Boom:
         start, end = self.overlap(place)
         return end - start
 
+    @property
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
 

@@ -104,6 +104,11 @@ class Pad:
     pressed: tuple[Stretch, Stretch]
     patch: Patch | None
 
+    @property
+    def half(self) -> int:
+        """On which half of its wall it sits in space: 1 where the coordinate across is positive."""
+        return int(np.sign(self.inner[0] if self.direction == "z" else self.inner[1]))
+
 
 @dataclass(frozen=True, slots=True)
 class Rest:

@@ -238,7 +238,9 @@ def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
     """Transfinite patches of a diaphragm, one in each corner; gives their surfaces."""
     geo = gmsh.model.geo
     plates, count = section.plates, len(ring.points)
-    middle = geo.addPoint(x, 0.5 * sum(section.reach("y")), 0.5 * sum(section.reach("z")))
+    middle = geo.addPoint(
+        x, *(0.5 * (low + high) for low, high in zip(*section.bounds, strict=True))
+    )
     spokes = {}
     for j in range(1, count, 2):
         spokes[j] = geo.addLine(ring.points[j], middle)

@@ -195,6 +195,12 @@ class Section(Protocol):
         reached = [plate.start[COMPONENT[direction] - 1] for plate in self.plates]
         return min(reached), max(reached)
 
+    @property
+    def bounds(self) -> tuple[Offset, Offset]:
+        """The lowest and the highest (y, z) of the mid-lines in m."""
+        (y_low, y_high), (z_low, z_high) = self.reach("y"), self.reach("z")
+        return (y_low, z_low), (y_high, z_high)
+
     def size(self, direction: Direction) -> float:
         """How far the mid-lines reach along a direction, from end to end, in m."""
         low, high = self.reach(direction)

@@ -53,15 +53,20 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
     segment = boom.segments[number]
     section = segment.section
     assert section is not None
-    low, high = zip(*(_reached(section, axis) for axis in ("y", "z")), strict=True)
+    lowest, high = section.bounds
+    low_y, low_z = (
+        0.0 if axis in section.mirrors else place
+        for axis, place in zip(("y", "z"), lowest, strict=True)
+    )
     across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
-        yield (x, *low), (x, *high), _WALLS * across, _WALLS_GROWTH
-    for rest in rests(boom):
+        yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
+    resting, touching = rests(boom), pads(boom)
+    for rest in resting:
         if rest.stop.segment == number:
             for face in _faces(section, "z"):
                 yield _corner(rest.pressed, face)
-    for pad in pads(boom):
+    for pad in touching:
         for end, stretch in zip((pad.joint.inner, pad.joint.outer), pad.pressed, strict=True):
             if end == number:
                 for face in _faces(section, pad.direction):
@@ -82,16 +87,14 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
     yield from (plate.x for plate in segment.diaphragms)
 
 
-def _reached(section: Section, axis: Direction) -> tuple[float, float]:
-    """Coordinates in m of the section's ends along an axis, on the positive side of a mirror."""
-    low, high = section.reach(axis)
-    return (0.0 if axis in section.mirrors else low), high
-
-
 def _faces(section: Section, direction: Direction) -> list[Face]:
     """Those along a direction, without the mirror images."""
-    sides = (1,) if direction in section.mirrors else (1, -1)
-    return [section.face(direction, side) for side in sides]
+    mirrored = direction in section.mirrors
+    return [
+        face
+        for face in section.faces
+        if face.direction == direction and not (mirrored and face.side < 0)
+    ]
 
 
 def _place(face: Face, x: float, across: float) -> _Place:

@@ -149,8 +149,8 @@ def reduce_boom(
         tell("assembly", (number + 1) / len(boom.segments))
 
     start = perf_counter()
-    rows = gap_rows(boom, shells, planes, options.contact_line, options.surface)
     tied = ties(boom, shells)
+    rows = gap_rows(boom, shells, planes, options.contact_line, options.surface)
     own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
     timed_loads = [(load, load.push(_Member(shells[load.segment]))) for load in boom.loads]
     contacts = [contact.reading for contact in rows.contacts]
@@ -307,7 +307,7 @@ def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Rea
     """What is reported of the boom's ends, with its unit. Collective."""
     readings = _IN_SPACE if boom.spatial else _IN_PLANE
     observed: dict[str, tuple[Reading, str]] = {}
-    for name, (number, x) in boom.observed().items():
+    for name, (number, x) in boom.observed.items():
         outline = shells[number].outline(x)
         for suffix, (row, unit) in readings.items():
             observed[name + suffix] = (Reading({number: row(outline)}), unit)

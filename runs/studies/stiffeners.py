@@ -184,9 +184,7 @@ def racking(outline: Outline) -> Row:
     Twice the twist, with its flanges the other way round.
     """
     along_y = set(outline.dofs[:, 1].tolist())
-    return Row(
-        {dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()}
-    )
+    return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
 
 
 def racking_stiffness(

@@ -24,10 +24,9 @@ from shell_model.contact.stations import (
     corner_patch,
     flange_patches,
     flanges,
-    half_of,
     near_webs,
 )
-from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
+from shell_model.contact.surface import SurfaceOptions, surface_points
 from shell_model.contact.wall_points import WallPoints
 from shell_model.cross_section import Outline, Reading, Row
 from shell_model.segment_shell import SegmentShell
@@ -53,23 +52,25 @@ def gap_rows(
         BoomError: the contact line does not suit the boom.
     """
     _check_line(boom, line)
+    places, resting = pads(boom), rests(boom)
     points = surface_points(boom, shells, laws, surface) if line == "surface" else []
     rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
     corners = [CornerLines(shell) for shell in shells]
     by_points = line == "across" or any(joint.pad for joint in boom.joints)
     walls = [WallPoints(shell) for shell in shells] if by_points else []
-    for pad in pads(boom):
-        touch = _touch(pad, corners, walls, line)
+    touches = [_touch(pad, corners, walls, line) for pad in places]
+    stopped = [flanges(rest, corners[rest.stop.segment]) for rest in resting]
+    for pad, touch in zip(places, touches, strict=True):
         if line == "surface":
-            pressing = tuple(i for i, point in enumerate(points) if _presses(point, pad))
+            pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
         else:
             law = laws[pad.direction][pad.number]
             pressing = rows.press(pad.station, law, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
-    for rest in rests(boom):
+    for rest, meeting in zip(resting, stopped, strict=True):
         stop = rest.stop
         law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        rows.stop(rest.station, law, flanges(rest, corners[stop.segment]))
+        rows.stop(rest.station, law, meeting)
     return rows
 
 
@@ -107,7 +108,7 @@ def _touch(
     """What a pad reads."""
     ends = pad.joint.inner, pad.joint.outer
     lines = [corners[number] for number in ends]
-    if pad.side:
+    if pad.side:  # in the corners, of a boom in space
         touch = corner(pad, *lines)
         if pad.patch is None:
             return touch
@@ -117,13 +118,6 @@ def _touch(
     if line == "across":
         return across(pad, *(walls[number] for number in ends))
     return near_webs(pad, *lines)
-
-
-def _presses(point: SurfacePoint, pad: Pad) -> bool:
-    """Whether a surface point belongs to a pad: that of its station, in space of its corner."""
-    if point.station != pad.station:
-        return False
-    return pad.side == 0 or (point.side == pad.side and point.half == half_of(pad))
 
 
 def _check_line(boom: Boom, line: ContactLine) -> None:

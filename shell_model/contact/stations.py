@@ -88,7 +88,7 @@ def corner_patch(
     pad: Pad, patch: Patch, at_corner: Touch, inner: WallPoints, outer: WallPoints
 ) -> Touch:
     """A pad of a size in space; it slides as its corner does. Collective."""
-    reading = _mean_approach(pad, patch, pad.side, half_of(pad), inner, outer)
+    reading = _mean_approach(pad, patch, pad.side, pad.half, inner, outer)
     return Touch([(pad.side, pad.weight, reading)], at_corner.slide)
 
 
@@ -102,11 +102,6 @@ def flanges(rest: Rest, corners: CornerLines) -> list[tuple[Side, float, Reading
         )
         for side in _SIDES
     ]
-
-
-def half_of(pad: Pad) -> int:
-    """On which half of its wall a pad in space sits: 1 where the coordinate across is positive."""
-    return int(np.sign(pad.inner[0] if pad.direction == "z" else pad.inner[1]))
 
 
 def _mean_approach(

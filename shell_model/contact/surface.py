@@ -19,6 +19,7 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom, Direction, Joint
+from geometry.contact_places import Pad
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
 from shell_model.cross_section import Reading
 from shell_model.reduction.products import exact_product
@@ -71,6 +72,12 @@ class SurfacePoint(NamedTuple):
     station: int
     side: int
     half: int
+
+    def presses(self, pad: Pad) -> bool:
+        """Whether it belongs to a pad: that of its station, in space of its corner."""
+        if self.station != pad.station:
+            return False
+        return pad.side == 0 or (self.side, self.half) == (pad.side, pad.half)
 
 
 def surface_points(

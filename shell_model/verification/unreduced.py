@@ -129,7 +129,7 @@ def assemble_boom(
         rows.frictions,
         {
             name: Reading({number: shells[number].outline(x).mean_deflection()})
-            for name, (number, x) in boom.observed().items()
+            for name, (number, x) in boom.observed.items()
         },
     )
 

@@ -66,7 +66,7 @@ def test_places_of_the_paper(paper_boom: Boom) -> None:
     assert paper_boom.stations == [(9.0, "z"), (10.0, "z")]
     assert not paper_boom.spatial
     assert paper_boom.stations_of(0) == paper_boom.stations_of(1) == (9.0, 10.0)
-    assert paper_boom.observed() == {"tip": (1, 19.0), "head": (0, 10.0), "tail": (1, 9.0)}
+    assert paper_boom.observed == {"tip": (1, 19.0), "head": (0, 10.0), "tail": (1, 9.0)}
 
 
 def test_places_of_three_segments(paper_boom: Boom) -> None:
@@ -78,7 +78,7 @@ def test_places_of_three_segments(paper_boom: Boom) -> None:
     assert boom.tip == 27.0
     assert boom.stations_of(1) == (9.0, 10.0, 17.5, 19.0)
     assert boom.stations_of(2) == (17.5, 19.0)
-    assert boom.observed() == {
+    assert boom.observed == {
         "tip": (2, 27.0),
         "head": (0, 10.0),
         "tail": (1, 9.0),
