@@ -11,6 +11,7 @@ not lock as the wall becomes thin.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,19 +56,6 @@ class Strains(NamedTuple):
     drilling: Any
 
 
-class ShellForms(NamedTuple):
-    """Compiled bilinear forms, and the linear form of a unit load along ``load_direction``.
-
-    The load is 1 N/m³ on what carries it, which is as thick as ``loaded`` says, in m.
-    """
-
-    stiffness: Any
-    mass: Any
-    unit_load: Any
-    load_direction: Any
-    loaded: Any
-
-
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:
     """Orthonormal e1, e2 in the facet and e3 normal to it, from the cell's Jacobian.
 
@@ -100,15 +88,10 @@ def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
     return young / (1.0 - nu**2) * ((1.0 - nu) * strain + nu * ufl.tr(strain) * ufl.Identity(2))
 
 
-def shell_forms(
-    space: Any,
-    thickness: Any,
-    material: Material,
-    drilling: float = DRILLING,
-    loaded: Any | None = None,
-    shear_correction: float = SHEAR_CORRECTION,
-) -> ShellForms:
-    """Forms of one shell.
+class ShellForms:
+    """Bilinear forms of one shell and the linear form of a unit load, compiled when asked for.
+
+    The load is 1 N/m³ along ``load_direction`` on what carries it.
 
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.
@@ -120,37 +103,54 @@ def shell_forms(
         shear_correction: part of G t that resists transverse shear; a large one is a thin shell
             after Kirchhoff and Love, whatever its thickness.
     """
-    domain = space.mesh
-    loaded = thickness if loaded is None else loaded
-    constant = {
-        # Constants, not numbers: the compiled form then serves every material.
-        name: fem.Constant(domain, PETSc.ScalarType(value))
-        for name, value in {
-            "E": material.youngs_modulus,
-            "nu": material.poissons_ratio,
-            "rho": material.density,
-            "drilling": drilling,
-            "shear": shear_correction,
-        }.items()
-    }
-    young, nu, density = constant["E"], constant["nu"], constant["rho"]
-    shear_modulus = young / (2.0 * (1.0 + nu))
-    u, theta = ufl.split(ufl.TrialFunction(space))
-    v, eta = ufl.split(ufl.TestFunction(space))
-    strain, virtual = strains(domain, u, theta), strains(domain, v, eta)
-    t = thickness
-    stiffness = (
-        t * ufl.inner(plane_stress(young, nu, strain.membrane), virtual.membrane)
-        + t**3 / 12.0 * ufl.inner(plane_stress(young, nu, strain.bending), virtual.bending)
-        + constant["shear"] * shear_modulus * t * ufl.inner(strain.shear, virtual.shear)
-        + constant["drilling"] * shear_modulus * t * strain.drilling * virtual.drilling
-    ) * ufl.dx(degree=2, domain=domain)
-    mass = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
-    direction = fem.Constant(domain, np.zeros(3, dtype=PETSc.ScalarType))
-    return ShellForms(
-        fem.form(stiffness),
-        fem.form(mass * ufl.dx(degree=4, domain=domain)),
-        fem.form(loaded * ufl.dot(direction, v) * ufl.dx(degree=2, domain=domain)),
-        direction,
-        loaded,
-    )
+
+    def __init__(
+        self,
+        space: Any,
+        thickness: Any,
+        material: Material,
+        drilling: float = DRILLING,
+        loaded: Any | None = None,
+        shear_correction: float = SHEAR_CORRECTION,
+    ) -> None:
+        self._space, self._thickness, self._material = space, thickness, material
+        self._drilling, self._shear_correction = drilling, shear_correction
+        self.loaded = thickness if loaded is None else loaded
+        self.load_direction = fem.Constant(space.mesh, np.zeros(3, dtype=PETSc.ScalarType))
+
+    @cached_property
+    def stiffness(self) -> Any:
+        domain, t, material = self._space.mesh, self._thickness, self._material
+        young, nu = map(self._constant, (material.youngs_modulus, material.poissons_ratio))
+        correction, drilling = map(self._constant, (self._shear_correction, self._drilling))
+        shear_modulus = young / (2.0 * (1.0 + nu))
+        (u, theta), (v, eta) = self._trial_and_test()
+        strain, virtual = strains(domain, u, theta), strains(domain, v, eta)
+        energy = (
+            t * ufl.inner(plane_stress(young, nu, strain.membrane), virtual.membrane)
+            + t**3 / 12.0 * ufl.inner(plane_stress(young, nu, strain.bending), virtual.bending)
+            + correction * shear_modulus * t * ufl.inner(strain.shear, virtual.shear)
+            + drilling * shear_modulus * t * strain.drilling * virtual.drilling
+        )
+        return fem.form(energy * ufl.dx(degree=2, domain=domain))
+
+    @cached_property
+    def mass(self) -> Any:
+        t, density = self._thickness, self._constant(self._material.density)
+        (u, theta), (v, eta) = self._trial_and_test()
+        inertia = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
+        return fem.form(inertia * ufl.dx(degree=4, domain=self._space.mesh))
+
+    @cached_property
+    def unit_load(self) -> Any:
+        _, (v, _) = self._trial_and_test()
+        load = self.loaded * ufl.dot(self.load_direction, v)
+        return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))
+
+    def _trial_and_test(self) -> tuple[Any, Any]:
+        """Displacement and rotation of either."""
+        return ufl.split(ufl.TrialFunction(self._space)), ufl.split(ufl.TestFunction(self._space))
+
+    def _constant(self, value: float) -> Any:
+        """Not a number: the compiled form then serves every material."""
+        return fem.Constant(self._space.mesh, PETSc.ScalarType(value))

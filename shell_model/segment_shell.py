@@ -21,7 +21,7 @@ from geometry.section import COMPONENT, Section
 from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
-from shell_model.forms import ShellForms, shell_forms
+from shell_model.forms import ShellForms
 
 Array = npt.NDArray[np.float64]
 
@@ -265,7 +265,7 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) 
         compat.cellwise_function(domain, values) for values in comm.bcast(thicknesses)
     )
     space = compat.shell_space(domain)
-    forms = shell_forms(space, thickness, segment.material, loaded=plain)
+    forms = ShellForms(space, thickness, segment.material, loaded=plain)
     return Plates(space, thickness, forms, _holds(space, segment, section))
 
 

@@ -17,8 +17,8 @@ import numpy.typing as npt
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from shell_model.cross_section import Reading
-from shell_model.reduction.products import gram
 from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding, Job, shared
 from shell_model.segment_shell import SegmentShell
 
 Array = npt.NDArray[np.float64]
@@ -44,10 +44,18 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        solve = ShiftedSolver(shell, SLOW)
-        found[np.ix_(touching, touching)] += gram(shell.comm, rows, solve(rows))
-        solve.destroy()
+        jobs = Folding(shell).jobs(rows, rows[:, :0])
+        for root, family in shared(shell.comm, jobs, _answers):
+            found[np.ix_(touching, touching)] += shell.comm.bcast(family, root)
     return found
+
+
+def _answers(_: int, job: Job) -> Array:
+    """(num_contacts, num_contacts) what the rows of a family do to each other."""
+    solve = ShiftedSolver(job.shell(), SLOW)
+    answers = job.forces.T @ solve(job.forces)
+    solve.destroy()
+    return answers
 
 
 def local_compliance(

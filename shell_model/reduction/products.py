@@ -17,14 +17,19 @@ _AT_ONCE = 1 << 14
 _CANCELLED = 1.0e-14
 
 
+def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
+    """A block (num_owned, num_columns) as a matrix that another one is multiplied with."""
+    _, rows = matrix.getSizes()
+    count = block.shape[1]
+    columns = count if matrix.comm.rank == 0 else 0, count
+    return PETSc.Mat().createDense((rows, columns), array=block.ravel("F"), comm=matrix.comm)
+
+
 def times(matrix: PETSc.Mat, block: Array) -> Array:
     """(num_owned, num_columns) matrix times block. Collective."""
-    right, left = matrix.createVecs()
-    product = np.empty((left.getLocalSize(), block.shape[1]), order="F")
-    for column in range(block.shape[1]):
-        right.array[:] = block[:, column]
-        matrix.mult(right, left)
-        product[:, column] = left.array
+    right = dense(matrix, block)
+    left = matrix.matMult(right)
+    product: Array = left.getDenseArray().copy(order="F")
     right.destroy()
     left.destroy()
     return product

@@ -15,19 +15,17 @@ between the shifts.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
-from mpi4py import MPI
 
 from dynamics.failure import NumericsError
-from shell_model.reduction.agreement import together
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import Folding, Job
+from shell_model.reduction.symmetry import Folding, Job, shared
 from shell_model.segment_shell import SegmentShell
 
 __all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
@@ -87,23 +85,17 @@ def reduce_segment(
     families = comm.bcast([job.family for job in jobs])
     if not families:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
-    roots = [number % comm.size for number in range(len(families))]
     most = comm.bcast(_shares(options.most, jobs))
-    mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
 
-    def reduce_mine() -> dict[int, FamilyCoordinates]:
-        found: dict[int, FamilyCoordinates] = {}
-        for number, job in mine.items():
-            part = partial(_tell, progress, len(found), len(mine))
-            limited = replace(options, most=most[number])
-            found[number] = reduce_family(job.shell(), job.forces, job.readings, limited, part)
-        return found
+    def reduce_one(number: int, job: Job) -> FamilyCoordinates:
+        mine = range(comm.rank, len(families), comm.size)
+        part = partial(_tell, progress, mine.index(number), len(mine))
+        limited = replace(options, most=most[number])
+        return reduce_family(job.shell(), job.forces, job.readings, limited, part)
 
-    found = together(comm, reduce_mine)
     parts = []
     shapes = []
-    for number, (family, root) in enumerate(zip(families, roots, strict=True)):
-        own = found.pop(number, None)
+    for family, (root, own) in zip(families, shared(comm, jobs, reduce_one), strict=True):
         shapes.append(folding.unfold(None if own is None else own.shapes, family, root))
         parts.append(comm.bcast(None if own is None else own._replace(shapes=np.empty(0)), root))
     omega2 = np.concatenate([part.omega2 for part in parts])
@@ -119,18 +111,6 @@ def reduce_segment(
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=_limit(omega2[order], right[order]),
     )
-
-
-def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
-    """Every job of rank 0 in turn, on the rank that is to do it; None elsewhere."""
-    for number, root in enumerate(roots):
-        if comm.rank == 0 and root != 0:
-            comm.send(jobs[number], root)
-            yield None
-        elif comm.rank == root:
-            yield jobs[number] if root == 0 else comm.recv(source=0)
-        else:
-            yield None
 
 
 def _shares(most: int | None, jobs: Sequence[Job]) -> list[int | None]:

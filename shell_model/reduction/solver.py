@@ -7,13 +7,16 @@ import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
 
+from shell_model.reduction.products import dense
 from shell_model.segment_shell import Shell
 
 Array = npt.NDArray[np.float64]
 
-# MUMPS's ICNTL(7). A boom is long and thin: this ordering leaves as little fill as those that cut
-# it into parts, and is found in half the time.
-_ORDERING, _APPROXIMATE_MINIMUM_FILL = 7, 2
+# MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
+# little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an
+# option alone: what is set on a factor matrix before it is analysed is lost.
+_PREFIX = "shifted_"
+PETSc.Options(_PREFIX)["mat_mumps_icntl_7"] = 2
 
 
 class ShiftedSolver:
@@ -33,16 +36,12 @@ class ShiftedSolver:
             structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN,
         )
         self._matrix.setOption(PETSc.Mat.Option.SPD, True)
-        self._solver = PETSc.KSP().create(shell.comm)
-        self._solver.setOperators(self._matrix)
-        self._solver.setType(PETSc.KSP.Type.PREONLY)
-        factor = self._solver.getPC()
-        factor.setType(PETSc.PC.Type.CHOLESKY)
-        factor.setFactorSolverType("mumps")
-        factor.setFactorSetUpSolverType()
-        factor.getFactorMatrix().setMumpsIcntl(_ORDERING, _APPROXIMATE_MINIMUM_FILL)
-        self._solver.setUp()
-        self._right, self._left = self._matrix.createVecs()
+        self._factors = PETSc.PC().create(shell.comm)
+        self._factors.setOptionsPrefix(_PREFIX)
+        self._factors.setOperators(self._matrix)
+        self._factors.setType(PETSc.PC.Type.CHOLESKY)
+        self._factors.setFactorSolverType("mumps")
+        self._factors.setUp()
 
     def move(self, frequency: float) -> None:
         """Go to another frequency; what was analysed of the matrix's structure is kept."""
@@ -55,19 +54,21 @@ class ShiftedSolver:
             structure=PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN,
         )
         self.sigma = sigma
-        self._solver.setOperators(self._matrix)
-        self._solver.setUp()
+        self._factors.setOperators(self._matrix)
+        self._factors.setUp()
 
     def __call__(self, block: Array) -> Array:
         """(num_owned, num_columns) the solutions for a block."""
-        solution = np.empty_like(block)
-        for column in range(block.shape[1]):
-            self._right.array[:] = block[:, column]
-            self._solver.solve(self._right, self._left)
-            solution[:, column] = self._left.array
+        if block.shape[1] == 0:
+            return block
+        right, left = dense(self._matrix, block), dense(self._matrix, np.empty_like(block))
+        self._factors.getFactorMatrix().matSolve(right, left)
+        solution: Array = left.getDenseArray().copy(order="F")
+        right.destroy()
+        left.destroy()
         return solution
 
     def destroy(self) -> None:
         """Give the memory of the factors back."""
-        for thing in (self._right, self._left, self._solver, self._matrix):
+        for thing in (self._factors, self._matrix):
             thing.destroy()

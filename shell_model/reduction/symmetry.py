@@ -9,10 +9,10 @@ Round-off that depended on the number of ranks would not do, since contact ampli
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,7 @@ from scipy.sparse import csr_array
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh, plate_thickness
 from geometry.section import COMPONENT, Direction
+from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.reduction.agreement import together
 from shell_model.reduction.mirror import (
@@ -46,6 +47,7 @@ from shell_model.segment_shell import (
 
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.integer[Any]]
+_Found = TypeVar("_Found")
 
 # Part of its largest value below which a force has no part in a family.
 _NO_PART = 1.0e-9
@@ -147,7 +149,10 @@ class Folding:
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         quarter: list[tuple[Array, Indices]] = []
         if self._mesh is not None:
-            space = assemble_plates(MPI.COMM_SELF, shell.segment, self._mesh).space
+            points, triangles = self._mesh.points, self._mesh.triangles
+            space = compat.shell_space(
+                compat.create_triangle_mesh(MPI.COMM_SELF, points, triangles)
+            )
             quarter = [owned_nodes(space, part) for part in range(len(parts))]
             self._quarter_rows = _rows_of(quarter)
         first, _ = shell.owned
@@ -229,6 +234,35 @@ class Folding:
                 images[here, within] *= 0.5
                 images[there, within] = images[here, within]
         return images
+
+
+def shared(
+    comm: MPI.Comm, jobs: Sequence[Job], compute: Callable[[int, Job], _Found]
+) -> Iterator[tuple[int, _Found | None]]:
+    """The rank that computes each job, and what it found there; None elsewhere. Collective.
+
+    Args:
+        comm: the ranks that share the jobs.
+        jobs: on rank 0.
+        compute: of a job and its number.
+    """
+    roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
+    mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
+    found = together(comm, lambda: {number: compute(number, job) for number, job in mine.items()})
+    for number, root in enumerate(roots):
+        yield root, found.pop(number, None)
+
+
+def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:
+    """Every job of rank 0 in turn, on the rank that is to do it; None elsewhere."""
+    for number, root in enumerate(roots):
+        if comm.rank == 0 and root != 0:
+            comm.send(jobs[number], root)
+            yield None
+        elif comm.rank == root:
+            yield jobs[number] if root == 0 else comm.recv(source=0)
+        else:
+            yield None
 
 
 class _Entries(NamedTuple):

@@ -81,7 +81,7 @@ def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 
     Args:
         n: edges along each side of the quarter.
-        drilling: see ``forms.shell_forms``.
+        drilling: see ``forms.ShellForms``.
     """
     radius, half_length, opening = 25.0, 25.0, np.radians(40.0)
 
@@ -111,7 +111,7 @@ def pinched_cylinder(
 
     Args:
         n: edges along each side of the eighth, the smaller the nearer they are to the force.
-        drilling, shear_correction: see ``forms.shell_forms``.
+        drilling, shear_correction: see ``forms.ShellForms``.
     """
     radius, half_length = 300.0, 300.0
 
@@ -138,7 +138,7 @@ def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 
     Args:
         n: edges along each side of the quarter.
-        drilling: see ``forms.shell_forms``.
+        drilling: see ``forms.ShellForms``.
     """
     radius, top = 10.0, np.radians(72.0)
 
@@ -163,7 +163,7 @@ def twisted_beam(n: int, drilling: float = DRILLING_OF_CURVED) -> TwistedBeam:
 
     Args:
         n: edges over the width; there are six times as many along.
-        drilling: see ``forms.shell_forms``.
+        drilling: see ``forms.ShellForms``.
     """
     length, width = 12.0, 1.1
 

@@ -145,7 +145,7 @@ class PlainBox:
 
         Args:
             size: target edge length in m.
-            drilling: see ``forms.shell_forms``.
+            drilling: see ``forms.ShellForms``.
             turn: (3, 3) rotation of the box in space.
             breaks: mesh lines beside the ends.
         """
@@ -171,7 +171,7 @@ class PlainBox:
             size: target edge length in m.
             supports: where the outline is held against y and z.
             x, y: in m.
-            drilling: see ``forms.shell_forms``.
+            drilling: see ``forms.ShellForms``.
         """
         breaks = {f"place-{place:g}": place for place in (*supports, x)}
         shell = self.shell(size, drilling, breaks=breaks)

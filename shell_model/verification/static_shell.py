@@ -21,7 +21,7 @@ from dynamics.failure import NumericsError
 from geometry.boom import Material
 from shell_model import compat
 from shell_model.contact.attachments import Attached
-from shell_model.forms import DRILLING, SHEAR_CORRECTION, shell_forms
+from shell_model.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.segment_shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
 
 Array = npt.NDArray[np.float64]
@@ -43,7 +43,7 @@ class StaticShell:
         triangles: (num_triangles, 3) point numbers.
         thickness: in m, one for all triangles or (num_triangles,).
         material: isotropic.
-        drilling, shear_correction: see :func:`forms.shell_forms`.
+        drilling, shear_correction: see :func:`forms.ShellForms`.
 
     Attributes:
         nodes: (num_nodes, 3) places of the displacement nodes in m: points and middles of edges.
@@ -67,7 +67,7 @@ class StaticShell:
         walls = compat.cellwise_function(
             domain, np.broadcast_to(np.asarray(thickness, dtype=float), len(triangles))
         )
-        forms = shell_forms(space, walls, material, drilling, shear_correction=shear_correction)
+        forms = ShellForms(space, walls, material, drilling, shear_correction=shear_correction)
         self._plates = Plates(space, walls, forms, [])
         self.stiffness = compat.assemble_matrix(forms.stiffness, [], diagonal=1.0)
         self.nodes, self.node_dofs = owned_nodes(space, 0)
