@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import logging
+import warnings
+from typing import Any
 
 from runs.process.shown import message
 from runs.process.terminal import say
@@ -30,5 +32,14 @@ _LINES = _Lines()
 
 
 def show() -> None:
-    """Let notices be seen from now on."""
+    """Let notices be seen from now on, and not what libraries tell their callers.
+
+    A user cannot mend it. Filters hold as before: tests make errors of warnings.
+    """
     NOTICES.addHandler(_LINES)
+    warnings.showwarning = _say_nothing
+    logging.getLogger().addHandler(logging.NullHandler())
+
+
+def _say_nothing(*warning: Any, **where: Any) -> None:
+    """Some warn while they are imported."""

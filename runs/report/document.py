@@ -14,7 +14,7 @@ from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
 from runs.report.pages import MARKS, page
 from runs.report.stress_tables import wall_tables
-from runs.report.tables import TextTable
+from runs.report.tables import Table, TextTable
 from runs.report.theme import NONE, number
 from runs.report.verdict import Verdict
 
@@ -35,9 +35,8 @@ def render(
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
     """
-    models = [table.text for table in (*model_tables(results), *wall_tables(results))]
-    known = [table.text for table in known_tables(results)]
-    compared = [table.text for table in compared_tables(results)]
+    models = _texts([*model_tables(results), *wall_tables(results)])
+    known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
     motion, knowledge = (
         [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")
     )
@@ -73,6 +72,11 @@ def render(
         costs=_costs(results),
         case_text=toml.dumps(results.case),
     )
+
+
+def _texts(tables: Sequence[Table]) -> list[TextTable]:
+    """Those that have something to show."""
+    return [text for table in tables if (text := table.text).rows]
 
 
 def _numbered(
@@ -111,6 +115,7 @@ def _costs(results: Results) -> Mapping[str, str]:
         if right_to is not None:
             parts.append(f"its modes right up to {number(right_to, 2)} Hz")
         if error := model.mesh_error:
-            parts.append(f"local compliance of the mesh within {number(error, 2)}")
+            off = number(100.0 * error, 2)
+            parts.append(f"local compliance {off} % off an infinitely fine mesh's")
         costs[name] = ", ".join(parts)
     return costs

@@ -207,6 +207,8 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
 
 def _both(values: Sequence[float | None]) -> str:
     """The model's / that of the reference, in mm."""
+    if all(value is None for value in values):
+        return NONE
     return " / ".join(fixed(value, 1, MILLI) for value in reversed(values))
 
 

@@ -49,8 +49,8 @@ def print_models(results: Results, console: Console) -> None:
             )
         if (error := model.mesh_error) is not None:
             console.print(
-                f"{name}: the mesh answers where the segments touch as an infinitely fine one "
-                f"does, within {number(100.0 * error, 2)} % of what the walls give way",
+                f"{name}: where the segments touch, the walls give way by "
+                f"{number(100.0 * error, 2)} % more or less than on an infinitely fine mesh",
                 markup=False,
             )
     for caution in results.cautions():

@@ -45,11 +45,11 @@ if TYPE_CHECKING:
 POINTS = "points"
 _POINT = "point.json"
 
-# A process has one thread, though its libraries would take all cores; and the one that counts what
-# processes share says nothing when all are killed.
+# A process has one thread, though its libraries would take all cores. They warn nobody while they
+# are imported, nor does the process that counts what others share when all are killed.
 _OF_WORKERS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-) | {"PYTHONWARNINGS": "ignore::UserWarning:multiprocessing.resource_tracker"}
+) | {"PYTHONWARNINGS": "ignore"}
 # What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 

@@ -61,3 +61,12 @@ def test_version_is_the_installed_one() -> None:
     except PackageNotFoundError:
         installed = "(not installed)"
     assert answer("--version")[0] == f"protractile {installed}\n"
+
+
+def test_who_imports_the_package_is_warned_as_before() -> None:
+    """The command alone is silent: a notebook hears what concerns it."""
+    program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
+    )
+    assert "UserWarning: heard" in done.stderr

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
+import pytest
 import xarray as xr
 
 from dynamics.predictability.comparison import Distributions, PeakDifferences, Pointwise
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
+from runs.report.document import render
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.tables import Table
@@ -96,6 +99,23 @@ def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
 def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
     (horizons,) = known_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
     assert horizons.text.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
+
+
+def test_peaks_that_no_model_has_make_no_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
+    values = {key: [None, None] for key in ("range", "mean", "deviation")}
+    level = LEVELS | {
+        "peaks": none | {"explained": []},
+        "distributions": values | {"since": None, "distance": None},
+    }
+    nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
+    found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
+    monkeypatch.setattr(Results, "cautions", lambda self: [])
+    page = render(found, [], [], [])
+    assert "Horizons" in page
+    assert "Distribution of the tip" in page
+    assert "– / –" not in page
+    assert not any("Slow peaks" in title for title in re.findall("<h3>.*</h3>", page))
 
 
 def test_growth_says_what_limits() -> None:

@@ -82,6 +82,6 @@ def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPat
     assert console.file.getvalue().splitlines()[-2:] == [
         "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
         "head within 8 × 10⁻⁷",
-        "shell: the mesh answers where the segments touch as an infinitely fine one does, within "
-        "0.83 % of what the walls give way",
+        "shell: where the segments touch, the walls give way by 0.83 % more or less than on an "
+        "infinitely fine mesh",
     ]
