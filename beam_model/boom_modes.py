@@ -6,13 +6,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import block_diag, null_space
 
 from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
+from geometry.arrays import Array
 from geometry.boom import Boom, Direction
-
-Array = npt.NDArray[np.float64]
 
 # A tie that holds less than this part of what the strongest one holds, holds nothing.
 ROUND_OFF = 1.0e-9

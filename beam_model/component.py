@@ -13,10 +13,9 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array
 
 # Deflection along z or along y in m, rotation about x in rad.
 Motion = Literal["z", "y", "twist"]

@@ -16,12 +16,11 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from beam_model.component import Component, Motion, SegmentModel, products
+from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 
-Array = npt.NDArray[np.float64]
 Theory = Literal["euler-bernoulli", "timoshenko"]
 
 # ξ = x/h, h and Φ to shape functions and their derivatives along x, each (4, num_points).

@@ -13,14 +13,13 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import Legendre, Polynomial
 from scipy.linalg import null_space, rq
 
 from beam_model.component import Component, Motion, SegmentModel, products
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 
-Array = npt.NDArray[np.float64]
 Base = Literal["as printed", "pinned", "complete"]
 
 

@@ -10,19 +10,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-import numpy.typing as npt
-
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from dynamics.contact import ContactLaw, PowerContact
 from dynamics.excitation import Excitation
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
-
-Array = npt.NDArray[np.float64]
 
 
 def gap_system(

@@ -18,7 +18,8 @@ import numpy.typing as npt
 from numba import njit
 from scipy.optimize import brentq
 
-Array = npt.NDArray[np.float64]
+from dynamics.arrays import Array
+
 # (num_terms,) of TERM; (num_rows,) of LIMITS.
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]

@@ -18,14 +18,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh, null_space, pinv
 
+from dynamics.arrays import Array
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-
-Array = npt.NDArray[np.float64]
 
 # Modes that get their ratio: in space, three of each direction and two of twisting.
 DAMPED_MODES = 8

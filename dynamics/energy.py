@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array
 from dynamics.failure import StepTooLong
-
-Array = npt.NDArray[np.float64]
 
 # The energy residual, as a part of the energy put in, beyond which a run is not a result.
 ENERGY_BOUND = 1.0e-2

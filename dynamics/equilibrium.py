@@ -8,16 +8,14 @@ energy. Dry friction would leave a whole range of rest positions; this is the on
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.optimize import minimize
 
+from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, contact_terms
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces, contact_slopes
-
-Array = npt.NDArray[np.float64]
 
 # Unbalanced force, as a part of the load, at which a system counts as at rest; the minimiser aims
 # at a hundredth of it.

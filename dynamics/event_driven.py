@@ -13,9 +13,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.contact import Terms, contact_limits, contact_terms, term_force
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
@@ -34,8 +34,6 @@ from dynamics.kernels.flight import jump, pulls, safe_time, tabulate
 from dynamics.motion import Motion
 from dynamics.step import closing_speeds
 from dynamics.trajectory import Trajectory
-
-Array = npt.NDArray[np.float64]
 
 # Truncation of a series, as a part of the motion: an energy residual of about 1e-9 on the paper's
 # five-term case.

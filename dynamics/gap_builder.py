@@ -12,14 +12,13 @@ from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
-Array = npt.NDArray[np.float64]
 R = TypeVar("R")
 
 

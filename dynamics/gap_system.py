@@ -16,13 +16,11 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
-
-Array = npt.NDArray[np.float64]
 
 
 class Observer(NamedTuple):
@@ -79,7 +77,7 @@ class GapSystem:
     load: Array
     rows: Array
     laws: Sequence[ContactLaw]
-    station_of_row: npt.NDArray[np.int64]
+    station_of_row: Indices
     stations: Sequence[float]
     observers: Mapping[str, Observer]
     damping: Array = field(default_factory=lambda: np.zeros(0))

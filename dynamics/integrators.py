@@ -17,8 +17,6 @@ from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 
-Array = npt.NDArray[np.float64]
-
 # Up to so many modes jumps and series take less time than steps, whatever the exponent, for an
 # energy residual smaller by some 1e5 (series of 4 to 48 terms under the paper's load).
 FEW_MODES = 20

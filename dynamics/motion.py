@@ -6,11 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

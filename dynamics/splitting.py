@@ -19,9 +19,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.contact import Limits
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.kernels.compiled import SUMS
@@ -50,8 +50,6 @@ from dynamics.kernels.modal_flow import ModalFlow, modal_energy, move, tabulate,
 from dynamics.motion import Motion
 from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
-
-Array = npt.NDArray[np.float64]
 
 # How many steps may be made at once while nothing touches.
 STRIDES = np.array([1, 8, 64, 512])

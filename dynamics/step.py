@@ -10,12 +10,10 @@ part of its own.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
-
-Array = npt.NDArray[np.float64]
 
 # Step times the highest frequency. The energy error of the splitting is second order in it.
 PHASE = 0.03

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from dynamics.arrays import Array
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
 
@@ -21,7 +21,6 @@ from dynamics.gap_system import GapSystem
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = npt.NDArray[np.float64]
 
 Dims = str | tuple[str, str]
 

@@ -14,13 +14,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint, Stop
 from geometry.section import Offset, Side
 from geometry.segment import Segment
-
-Array = npt.NDArray[np.float64]
 
 ContactLine = Literal["near webs", "across", "surface"]
 

@@ -18,13 +18,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices, Mask
 from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.section import COMPONENT, Direction, Section
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 # Lengths are compared in this part of a mesh's extent: below any edge, above round-off.
 _ROUNDED = 1.0e-9
@@ -117,9 +114,7 @@ def _edges(corners: Array) -> Array:
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2))
 
 
-def _too_large(
-    mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[Spot]
-) -> npt.NDArray[np.bool_]:
+def _too_large(mesh: SegmentMesh, mirrors: Sequence[Direction], spots: Sequence[Spot]) -> Mask:
     """(num_triangles,) which are larger than a spot allows at their nearest corner."""
     near = _ROUNDED * float(np.ptp(mesh.points[:, 0]))
     places = mesh.points.copy()
@@ -132,7 +127,7 @@ def _too_large(
     return np.asarray(sides - allowed[mesh.triangles].min(axis=1) > near)
 
 
-def _bisected(mesh: SegmentMesh, cut: npt.NDArray[np.bool_]) -> SegmentMesh:
+def _bisected(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
     """The mesh with the marked triangles cut, and others as far as no node may hang."""
     edges = np.sort(np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2), axis=2)
     ends, edge_of = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)

@@ -7,12 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
+from geometry.arrays import Array
 from geometry.section import Direction
-
-Array = npt.NDArray[np.float64]
 
 
 class Member(Protocol):

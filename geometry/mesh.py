@@ -23,6 +23,7 @@ import meshio
 import numpy as np
 import numpy.typing as npt
 
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import SAME_PLACE, Segment
 from geometry.section import Offset, Plate, Section
 
@@ -40,14 +41,14 @@ class SegmentMesh:
         lines: name of a cross-section line → (num_edges, 2) point numbers.
     """
 
-    points: npt.NDArray[np.float64]
-    triangles: npt.NDArray[np.int64]
+    points: Array
+    triangles: Indices
     plates: tuple[str, ...]
     walls: npt.NDArray[np.int32]
-    lines: Mapping[str, npt.NDArray[np.int64]]
+    lines: Mapping[str, Indices]
 
     @property
-    def on_walls(self) -> npt.NDArray[np.bool_]:
+    def on_walls(self) -> Mask:
         """(num_triangles,) False on diaphragms."""
         return np.asarray(self.walls < len(self.plates))
 
@@ -142,13 +143,13 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
 
 
-def plain_thickness(section: Section, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
     """(num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
     of_wall = [plate.thickness for plate in section.plates]
     return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 
 
-def plate_thickness(segment: Segment, mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def plate_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
     """(num_triangles,) thickness in m of all plates of a segment whose section is known.
 
     Args:

@@ -18,10 +18,9 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array, Mask
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
@@ -220,7 +219,7 @@ class Section(Protocol):
         within = inner.face(direction, 1).outside + inner.face(direction, -1).outside
         return 0.5 * (self.face(direction, 1).inside + self.face(direction, -1).inside - within)
 
-    def on_plates(self, places: Array) -> npt.NDArray[np.bool_]:
+    def on_plates(self, places: Array) -> Mask:
         """(num_places,) which places (num_places, 2) lie on a mid-line."""
         distance = np.min([plate.distance(places) for plate in self.plates], axis=0)
         return np.asarray(distance < self.near)

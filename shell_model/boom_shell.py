@@ -10,13 +10,13 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
@@ -35,8 +35,6 @@ from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.fields import gather_fields
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from dolfinx import cpp, fem, jit, mesh
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from geometry.arrays import Array, Indices
 from shell_model import form_cache
 
 try:
@@ -45,9 +46,7 @@ _ASSEMBLE_DIAGONAL = (
 )
 
 
-def create_triangle_mesh(
-    comm: MPI.Comm, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
-) -> Any:
+def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> Any:
     """A distributed mesh of flat triangles in space, up to three on an edge.
 
     Args:
@@ -66,9 +65,7 @@ def create_triangle_mesh(
     return mesh.create_mesh(comm, triangles, points, domain)
 
 
-def _apart(
-    comm: MPI.Comm, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
-) -> dict[str, Any]:
+def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
     """Arguments of ``create_mesh`` with which three cells on an edge stay joined on any ranks."""
     if "max_facet_to_cell_links" in _CREATE_MESH:
         joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
@@ -90,7 +87,7 @@ def _apart(
     return {"partitioner": lambda *_: destinations}
 
 
-def _joined_cells(triangles: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+def _joined_cells(triangles: Indices) -> Indices:
     """(num_edges, 3) the cells on each edge that has three."""
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges = sides[:, 0] * (triangles.max(initial=0) + 1) + sides[:, 1]
@@ -100,9 +97,7 @@ def _joined_cells(triangles: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     return np.asarray(by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3)
 
 
-def _slices(
-    ranks: int, points: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
-) -> npt.NDArray[np.int32]:
+def _slices(ranks: int, points: Array, triangles: Indices) -> npt.NDArray[np.int32]:
     """(num_triangles,) the rank of each cell: equal numbers, one after another along x."""
     middles = points[triangles].mean(axis=1)
     place = np.empty(len(triangles), dtype=np.int64)
@@ -110,9 +105,7 @@ def _slices(
     return (ranks * place // max(1, len(triangles))).astype(np.int32)
 
 
-def create_hexahedron_mesh(
-    comm: MPI.Comm, points: npt.NDArray[np.float64], hexahedra: npt.NDArray[np.int64]
-) -> Any:
+def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) -> Any:
     """A distributed mesh of hexahedra with straight edges.
 
     Args:
@@ -152,7 +145,7 @@ def cellwise_space(domain: Any) -> Any:
     return getattr(fem, "functionspace", fem.FunctionSpace)(domain, ("DG", 0))
 
 
-def cellwise_function(domain: Any, values: npt.NDArray[np.float64]) -> Any:
+def cellwise_function(domain: Any, values: Array) -> Any:
     """A function that is constant on each cell.
 
     Args:
@@ -172,7 +165,7 @@ def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
     return matrix
 
 
-def assemble_vector(form: Any) -> npt.NDArray[np.float64]:
+def assemble_vector(form: Any) -> Array:
     """This rank's rows of an assembled vector, the other ranks' parts added."""
     vector = fem_petsc.assemble_vector(form)
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
@@ -181,7 +174,7 @@ def assemble_vector(form: Any) -> npt.NDArray[np.float64]:
     return np.asarray(rows)
 
 
-def cell_nodes(space: Any) -> npt.NDArray[np.int64]:
+def cell_nodes(space: Any) -> Indices:
     """(num_cells, num_nodes) this rank's nodes of each cell."""
     nodes = space.dofmap.list
     return np.asarray(getattr(nodes, "array", nodes), dtype=np.int64).reshape(
@@ -189,7 +182,7 @@ def cell_nodes(space: Any) -> npt.NDArray[np.int64]:
     )
 
 
-def node_places(space: Any) -> npt.NDArray[np.float64]:
+def node_places(space: Any) -> Array:
     """(num_nodes, 3) this rank's nodes of a quadratic or Crouzeix-Raviart space, in m.
 
     Corners are as they were given and middles of edges half their sum, so that a node has the

@@ -11,11 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.section import COMPONENT, Direction, Plate, Section
-
-Array = npt.NDArray[np.float64]
 
 _X = 0
 
@@ -24,7 +22,7 @@ class Row(dict[int, float]):
     """A sum of degrees of freedom: global number → weight."""
 
     @classmethod
-    def of(cls, dofs: npt.NDArray[np.int64], weights: Array) -> Row:
+    def of(cls, dofs: Indices, weights: Array) -> Row:
         """Of degrees of freedom, each with its weight; one may come twice."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
@@ -72,7 +70,7 @@ class Outline:
 
     x: float
     places: Array
-    dofs: npt.NDArray[np.int64]
+    dofs: Indices
     section: Section
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
@@ -132,7 +130,7 @@ class Outline:
         right, left = (self._interpolated(nodes, along, place) for place in (y, -y))
         return 0.5 * right + 0.5 * left
 
-    def _interpolated(self, nodes: npt.NDArray[np.int64], along: Array, place: float) -> Row:
+    def _interpolated(self, nodes: Indices, along: Array, place: float) -> Row:
         """u_z at one place along a plate."""
         # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
         edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
@@ -145,7 +143,7 @@ class Outline:
         nodes, lengths = self._simpson(plate)
         return Row.of(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
-    def _along(self, plate: Plate) -> tuple[npt.NDArray[np.int64], Array]:
+    def _along(self, plate: Plate) -> tuple[Indices, Array]:
         """Nodes of one plate's line, ends and middles in turn, and where they are along it in m.
 
         They rise with y, or with z where the plate is steep.
@@ -156,7 +154,7 @@ class Outline:
         order = np.argsort(along)
         return on_plate[order], along[order]
 
-    def _simpson(self, plate: Plate) -> tuple[npt.NDArray[np.int64], Array]:
+    def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
         """Nodes of one plate's line and their weights in m."""
         nodes, along = self._along(plate)
         lengths = along[2::2] - along[:-2:2]
@@ -166,7 +164,7 @@ class Outline:
         weights[2::2] += lengths / 6.0
         return nodes, weights
 
-    def _area_weights(self) -> tuple[npt.NDArray[np.int64], Array]:
+    def _area_weights(self) -> tuple[Indices, Array]:
         """Nodes of all plates (corners twice) and the areas in m² that they stand for."""
         parts = [(*self._simpson(plate), plate.thickness) for plate in self.section.plates]
         return (

@@ -9,12 +9,12 @@ from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import block_diag, null_space, qr
 
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Direction, Segment, Support
 from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
 from geometry.section import COMPONENT, Section
@@ -22,8 +22,6 @@ from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
 from shell_model.forms import ShellForms
-
-Array = npt.NDArray[np.float64]
 
 # Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
 ON_LINE = 1.0e-7
@@ -101,12 +99,12 @@ class Shell:
 
     comm: MPI.Comm
     matrices: Matrices
-    free: npt.NDArray[np.bool_]
+    free: Mask
     springs: Attached
     nodes: Array
-    node_dofs: npt.NDArray[np.int64]
+    node_dofs: Indices
     rotation_nodes: Array
-    rotation_dofs: npt.NDArray[np.int64]
+    rotation_dofs: Indices
     space: Any
 
     @property
@@ -283,7 +281,7 @@ def _unheld(held: Array) -> Array:
     return np.asarray(block_diag(np.eye(slides), others))
 
 
-def free_rows(space: Any, holds: list[Any]) -> npt.NDArray[np.bool_]:
+def free_rows(space: Any, holds: list[Any]) -> Mask:
     """(num_owned,) False in the rows of a space that are held."""
     free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
     for bc in holds:
@@ -295,7 +293,7 @@ def free_rows(space: Any, holds: list[Any]) -> npt.NDArray[np.bool_]:
 def _outline(
     comm: MPI.Comm,
     nodes: Array,
-    node_dofs: npt.NDArray[np.int64],
+    node_dofs: Indices,
     section: Section,
     x: float,
 ) -> Outline:
@@ -305,13 +303,13 @@ def _outline(
     return Outline(x, places, dofs, section)
 
 
-def _on_outline(places: Array, section: Section, x: float) -> npt.NDArray[np.bool_]:
+def _on_outline(places: Array, section: Section, x: float) -> Mask:
     """(num_places,) whether places (num_places, 3) are on the walls at x."""
     at_x = np.abs(places[:, 0] - x) < section.near
     return np.asarray(section.on_plates(places[:, 1:]) & at_x)
 
 
-def _local_row(first: int, free: npt.NDArray[np.bool_], weights: Row) -> Array:
+def _local_row(first: int, free: Mask, weights: Row) -> Array:
     local = np.zeros(free.size)
     for dof, weight in weights.items():
         if first <= dof < first + free.size and free[dof - first]:
@@ -354,7 +352,7 @@ def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
 def _holds(space: Any, segment: Segment, section: Section) -> list[Any]:
     """Dirichlet conditions of the rigid supports."""
 
-    def at(x: float) -> Callable[[Array], npt.NDArray[np.bool_]]:
+    def at(x: float) -> Callable[[Array], Mask]:
         return lambda places: _on_outline(places, section, x)
 
     return [
@@ -372,9 +370,7 @@ def _held_components(support: Support) -> list[tuple[int, int]]:
     return [(0, COMPONENT["y"]), (0, COMPONENT["z"])]
 
 
-def hold(
-    space: Any, part: int, component: int, where: Callable[[Array], npt.NDArray[np.bool_]]
-) -> Any:
+def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:
     """Dirichlet condition: zero.
 
     Args:
@@ -391,7 +387,7 @@ def hold(
     return fem.dirichletbc(function, dofs, held)
 
 
-def owned_nodes(space: Any, part: int) -> tuple[Array, npt.NDArray[np.int64]]:
+def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
     """Places of a vector part's nodes on this rank, and the global rows of their components."""
     collapsed, to_parent = space.sub(part).collapse()
     index_map = space.dofmap.index_map

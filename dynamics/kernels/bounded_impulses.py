@@ -9,10 +9,9 @@ its bounds the slip c_j + (G p)_j is zero; at a bound the slip opposes p_j.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-Array = npt.NDArray[np.float64]
+from dynamics.arrays import Array
 
 # A pivot below this part of its diagonal: the row depends on those before it.
 _DEPENDENT = 1.0e-12

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.contact import Limits, Terms, term_energy, term_force, term_slope
 from dynamics.kernels.compiled import SUMS
-
-Array = npt.NDArray[np.float64]
 
 
 @njit(**SUMS)

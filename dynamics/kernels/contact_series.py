@@ -13,13 +13,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.contact import Terms
 from dynamics.kernels.flight import stay
-
-Array = npt.NDArray[np.float64]
 
 # Highest power of the time: from 16 to 24 the work is about the same at every tolerance.
 ORDER = 20

@@ -9,14 +9,12 @@ vectors V of G, v − Vᵀ (1 − exp(−σ² t)) V v. What they take of ½ v·v
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.linalg import svd
 
+from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
-
-Array = npt.NDArray[np.float64]
 
 # Rates c (num_modes,), or none (0,) where no mode has any, so that its loops cost nothing;
 # directions V (num_dashpots, num_modes) and their rates σ² (num_dashpots,).

@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
-Array = npt.NDArray[np.float64]
+from dynamics.arrays import Array
 
 
 @njit(nogil=True, inline="always")

@@ -16,9 +16,9 @@ where they began; the rest of their speed goes at the end of the step, by impuls
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.contact import Limits, Terms
 from dynamics.kernels.bounded_impulses import (
     FREE,
@@ -32,8 +32,6 @@ from dynamics.kernels.bounded_impulses import (
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces
 from dynamics.kernels.integrator_state import BOUND, HELD, MIDDLE, PLACE, REST, SLIDING, SPEED
-
-Array = npt.NDArray[np.float64]
 
 _EPSILON = 2.0 * float(np.finfo(np.float64).eps)
 

@@ -4,15 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array, Indices
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces, first_closing
-
-Array = npt.NDArray[np.float64]
 
 # omega2, load (num_modes,), contact rows (num_rows, num_modes), terms and limits of their laws.
 System = tuple[Array, Array, Array, Terms, Limits]
@@ -25,8 +23,7 @@ Dry = tuple[Array, Array, Array, Array]
 # which all histories are straight: their factors where parts begin and end (num_parts + 1,
 # num_excitations), the length of each part in s, the first part of each step (num_steps + 1,), and
 # through how many steps from each one on the lines go on (num_steps,). Scratch (3, num_modes).
-Integers = npt.NDArray[np.int64]
-Excitations = tuple[Array, Array, Array, Integers, Integers, Array]
+Excitations = tuple[Array, Array, Array, Indices, Indices, Array]
 
 # Positions in the tally; from the work on as in ``ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT = range(8)

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
 from dynamics.kernels.contact_kicks import contact_forces, damped_kick
@@ -39,8 +39,6 @@ from dynamics.kernels.integrator_state import (
     read,
 )
 from dynamics.kernels.modal_flow import drive, move, tabulate, travel
-
-Array = npt.NDArray[np.float64]
 
 # Rows that turn within this part of a step of one another turn together.
 _TOGETHER = 1.0e-9

@@ -6,16 +6,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.linalg import expm
 from scipy.special import spherical_jn
 
+from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.integrator_state import DAMPING, WORK
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.stats import ks_2samp
 
+from dynamics.arrays import Array, Mask
 from dynamics.predictability.horizon import SHARES, horizons_of
 from dynamics.predictability.low_pass import SlowPeaks
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +86,7 @@ class PeakDifferences:
         )
 
     @property
-    def explained(self) -> npt.NDArray[np.bool_]:
+    def explained(self) -> Mask:
         """(num_peaks,) whether both time and height differ by no more than the spreads."""
         return (np.abs(self.times) <= self.time_spreads) & (
             np.abs(self.heights) <= self.height_spreads

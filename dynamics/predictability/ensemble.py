@@ -15,13 +15,11 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from dynamics.arrays import Array
 from dynamics.integrators import Integrator, by_splitting
 from dynamics.motion import Motion
-
-Array = npt.NDArray[np.float64]
 
 Vary = Literal["load", "clearance", "velocity"]
 

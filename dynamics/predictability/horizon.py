@@ -20,14 +20,12 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from dynamics.arrays import Array
 from dynamics.integrators import Integrator, by_splitting
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
-
-Array = npt.NDArray[np.float64]
 
 # Parts of the range at which two curves can be told apart, and at which one is no longer the other.
 SHARES = (0.01, 0.20)

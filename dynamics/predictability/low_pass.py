@@ -6,10 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import butter, find_peaks, sosfiltfilt
 
-Array = npt.NDArray[np.float64]
+from dynamics.arrays import Array
 
 # Part of the lowest elastic frequency of the closed system below which a motion is slow: with
 # play the boom swings more slowly than its own closed structure could, and the ripple is above.

@@ -7,15 +7,14 @@ from bisect import bisect_left
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.integrate import odeint, solve_ivp
 
 from dynamics.contact import contact_terms, term_force
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 
-Array = npt.NDArray[np.float64]
 Rates = Callable[[float, Array], Array]
 
 OUTPUT_STEP = 1.0e-3

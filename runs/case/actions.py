@@ -7,17 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Sine, Step, Table
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from geometry.boom import BoomError, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad
 from runs.case.messages import choices
 from runs.case.schema import Case, HistoryTable, LoadTable
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

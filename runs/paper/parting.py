@@ -4,17 +4,15 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.predictability.low_pass import slow_peaks
-
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array, Mask
 
 # Beyond the last peak a motion may end before the next one comes, so many periods of its own.
 NEXT_PEAK = 1.5
 
 
-def apart_at_the_end(one: Array, other: Array, last: npt.NDArray[np.bool_]) -> Array:
+def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
     """(num_members,) largest difference at the last times, as a part of the larger range.
 
     Args:

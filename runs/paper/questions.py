@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array
 from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-Array = npt.NDArray[np.float64]
 Number = TypeVar("Number", int, float)
 
 

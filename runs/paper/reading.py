@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from beam_model.kantorovich import Base
 from dynamics.failure import NumericsError
@@ -23,7 +22,6 @@ from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.report.verdict import Judgement
 
-Array = npt.NDArray[np.float64]
 Stiffness = Literal["restored", "literal"]
 
 SERIES = ("kantorovich-4", "kantorovich-5")

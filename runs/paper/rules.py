@@ -13,9 +13,9 @@ from dataclasses import asdict
 from itertools import combinations, pairwise
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import t as student
 
+from geometry.arrays import Array, Mask
 from runs.case.build import contact_laws
 from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
@@ -26,7 +26,6 @@ from runs.paper.statements import STATEMENTS, Finding
 from runs.pipeline.results import Results
 from runs.report.verdict import Judgement, Verdict
 
-Array = npt.NDArray[np.float64]
 # S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
 COINCIDENCE = 1.0e-6
 # S2. In the statement.
@@ -407,7 +406,7 @@ def _mean(values: Array) -> tuple[float, float]:
     return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
-def _share(shows: npt.NDArray[np.bool_]) -> tuple[float, float]:
+def _share(shows: Mask) -> tuple[float, float]:
     """Share of members that show something, and twice its standard error at one half."""
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
@@ -24,7 +23,6 @@ from runs.pipeline.summary import Growth
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 
 # Days of computing: what asks for more is a slip of the pen.

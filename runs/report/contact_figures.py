@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from runs.report.figure_context import KILO, MILLI, Array, Figure, Pen, highest, new_sheet
+from geometry.arrays import Array
+from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet
 
 # The stretch in which single contacts can be told apart, in s.
 FIRST_CONTACTS = 1.0

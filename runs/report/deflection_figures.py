@@ -10,8 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dynamics.predictability.horizon import SHARES
+from geometry.arrays import Array
 from runs.report import theme
-from runs.report.figure_context import MILLI, Array, Figure, Pen, farthest, highest, new_sheet
+from runs.report.figure_context import MILLI, Figure, Pen, farthest, highest, new_sheet
 
 # The stretch that shows the first press of the play and the first peak, in s.
 CLOSE_UP = 1.2

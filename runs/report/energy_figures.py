@@ -6,8 +6,9 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.energy import ENERGIES, energy_residual
+from geometry.arrays import Array
 from runs.report import theme
-from runs.report.figure_context import Array, Figure, Pen, highest, new_sheet
+from runs.report.figure_context import Figure, Pen, highest, new_sheet
 
 # Of the numbers that an energy is the sum of.
 ROUND_OFF = 1.0e-16

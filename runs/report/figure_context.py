@@ -9,16 +9,14 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
+from geometry.arrays import Array
 from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.report import theme
-
-Array = npt.NDArray[np.float64]
 
 MILLI = 1.0e3
 KILO = 1.0e3

@@ -13,7 +13,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, eigsh
 
@@ -21,6 +20,7 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
@@ -36,8 +36,6 @@ from shell_model.segment_shell import Shell, assemble_segment
 from shell_model.verification.plates import STEEL
 from shell_model.verification.solid import assemble_solid
 from shell_model.verification.solid_mesh import mesh_quarter
-
-Array = npt.NDArray[np.float64]
 
 # Distances in m of the mid-lines, which stay where they are as walls become thicker.
 OUTER = (0.40, 0.30)

@@ -13,20 +13,18 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
+from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.studies.motions import OUTPUT_STEP, PHASE, finer, friction_case, gap_system, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Proof, Study, Table
-
-Array = npt.NDArray[np.float64]
 
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import find_peaks
 
 from dynamics.damping import pressed_modes, with_ratio
@@ -16,13 +15,12 @@ from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.studies.motions import gap_system, model_of, without_friction
 from runs.studies.study import Proof, Study, Table
-
-Array = npt.NDArray[np.float64]
 
 # Booms, and their cases.
 BOOMS = {

@@ -14,18 +14,16 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.energy import ENERGY_BOUND
+from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.pipeline.motion import Plan
 from runs.studies.motions import friction_case, gap_system, lasting, loaded, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.study import Plot, Proof, Study, Table
-
-Array = npt.NDArray[np.float64]
 
 # Allowed of the tip, as a part of its range.
 ALLOWED = 0.005

@@ -6,15 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.excitation import Excitation, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from runs.studies.study import Proof, Study
-
-Array = npt.NDArray[np.float64]
 
 # Outputs, and with nothing to touch the steps too, are so far apart in s; for so long.
 OUTPUT_STEP = 0.02

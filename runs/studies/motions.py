@@ -13,7 +13,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.gap_system import GapSystem
@@ -21,6 +20,7 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
 from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
@@ -30,8 +30,6 @@ from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case, Model
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
-
-Array = npt.NDArray[np.float64]
 
 CASE = CASES / "friction-walk.toml"
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.contact_places import Patch, pads
 from runs.case.build import build_boom
@@ -17,8 +17,6 @@ from runs.case.contact import PadTable
 from runs.case.schema import Case
 from runs.studies.motions import SLOW, compliance, gap_system, model_of
 from runs.studies.study import Cell, Proof, Table
-
-Array = npt.NDArray[np.float64]
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:

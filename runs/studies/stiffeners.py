@@ -13,9 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 
+from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
@@ -27,8 +27,6 @@ from shell_model.reduction.products import gram, times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.verification.eigenmodes import natural_frequencies
-
-Array = npt.NDArray[np.float64]
 
 COMM = MPI.COMM_SELF
 # In Hz, in place of zero: nothing holds a segment along x. Far below all elastic modes.

@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.studies.motions import (
@@ -27,8 +27,6 @@ from runs.studies.motions import (
 )
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
 from runs.studies.study import Plot, Proof, Study, Table
-
-Array = npt.NDArray[np.float64]
 
 # Of the highest frequency of the contacts, see dynamics.step: thrice what a run would take, which
 # changes the tip with friction by less than 0.1 % of its range.

@@ -18,9 +18,9 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.studies.mesh import peak_heights
@@ -28,8 +28,6 @@ from runs.studies.motions import finer, friction_case, gap_system, move, shell_o
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Cell, Proof, Study, Table
-
-Array = npt.NDArray[np.float64]
 
 # What is allowed of the first peak, and of the tip as a part of its range.
 ALLOWED = 0.002, 0.02

@@ -19,8 +19,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
+from geometry.arrays import Array
 from runs.report import theme
-from runs.report.figure_context import Array, new_sheet
+from runs.report.figure_context import new_sheet
 from runs.sweep.quantities import QUANTITIES, Quantity
 
 # What two keys are mapped for; the others are for checking, and in the files.

@@ -6,11 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array
 from runs.pipeline.results import Results
-
-Array = npt.NDArray[np.float64]
 
 # Name of the quantity → its value in SI, None where a model has none.
 Measured = dict[str, float | None]

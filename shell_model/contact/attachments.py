@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array
 
 
 class Attached(NamedTuple):

@@ -12,14 +12,12 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.contact_places import Stretch
 from geometry.section import COMPONENT, Direction, Offset
 from shell_model.cross_section import Row, quadratic
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 
 class _Line(NamedTuple):
@@ -31,7 +29,7 @@ class _Line(NamedTuple):
     """
 
     x: Array
-    dofs: npt.NDArray[np.int64]
+    dofs: Indices
 
     def mean(self, stretch: Stretch, direction: Direction) -> Row:
         """Displacement weighed by a unit force's density; Simpson's rule is exact for it."""

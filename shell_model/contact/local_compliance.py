@@ -12,16 +12,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
+from geometry.arrays import Array
 from shell_model.cross_section import Reading
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 # Hz: above rigid motion, below all elastic motion.
 SLOW = 20.0

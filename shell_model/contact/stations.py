@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array
 from geometry.contact_places import Pad, Patch, Rest, Stretch
 from geometry.section import Direction, Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
 from shell_model.cross_section import Reading, Row
-
-Array = npt.NDArray[np.float64]
 
 _SIDES: tuple[Side, Side] = (1, -1)
 

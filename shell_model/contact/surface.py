@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
+from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.contact_places import Pad
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
@@ -25,8 +25,6 @@ from shell_model.cross_section import Reading
 from shell_model.reduction.products import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 # The part of a row's flexibility that may be left out. With it the tip of the paper's boom with
 # friction moves by 0.01 % of its range.

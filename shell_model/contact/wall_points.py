@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
 from shell_model.cross_section import Row
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 # A point this far outside a triangle, in barycentric coordinates, lies on its edge.
 _ON_EDGE = 1.0e-8
@@ -92,7 +90,7 @@ class WallPoints:
         rows = self.rows(wall, places, direction)
         return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
-    def _near(self, wall: Wall, x: Array) -> npt.NDArray[np.int64]:
+    def _near(self, wall: Wall, x: Array) -> Indices:
         """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
         margin = self.section.near
         plate = self.section.plates[self.section.face(wall.normal, wall.side).plate]
@@ -102,7 +100,7 @@ class WallPoints:
         return np.asarray(self._cells[flat[self._cells].all(axis=1) & close])
 
     def _candidate(
-        self, cells: npt.NDArray[np.int64], wall: Wall, place: Array, direction: Direction
+        self, cells: Indices, wall: Wall, place: Array, direction: Direction
     ) -> _Candidate | None:
         """The row of the first triangle that holds a place; None where this rank has none."""
         if not len(cells):

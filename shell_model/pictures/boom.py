@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from PIL import Image
 
+from geometry.arrays import Array
 from shell_model.pictures import theme as theme
 from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Stop, round_scale
 from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
-
-Array = npt.NDArray[np.float64]
 
 # The whole boom: displacements are drawn up to this part of its length, sections so many times
 # larger, of which the play takes up to this part.

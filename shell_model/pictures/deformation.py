@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from geometry.arrays import Array
 from shell_model.stress.stresses import ShellStress
 
-Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int32]
 
 # Walls are drawn with this part of the outer section's height; their thickness is not known here.

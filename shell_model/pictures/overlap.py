@@ -8,17 +8,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.patches import Patch
 from PIL import Image
 
+from geometry.arrays import Array, Mask
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Overlap, round_scale
 from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
-
-Array = npt.NDArray[np.float64]
 
 # A clearance is drawn up to this part of the outer section's height; room in m beside the stations.
 CLEARANCE_DRAWN, MARGIN = 0.08, 0.6
@@ -54,7 +52,7 @@ class OverlapView:
     pixels: tuple[int, int]
     scale: float
     width: float
-    behind: npt.NDArray[np.bool_]
+    behind: Mask
 
     @classmethod
     def of(

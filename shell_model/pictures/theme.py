@@ -22,7 +22,8 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array
+
 Pixels = npt.NDArray[np.uint8]
 Triangles = npt.NDArray[np.int32]
 

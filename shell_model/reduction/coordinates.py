@@ -6,17 +6,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from mpi4py import MPI
 from scipy.linalg import eigh, null_space
 
+from geometry.arrays import Array
 from shell_model.cross_section import Reading
 from shell_model.reduction.products import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 
 class BoomCoordinates:

@@ -9,15 +9,13 @@ from itertools import chain, repeat
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array, Mask
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import Shell
-
-Array = npt.NDArray[np.float64]
 
 # A direction that is left with less than this part of its length is in the space already.
 _DEPENDENT = 1.0e-9
@@ -79,7 +77,7 @@ class FamilyCoordinates(NamedTuple):
     compliance_error: float
     reading_error: float
     lost_compliance: Array
-    right: npt.NDArray[np.bool_]
+    right: Mask
 
 
 def reduce_family(
@@ -286,9 +284,7 @@ def _independent(block: Array) -> Array:
     return found
 
 
-def _right(
-    shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver
-) -> npt.NDArray[np.bool_]:
+def _right(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
     """Whether each ω is within 0.1 % of a natural one, up to the first that may not be.
 
     With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies

@@ -16,14 +16,12 @@ from itertools import product
 from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array, Indices, Mask
 from geometry.mesh import SegmentMesh
 from geometry.section import COMPONENT, Direction
-
-Array = npt.NDArray[np.float64]
 
 # Nodes closer than this part of a mesh's extent to a place lie on it; meshes are exact to
 # round-off.
@@ -78,7 +76,7 @@ def families(mirrors: Sequence[Direction]) -> list[Family]:
     return [Family(*parity) for parity in product(*parities)]
 
 
-def quarter_of(places: Array, mirrors: Sequence[Direction]) -> npt.NDArray[np.int64]:
+def quarter_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
     """(num_places,) 1 at negative y, 2 at negative z, 3 at both, 0 at neither.
 
     Of the mirrors' axes alone: without that of z there are the halves 0 and 1.
@@ -95,12 +93,12 @@ def folded(places: Array, mirrors: Sequence[Direction]) -> Array:
     return images
 
 
-def on_plane(places: Array, axis: int) -> npt.NDArray[np.bool_]:
+def on_plane(places: Array, axis: int) -> Mask:
     """(num_places,) which places (num_places, 3) lie in the mirror of an axis."""
     return np.asarray(np.abs(places[:, axis]) <= _near(places))
 
 
-def matches(places: Array, among: Array) -> npt.NDArray[np.int64] | None:
+def matches(places: Array, among: Array) -> Indices | None:
     """(num_places,) numbers of the same places in a list; None where one has no match."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
@@ -142,9 +140,7 @@ def quarter_mesh(mesh: SegmentMesh, thickness: Array, mirrors: Sequence[Directio
     )
 
 
-def _sorted(
-    triangles: npt.NDArray[np.int64], thickness: Array
-) -> tuple[npt.NDArray[np.int64], Array]:
+def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
     """Triangles and their thickness in an order that does not depend on how they were given."""
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)

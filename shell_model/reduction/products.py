@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array
 
 # Rows whose products are in memory at once.
 _AT_ONCE = 1 << 14

@@ -20,17 +20,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array, Mask
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
 from shell_model.segment_shell import SegmentShell
 
 __all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
-
-Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +124,7 @@ def _tell(progress: Callable[[float], None] | None, done: int, count: int, part:
         progress((done + part) / count)
 
 
-def _limit(omega2: Array, right: npt.NDArray[np.bool_]) -> float:
+def _limit(omega2: Array, right: Mask) -> float:
     """Hz up to which all of the rising frequencies are right."""
     first_wrong = int(np.argmin(right)) if not right.all() else right.size
     return float(np.sqrt(omega2[first_wrong - 1]) / (2.0 * np.pi)) if first_wrong else 0.0

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from petsc4py import PETSc
 
+from geometry.arrays import Array
 from shell_model.reduction.products import dense
 from shell_model.segment_shell import Shell
-
-Array = npt.NDArray[np.float64]
 
 # MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
 # little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an

@@ -20,6 +20,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_array
 
+from geometry.arrays import Array, Mask
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh, plate_thickness
 from geometry.section import COMPONENT, Direction
@@ -45,7 +46,6 @@ from shell_model.segment_shell import (
     owned_nodes,
 )
 
-Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.integer[Any]]
 _Found = TypeVar("_Found")
 
@@ -130,7 +130,7 @@ class _Rows(NamedTuple):
     """
 
     component: Indices
-    in_mirrors: npt.NDArray[np.bool_]
+    in_mirrors: Mask
 
 
 class Folding:

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
-from shell_model.stress.stresses import Face, Indices, ShellStress, wall_forces
+from geometry.arrays import Array, Indices
+from shell_model.stress.stresses import Face, ShellStress, wall_forces
 from shell_model.stress.summary import (
     CarriedAt,
     LargestPatch,
@@ -23,8 +23,6 @@ from shell_model.stress.summary import (
     StressHistory,
     StressSummary,
 )
-
-Array = npt.NDArray[np.float64]
 
 # How far a band reaches to each side of its place, in m; a patch is half a wall of it.
 BAND = 0.25

@@ -12,11 +12,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import ufl
 from dolfinx import fem
 from petsc4py import PETSc
 
+from geometry.arrays import Array
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh, plate_thickness
 from shell_model import compat
@@ -24,8 +24,6 @@ from shell_model.forms import facet_frame, plane_stress, strains
 from shell_model.reduction.products import times
 from shell_model.segment_shell import SegmentShell
 from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
-
-Array = npt.NDArray[np.float64]
 
 
 def gather_stress_modes(

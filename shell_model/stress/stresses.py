@@ -11,12 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from geometry.arrays import Array, Indices
 from geometry.mesh import SegmentMesh
 from shell_model.stress.summary import WallForces
 
-Array = npt.NDArray[np.float64]
 Modes = npt.NDArray[np.float32]
-Indices = npt.NDArray[np.int64]
 
 Face = Literal["outer", "middle", "inner"]
 

@@ -11,14 +11,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.boom import Material
 from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from shell_model.verification.static_shell import StaticShell, hold
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 X, Y, Z = 0, 1, 2
 # Nodes closer than this to an end lie on it.

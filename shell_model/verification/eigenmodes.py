@@ -7,15 +7,15 @@ They judge a mesh and the reduction; the motion itself does not need them.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from petsc4py import PETSc
 from slepc4py import SLEPc
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array
 from shell_model.segment_shell import Shell
 
 
-def natural_frequencies(shell: Shell, count: int) -> npt.NDArray[np.float64]:
+def natural_frequencies(shell: Shell, count: int) -> Array:
     """The lowest natural frequencies in Hz, rising, rigid motions included. Collective.
 
     Shift-and-invert at a negative shift: K − σ M is then positive definite also for a free

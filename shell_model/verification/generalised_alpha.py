@@ -16,16 +16,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse
 from petsc4py import PETSc
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array
 from shell_model.reduction.products import gram
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell
-
-Array = npt.NDArray[np.float64]
 
 # Relative residual of the accelerations at the start.
 _START = 1.0e-12

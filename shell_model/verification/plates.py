@@ -7,16 +7,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from geometry.arrays import Array, Indices
 from geometry.boom import Material
 from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
-from shell_model.verification.benchmarks import AT_END, Indices, X, Y, grid
+from shell_model.verification.benchmarks import AT_END, X, Y, grid
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.static_shell import StaticShell, hold
 
-Array = npt.NDArray[np.float64]
 Field = Callable[[Array, Array], Array]
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)

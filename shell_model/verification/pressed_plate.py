@@ -10,15 +10,14 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 
+from geometry.arrays import Array
 from shell_model.forms import SHEAR_CORRECTION
 from shell_model.verification.benchmarks import AT_END, X, Y, Z, grid
 from shell_model.verification.plates import STEEL
 from shell_model.verification.static_shell import StaticShell, hold
 
-Array = npt.NDArray[np.float64]
 Edges = Literal["simply supported", "clamped"]
 
 # Polynomials of each field along each side: eight more change the compliance by 1e-3 at most.

@@ -7,18 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.boom import Material
 from geometry.mesh import mesh_segment, plain_thickness
 from geometry.section import Section
 from shell_model.cross_section import Outline
 from shell_model.forms import DRILLING
-from shell_model.verification.benchmarks import AT_END, Indices, X, Y, Z, grid
+from shell_model.verification.benchmarks import AT_END, X, Y, Z, grid
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.static_shell import StaticShell, hold
-
-Array = npt.NDArray[np.float64]
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 

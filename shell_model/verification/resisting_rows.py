@@ -13,15 +13,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from dynamics.contact import ContactLaw, Terms, contact_terms
 from dynamics.failure import StepTooLong
 from dynamics.friction import DryFriction
 from dynamics.kernels.contact_kicks import contact_energy
-
-Array = npt.NDArray[np.float64]
+from geometry.arrays import Array
 
 _ROUNDS = 1000
 _MOST_NEWTON = 100

@@ -14,13 +14,13 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix, diags, vstack
 
+from geometry.arrays import Array, Indices
 from geometry.boom import Material, Segment, Support
 from geometry.section import BoxSection
 from shell_model import compat
@@ -29,9 +29,6 @@ from shell_model.cross_section import Outline, Row
 from shell_model.reduction.mirror import Family, on_plane
 from shell_model.segment_shell import ON_LINE, Matrices, Shell
 from shell_model.verification.solid_mesh import SolidMesh
-
-Array = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from geometry.arrays import Array, Indices
 from geometry.section import BoxSection
-
-Array = npt.NDArray[np.float64]
 
 # Of an edge over the one before it: what ends at a place fades slower than what ends in a corner.
 _GROWTH_ALONG = 3.0
@@ -37,7 +35,7 @@ class SolidMesh:
     """
 
     points: Array
-    hexahedra: npt.NDArray[np.int64]
+    hexahedra: Indices
     planes: tuple[Array, Array, Array]
     layers: int
 
@@ -106,7 +104,7 @@ def _across(distance: float, wall: float, size: float, splits: int, layers: int)
     return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
 
 
-def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, npt.NDArray[np.int64]]:
+def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indices]:
     """Points and cells of a lattice that lie in the outermost layers."""
     shape = tuple(plane.size for plane in planes)
     number = np.arange(np.prod(shape)).reshape(shape)

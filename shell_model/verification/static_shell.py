@@ -11,22 +11,18 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material
 from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.segment_shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
-
-Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
 
 # Part of the load that may be left over.
 _UNBALANCED = 1.0e-3

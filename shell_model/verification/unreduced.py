@@ -18,13 +18,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
 from dynamics.gap_builder import Contact, Friction
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
 from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
 from shell_model.contact.rows import gap_rows
@@ -32,8 +32,6 @@ from shell_model.cross_section import Reading, Row
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
 from shell_model.verification.resisting_rows import ResistingRows
-
-Array = npt.NDArray[np.float64]
 
 RADIUS = 0.8
 

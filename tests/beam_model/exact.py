@@ -11,12 +11,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.optimize import brentq
 
+from geometry.arrays import Array
 from geometry.boom import Boom, Segment, Support
-
-Array = npt.NDArray[np.float64]
 
 # βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).
 FREE_FREE = (4.730040744862704, 7.853204624095838, 10.995607838001671)

@@ -7,11 +7,11 @@ import re
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from beam_model.component import Component, natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
+from geometry.arrays import Array
 from geometry.boom import BoomError, Segment
 from tests.beam_model.exact import (
     FREE_FREE,
@@ -21,7 +21,6 @@ from tests.beam_model.exact import (
     angular_frequencies,
 )
 
-Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")

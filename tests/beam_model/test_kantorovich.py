@@ -7,12 +7,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from beam_model.component import Component, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.kantorovich import Base, kantorovich_bending
+from geometry.arrays import Array
 from geometry.boom import Boom, Segment, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
@@ -22,7 +22,6 @@ from tests.beam_model.exact import (
     angular_frequencies,
 )
 
-Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
 

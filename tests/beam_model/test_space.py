@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from beam_model.component import Component, SegmentModel, natural_modes
@@ -20,11 +19,11 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment, Stop, Support
 from geometry.section import BoxSection
 from tests.space import in_space
 
-Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)

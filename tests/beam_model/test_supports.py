@@ -8,7 +8,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
@@ -20,10 +19,10 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Step
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies
 
-Array = npt.NDArray[np.float64]
 Beam = Callable[..., Segment]
 Models = Callable[..., list[SegmentModel]]
 

@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from dynamics.arrays import Array
 from dynamics.kernels.bounded_impulses import (
     FREE,
     HIGH,
@@ -16,8 +16,6 @@ from dynamics.kernels.bounded_impulses import (
     bounded_impulses,
     problem_for,
 )
-
-Array = npt.NDArray[np.float64]
 
 
 def solve(matrix: Array, free: Array, bound: Array, guess: Array) -> Array:

@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact, contact_terms
 from dynamics.kernels.contact_series import (
     ORDER,
@@ -21,8 +21,6 @@ from dynamics.kernels.contact_series import (
     impulse,
     reach,
 )
-
-Array = npt.NDArray[np.float64]
 
 
 def series_of(

@@ -10,11 +10,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.event_driven import integrate_events, what_hinders
 from dynamics.excitation import Excitation, Ramp
@@ -27,7 +27,6 @@ from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
 OneMass = Callable[..., GapSystem]
-Array = npt.NDArray[np.float64]
 
 
 @pytest.fixture(autouse=True)

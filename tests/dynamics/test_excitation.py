@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table
 from dynamics.friction import DryFriction
@@ -22,7 +22,6 @@ from dynamics.step import contact_step
 from runs.studies.histories import KINKED, OMEGAS, masses, response
 
 OneMass = Callable[..., GapSystem]
-Array = npt.NDArray[np.float64]
 
 
 def driven(system: GapSystem, force: float, history: History) -> GapSystem:

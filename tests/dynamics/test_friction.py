@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, Sine
 from dynamics.friction import DryFriction
@@ -22,7 +22,6 @@ from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
 OneMass = Callable[..., GapSystem]
-Array = npt.NDArray[np.float64]
 
 
 def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = None) -> GapSystem:

@@ -8,10 +8,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
@@ -22,7 +22,6 @@ from dynamics.step import PHASE
 from dynamics.trajectory import Trajectory
 
 OneMass = Callable[..., GapSystem]
-Array = npt.NDArray[np.float64]
 
 
 def crossings(time: Array, y: Array, level: float) -> Array:

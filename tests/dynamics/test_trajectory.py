@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import xarray as xr
 
+from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.friction import DryFriction
@@ -22,7 +22,7 @@ from dynamics.trajectory import Trajectory
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=1.0e-2)
 
 
-def deflections(tip: npt.NDArray[np.float64], end: float) -> Trajectory:
+def deflections(tip: Array, end: float) -> Trajectory:
     time = np.linspace(0.0, end, tip.size)
     data = xr.Dataset({"tip": ("time", tip)}, coords={"time": time})
     return Trajectory(data, np.zeros((tip.size, 0)))

@@ -7,9 +7,9 @@ from collections import Counter
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize
 from geometry.grading import Spot, graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
@@ -27,12 +27,12 @@ def _mesh() -> SegmentMesh:
     return graded_mesh(BOX, BREAKS, 0.1, [CORNER, PAD], closed=("middle",))
 
 
-def _areas(mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def _areas(mesh: SegmentMesh) -> Array:
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
     return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
 
 
-def _longest(mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def _longest(mesh: SegmentMesh) -> Array:
     corners = mesh.points[mesh.triangles]
     return np.asarray(np.linalg.norm(np.roll(corners, 1, axis=1) - corners, axis=2).max(axis=1))
 

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import meshio
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from geometry.arrays import Array, Indices
 from geometry.boom import Collar, Diaphragm
 from geometry.mesh import (
     SegmentMesh,
@@ -50,17 +50,17 @@ def closed_mesh() -> SegmentMesh:
     return mesh_segment(BOX, BREAKS, 0.1, closed=CLOSED)
 
 
-def edge_counts(triangles: npt.NDArray[np.int64]) -> Counter[tuple[int, int]]:
+def edge_counts(triangles: Indices) -> Counter[tuple[int, int]]:
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     return Counter(map(tuple, np.sort(sides, axis=1).tolist()))
 
 
-def areas(mesh: SegmentMesh) -> npt.NDArray[np.float64]:
+def areas(mesh: SegmentMesh) -> Array:
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
 
-def line_length(mesh: SegmentMesh, edges: npt.NDArray[np.int64]) -> float:
+def line_length(mesh: SegmentMesh, edges: Indices) -> float:
     return float(np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum())
 
 
@@ -287,14 +287,14 @@ def test_a_full_disk_is_noticed(tmp_path: Path, room: int) -> None:
     assert caught.value.filename == str(path)
 
 
-def grouped(read: meshio.Mesh, kind: str, name: str) -> npt.NDArray[np.float64]:
+def grouped(read: meshio.Mesh, kind: str, name: str) -> Array:
     """Corners (num_cells, nodes, 3) of the cells in a physical group."""
     tag = read.field_data[name][0]
     tags = read.cell_data_dict["gmsh:physical"][kind]
     return read.points[read.cells_dict[kind][tags == tag]]
 
 
-def sorted_places(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def sorted_places(places: Array) -> Array:
     return places[np.lexsort(np.round(places, 9).T)]
 
 

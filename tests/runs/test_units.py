@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from beam_model.finite_element import finite_element_segments
@@ -30,8 +29,6 @@ from tests.shell_model.booms import flat_boom
 
 pytestmark = pytest.mark.slow
 
-
-Array = npt.NDArray[np.float64]
 
 # Millimetres of a metre, tonnes of a kilogram.
 MM, T = 1.0e3, 1.0e-3

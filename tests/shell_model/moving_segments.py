@@ -4,13 +4,11 @@ that moves as a rigid body.
 """
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from geometry.arrays import Array
 from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
-
-Array = npt.NDArray[np.float64]
 
 OUTER = BoxSection(height=0.4890, width=0.3259, flange=0.0065, web=0.0065)
 INNER = BoxSection(height=0.4636, width=0.2706, flange=0.0047, web=0.0047)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
@@ -17,12 +16,11 @@ from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
-
-Array = npt.NDArray[np.float64]
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
 SHIFTS = (10.0, 1.0e4, 1.0e6)

@@ -10,7 +10,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import scipy.sparse
 from mpi4py import MPI
@@ -21,6 +20,7 @@ from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Stop
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
@@ -28,8 +28,6 @@ from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha
 from shell_model.verification.unreduced import FullShell, assemble_boom, integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
-
-Array = npt.NDArray[np.float64]
 
 _SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
@@ -19,13 +18,12 @@ from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
-
-Array = npt.NDArray[np.float64]
 
 
 @cache

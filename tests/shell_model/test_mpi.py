@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
@@ -91,7 +91,7 @@ if comm.rank == 0:
 """
 
 
-def friction_motion(comm: MPI.Comm) -> tuple[npt.NDArray[np.float64], GapSystem]:
+def friction_motion(comm: MPI.Comm) -> tuple[Array, GapSystem]:
     """The tip in m over the ten seconds of the paper's friction case, on a coarse mesh."""
     law = replace(LAW, stiffness=1.0e8, exponent=1.0)
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+
+from geometry.arrays import Array, Indices
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
@@ -17,8 +18,6 @@ from shell_model.verification.plates import OBLIQUE, STEEL, ConstantStrain, Patc
 from shell_model.verification.prismatic import Member, PlainBox
 from shell_model.verification.static_shell import StaticShell, hold
 from tests.shell_model.conftest import BOX
-
-Array = npt.NDArray[np.float64]
 
 # A Z of three walls.
 FOLDED = Member([(-0.2, 0.3), (0.0, 0.3), (0.0, -0.3), (0.2, -0.3)], False, 0.01, 1.0)
@@ -34,7 +33,7 @@ def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, A
     twice = edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]
     slopes = np.stack([-edges[..., 1], edges[..., 0]], axis=2) / twice[:, None, None]
 
-    def read(nodes: Array, dofs: npt.NDArray[np.int64], places: Array) -> Array:
+    def read(nodes: Array, dofs: Indices, places: Array) -> Array:
         distance, node = cKDTree(nodes).query(places @ OBLIQUE.T)
         assert distance.max() < 1.0e-9
         return np.asarray(solution[dofs[node]] @ OBLIQUE)

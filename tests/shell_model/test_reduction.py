@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from dynamics.failure import NumericsError
+from geometry.arrays import Array
 from shell_model.reduction.segment import (
     KrylovOptions,
     ReducedSegment,
@@ -21,7 +21,6 @@ from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]
-Array = npt.NDArray[np.float64]
 
 
 def _inputs(shell: SegmentShell) -> np.ndarray:

@@ -4,12 +4,12 @@
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import xarray as xr
 from matplotlib import rc_context
 from PIL import Image
 
+from geometry.arrays import Array
 from shell_model.pictures import rendering
 from shell_model.pictures.boom import BoomView, Instant
 from shell_model.pictures.deformation import MovingShell
@@ -23,8 +23,6 @@ from shell_model.pictures.still import draw_mesh, draw_sections
 from shell_model.pictures.stress import OVERLAP_PIXELS, StressScale, draw_stress
 from shell_model.pictures.theme import LETTERS, Camera, Scene, Sheet
 from tests.shell_model.moving_segments import TIME, moving_fields, moving_trajectories
-
-Array = npt.NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")

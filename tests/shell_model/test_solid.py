@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+
+from geometry.arrays import Array
 
 pytest.importorskip("dolfinx", reason="the solid needs DOLFINx")
 
@@ -28,8 +29,6 @@ from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.solid import SolidFamily, assemble_solid
 from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
 from tests.shell_model.booms import STEEL, box_segment
-
-Array = npt.NDArray[np.float64]
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.04, web=0.03)
 LENGTH = 2.0

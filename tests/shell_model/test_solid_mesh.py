@@ -7,9 +7,9 @@ import re
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from geometry.arrays import Array
 from geometry.section import BoxSection
 from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
 
@@ -17,7 +17,7 @@ BOX = BoxSection(height=0.40, width=0.30, flange=0.03, web=0.02)
 PLACES = (0.0, 0.5, 2.0)
 
 
-def volumes(mesh: SolidMesh) -> npt.NDArray[np.float64]:
+def volumes(mesh: SolidMesh) -> Array:
     """(num_hexahedra,) of bricks, negative where their points do not run along x, y, z."""
     corners = mesh.points[mesh.hexahedra]
     edges = corners[:, [1, 2, 4]] - corners[:, :1]

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 import xarray as xr
 from mpi4py import MPI
 
+from geometry.arrays import Array
 from geometry.boom import Boom, Diaphragm, Support
 from geometry.mesh import SegmentMesh, diaphragm_breaks, mesh_segment
 from shell_model.boom_shell import ShellOptions, reduce_boom
@@ -22,8 +22,6 @@ from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
-
-Array = npt.NDArray[np.float64]
 
 E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
 Field = Callable[[Array], Array]

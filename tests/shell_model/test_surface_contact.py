@@ -10,7 +10,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
@@ -18,6 +17,7 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, PadSize
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
@@ -28,8 +28,6 @@ from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX
-
-Array = npt.NDArray[np.float64]
 
 PAD = PadSize(length=0.1, width=0.06)
 FEW = SurfaceOptions(points=(4, 2))

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
+from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Support
 from geometry.contact_places import Stretch
 from geometry.section import Section
@@ -27,7 +27,6 @@ from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LAW, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, UNEQUAL
 
-Array = npt.NDArray[np.float64]
 Shells = Callable[..., SegmentShell]
 
 
