@@ -132,17 +132,14 @@ def reduce_boom(
     seconds = dict.fromkeys(("mesh", "assembly", "reduction"), 0.0)
     planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     shells: list[SegmentShell] = []
-    meshes: list[SegmentMesh] = []
     tell = progress or (lambda stage, part: None)
-    for number in range(len(boom.segments)):
+    for number, segment in enumerate(boom.segments):
         start = perf_counter()
         mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
-        if mesh is not None:
-            meshes.append(mesh)
         seconds["mesh"] += perf_counter() - start
         tell("mesh", (number + 1) / len(boom.segments))
         start = perf_counter()
-        shells.append(assemble_segment(comm, boom.segments[number], mesh))
+        shells.append(assemble_segment(comm, segment, mesh))
         seconds["assembly"] += perf_counter() - start
         tell("assembly", (number + 1) / len(boom.segments))
 
@@ -190,7 +187,7 @@ def reduce_boom(
     )
     seconds["rows"] += perf_counter() - start
     start = perf_counter()
-    fields = gather_fields(comm, shells, reduced, meshes, boom.segments)
+    fields = gather_fields(shells, reduced)
     if fields is not None:
         fields = coordinates.of_fields(fields)
     seconds["fields"] = perf_counter() - start
@@ -217,7 +214,7 @@ def reduce_boom(
         local_compliance=local,
         mesh_error=_largest(off),
         seconds=seconds,
-        meshes=meshes,
+        meshes=[shell.mesh for shell in shells if shell.mesh is not None],
     )
 
 

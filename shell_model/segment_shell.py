@@ -173,6 +173,11 @@ class SegmentShell(Shell):
     segment: Segment
     mesh: SegmentMesh | None
 
+    @property
+    def thickness(self) -> Array | None:
+        """(num_triangles,) of all plates in m, on rank 0."""
+        return None if self.mesh is None else plate_thickness(self.segment, self.mesh)
+
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
         return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)

@@ -94,7 +94,7 @@ class Pressed:
         solve = ShiftedSolver(shell, STATIC)
         moved = solve(force[:, None])
         solve.destroy()
-        modes = gather_stress_modes(shell, segment, mesh, moved)
+        modes = gather_stress_modes(shell, moved)
         assert modes is not None
         return cls(boom, ShellStress.still(mesh, plate_thickness(segment, mesh), modes))
 

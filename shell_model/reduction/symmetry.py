@@ -22,7 +22,7 @@ from scipy.sparse import csr_array
 
 from geometry.arrays import Array, Mask
 from geometry.boom import Segment
-from geometry.mesh import SegmentMesh, plate_thickness
+from geometry.mesh import SegmentMesh
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
 from shell_model.contact.attachments import Attached
@@ -283,10 +283,9 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _quarter_mesh(shell: SegmentShell) -> SegmentMesh | None:
-    if shell.mesh is None:
+    if shell.mesh is None or shell.thickness is None:
         return None
-    thickness = plate_thickness(shell.segment, shell.mesh)
-    return quarter_mesh(shell.mesh, thickness, shell.section.mirrors)
+    return quarter_mesh(shell.mesh, shell.thickness, shell.section.mirrors)
 
 
 def _components(part: int) -> Indices:

@@ -9,11 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from mpi4py import MPI
 from scipy.spatial import cKDTree
 
-from geometry.boom import Segment
-from geometry.mesh import SegmentMesh, plate_thickness
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import ON_LINE, SegmentShell
 from shell_model.stress.recovery import gather_stress_modes
@@ -23,11 +20,7 @@ _Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]
 
 
 def gather_fields(
-    comm: MPI.Comm,
-    shells: Sequence[SegmentShell],
-    reduced: Sequence[ReducedSegment],
-    meshes: Sequence[SegmentMesh],
-    segments: Sequence[Segment],
+    shells: Sequence[SegmentShell], reduced: Sequence[ReducedSegment]
 ) -> xr.Dataset | None:
     """Bring the shapes and their stresses to rank 0. Collective; None elsewhere.
 
@@ -43,24 +36,24 @@ def gather_fields(
     """
     parts = []
     stresses = []
-    for number, (shell, segment) in enumerate(zip(shells, reduced, strict=True)):
-        points = comm.bcast(meshes[number].points if comm.rank == 0 else None)
+    for shell, segment in zip(shells, reduced, strict=True):
+        points = shell.comm.bcast(None if shell.mesh is None else shell.mesh.points)
         distance, vertex = cKDTree(points).query(shell.nodes)
         at_vertex = distance < ON_LINE
         first, _ = shell.owned
         rows = shell.node_dofs[at_vertex] - first
         mine = (vertex[at_vertex], segment.shapes[rows].astype(np.float32))
-        gathered = comm.gather(mine)
+        gathered = shell.comm.gather(mine)
         if gathered is not None:
             modes = np.zeros((segment.omega2.size, len(points), 3), dtype=np.float32)
             for places, shapes in gathered:
                 modes[:, places, :] = np.moveaxis(shapes, 2, 0)
             parts.append(modes)
-        mesh = meshes[number] if comm.rank == 0 else None
-        stress = gather_stress_modes(shell, segments[number], mesh, segment.shapes)
+        stress = gather_stress_modes(shell, segment.shapes)
         if stress is not None:
             stresses.append(stress)
-    if comm.rank != 0:
+    meshes = [shell.mesh for shell in shells if shell.mesh is not None]
+    if not meshes:
         return None
     offsets = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     all_modes: npt.NDArray[np.float32] = np.zeros(
@@ -71,7 +64,7 @@ def gather_fields(
         all_modes[done : done + len(part), begin:end] = part
         done += len(part)
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, offsets[:-1], strict=True)]
-    thickness = [plate_thickness(s, mesh) for s, mesh in zip(segments, meshes, strict=True)]
+    thickness = [shell.thickness for shell in shells if shell.thickness is not None]
     return xr.Dataset(
         {
             "points": (("point", "component"), np.concatenate([m.points for m in meshes])),

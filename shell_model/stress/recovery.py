@@ -18,7 +18,6 @@ from petsc4py import PETSc
 
 from geometry.arrays import Array
 from geometry.boom import Segment
-from geometry.mesh import SegmentMesh, plate_thickness
 from shell_model import compat
 from shell_model.forms import facet_frame, plane_stress, strains
 from shell_model.reduction.products import times
@@ -26,21 +25,17 @@ from shell_model.segment_shell import SegmentShell
 from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
-def gather_stress_modes(
-    shell: SegmentShell, segment: Segment, mesh: SegmentMesh | None, shapes: Array
-) -> Modes | None:
+def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     """Bring the stresses of displacement shapes to rank 0. Collective; None elsewhere.
 
     Args:
         shell: the full model.
-        segment: what it is made from.
-        mesh: on rank 0.
         shapes: (num_owned, num_modes) this rank's rows of each shape.
 
     Returns:
         (num_modes, num_triangles, 6) ``COMPONENTS`` in Pa for a unit of each shape.
     """
-    form, component = _stress_form(shell.space, segment)
+    form, component = _stress_form(shell.space, shell.segment)
     columns = []
     for unit in np.eye(len(COMPONENTS)):
         component.value[:] = unit
@@ -52,13 +47,15 @@ def gather_stress_modes(
     gathered = shell.comm.gather((places, np.array(columns)))
     if gathered is None:
         return None
+    mesh, thickness = shell.mesh, shell.thickness
     assert mesh is not None
+    assert thickness is not None
     modes = np.zeros((shapes.shape[1], len(mesh.triangles), len(COMPONENTS)), dtype=np.float32)
     for triangles, values in gathered:
         modes[:, triangles, :] = values.transpose(2, 1, 0)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
     # The form knows the curvature; a face is half a thickness off.
-    modes[:, :, 3:] *= 0.5 * plate_thickness(segment, mesh)[:, None].astype(np.float32)
+    modes[:, :, 3:] *= 0.5 * thickness[:, None].astype(np.float32)
     return modes
 
 

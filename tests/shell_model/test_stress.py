@@ -46,7 +46,7 @@ def stresses(u: Field, theta: Field) -> tuple[Modes, SegmentMesh]:
     shape = np.zeros((shell.free.size, 1))
     shape[shell.node_dofs - first, 0] = u(shell.nodes)
     shape[shell.rotation_dofs - first, 0] = theta(shell.rotation_nodes)
-    modes = gather_stress_modes(shell, CLOSED, mesh, shape)
+    modes = gather_stress_modes(shell, shape)
     assert modes is not None
     return modes[0], mesh
 
