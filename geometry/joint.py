@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where segments slide in one another, and where they meet the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class PadSize:
+    """A slide pad: its length along x and its width from a corner inwards, in m.
+
+    >>> padded = replace(boom.joints[0], pad=pt.PadSize(length=0.2, width=0.06))
+    >>> replace(boom, joints=(padded,)).joints[0].pad.length
+    0.2
+    """
+
+    length: float
+    width: float
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """Where an inner segment slides in an outer one, touching it at the stations.
+
+    >>> (joint,) = boom.joints
+    >>> boom.overlap(joint)
+    (6.0, 8.0)
+
+    Args:
+        outer, inner: positions of the two in ``Boom.segments``.
+        stations: x at which they may touch, rising.
+        clearance: Δ in m each way, half the play.
+        lateral_clearance: Δ along y in m each way; None in a flat boom.
+        friction: μ of (28), and of (10) and (11) in space.
+        normal_forces: N of (28) in N, one for each station; empty in space, where what presses
+            is the contact force of the other plane.
+        tied: the segments deflect (and in space twist) alike at the stations, without play.
+        pad: of the slide pads in the corners; shells touch in the corners themselves without it.
+        contact_length: of these in m; a tenth of the overlap unless given.
+    """
+
+    outer: int
+    inner: int
+    stations: tuple[float, ...]
+    clearance: float
+    lateral_clearance: float | None = None
+    friction: float = 0.0
+    normal_forces: tuple[float, ...] = ()
+    tied: bool = False
+    pad: PadSize | None = None
+    contact_length: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """A rest on the ground that a segment meets when it deflects along z.
+
+    >>> rest = pt.Stop(1, 14.0, 0.1, stiffness=0.0, stiffness_below=1e6, exponent=1.0)
+    >>> replace(boom, stops=(rest,)).stations[-1]
+    (14.0, 'z')
+
+    Args:
+        segment: position in ``Boom.segments``.
+        x: m.
+        clearance: Δ in m each way.
+        stiffness: k of (4) in N/mⁿ against a deflection upwards; 0 where nothing is above.
+        stiffness_below: k against a deflection downwards.
+        exponent: n of (4).
+        contact_length: of the segment's corners that it presses, in m; a fifth of the height of
+            its box unless given.
+    """
+
+    segment: int
+    x: float
+    clearance: float
+    stiffness: float
+    stiffness_below: float
+    exponent: float
+    contact_length: float | None = None
