@@ -47,9 +47,8 @@ from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.pipeline.models import build, workshop
-from runs.report.tables import wide_console
+from runs.report.tables import Table, wide_console
 from runs.report.theme import repeated
-from runs.studies.study import Table
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")
@@ -168,7 +167,7 @@ def compare(case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes) 
         [theirs / mine for theirs, mine in zip(taken, seconds[ours[of.duration]], strict=False)]
         for of, taken in zip(methods, seconds, strict=True)
     ]
-    return Table(
+    return Table.of_rows(
         f"residual-{tolerance:.0e}",
         f"Five-term series, at the energy residual of event-driven motion at {tolerance:.0e}",
         {
@@ -245,7 +244,7 @@ def steps(sizes: Sizes) -> Table:
         for n, m in kinds
     ]
     seconds = dict(zip(kinds, by_turns(runs, sizes.most, sizes.budget), strict=True))
-    return Table(
+    return Table.of_rows(
         "steps",
         "Splitting, ns per step while every row presses",
         {"modes": ".0f", **{f"{m} rows": "~" for m in sizes.rows}},
@@ -290,7 +289,7 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
     notes = [f"The goal of {ENSEMBLE_GOAL:g} s for the series is {goal}."]
     if sizes.shell_members and shell is None:
         notes.append("No shells: FEniCSx cannot be imported.")
-    return Table(
+    return Table.of_rows(
         "ensembles",
         f"Ensembles, {sizes.duration:g} s, loads within {CHANGE:g}",
         {"ensemble": "", "threads": ".0f", "repetitions": ".0f", "wall s": "~"},

@@ -12,9 +12,8 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import chain
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -33,8 +32,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
-from runs.report.tables import wide_console
-from runs.studies.study import Table
+from runs.report.tables import Table, wide_console
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")
@@ -46,6 +44,9 @@ DEFAULT_GOAL, MOTION_GOAL = 5.0, 1.5
 MILLION_GOALS = 300.0, 8.0
 
 STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
+
+# Stages whose peaks of memory are told.
+REMEMBERED = ("mesh", "assembly", "reduction", "fields")
 
 # Of the motions in s: that of the goal, and one that keeps the energy of a shell.
 STEPS = (1.0e-5, 2.5e-6)
@@ -70,92 +71,16 @@ class Sizes:
     duration: float = 10.0
 
 
-def by_size(sizes: Sizes) -> Iterator[Table]:
-    """Wall time and peak memory of each stage against the size of the paper's boom."""
-    ranks = sizes.ranks[-1]
-    runs = [_measured(ranks, "reduce", "friction", mesh) for mesh in sizes.meshes]
-    segments = [run["degrees_of_freedom"] // 2 for run in runs]
-    yield Table(
-        "scaling",
-        f"The paper's boom as shells, {ranks} ranks",
-        {
-            "mesh m": ".2g",
-            "dofs a segment": ".0f",
-            **{f"{stage} s": ".2f" for stage in STAGES},
-            "all s": ".1f",
-            "peak GB": ".2f",
-            "compliance error": ".1g",
-        },
-        [
-            (
-                mesh,
-                dofs,
-                *(run["seconds"][stage] for stage in STAGES),
-                run["total_seconds"],
-                run["peak"],
-                run["errors"]["contact_compliance"],
-            )
-            for mesh, dofs, run in zip(sizes.meshes, segments, runs, strict=True)
-        ],
-        ("Peaks are sums over the ranks, of each rank's own largest resident set.",),
-    )
-    stages = ("mesh", "assembly", "reduction", "fields")
-    yield Table(
-        "scaling-memory",
-        "Peak memory when a stage ends, GB over all ranks",
-        {"dofs a segment": ".0f", "idle": ".2f", **{stage: ".2f" for stage in stages}},
-        [
-            (dofs, run["idle"], *(run["peaks"][stage] for stage in stages))
-            for dofs, run in zip(segments, runs, strict=True)
-        ],
-    )
-    last, (seconds, peak) = runs[-1], MILLION_GOALS
-    wall = _exponent(segments, [run["total_seconds"] for run in runs])
-    # What starts up with the processes is there without any shell.
-    memory = _exponent(segments, [run["peak"] - run["idle"] for run in runs])
-    yield Table(
-        "scaling-goals",
-        "What growing takes",
-        {"what": "", "measured": ".3g", "goal": ".3g"},
-        [
-            ("power of the size with which wall time grows", wall, EXPONENT_GOAL),
-            ("the same of peak memory beyond that of idle processes", memory, None),
-            ("wall s of the largest", last["total_seconds"], seconds),
-            ("peak GB of the largest", last["peak"], peak),
-        ],
-    )
-
-
-def default_mesh(sizes: Sizes) -> Iterator[Table]:
-    """The default mesh from plates to the gap system and its motion, by ranks."""
+def measured(sizes: Sizes) -> Iterator[Table]:
+    """The default mesh from plates to its motion, by ranks; then ever finer meshes on the most."""
     runs = [
         _measured(ranks, "move", name, sizes.default, sizes.duration)
         for ranks in sizes.ranks
         for name in SIZED
     ]
-    yield Table(
-        "scaling-default",
-        f"Mesh of {sizes.default:g} m: from plates to the gap system",
-        {
-            "case": "",
-            "ranks": ".0f",
-            **{f"{stage} s": ".2f" for stage in STAGES},
-            "all s": ".2f",
-            "modes": ".0f",
-        },
-        [
-            (
-                run["case"],
-                run["ranks"],
-                *(run["seconds"][stage] for stage in STAGES),
-                run["total_seconds"],
-                run["modes"],
-            )
-            for run in runs
-        ],
-        (f"Goal: {DEFAULT_GOAL:g} s on two cores.",),
-    )
-    yield Table(
+    goal = f"Goal: {DEFAULT_GOAL:g} s on two cores."
+    yield _stages("scaling-default", "The default mesh, from plates to the gap system", runs, goal)
+    yield Table.of_rows(
         "scaling-motion",
         f"{sizes.duration:g} s of motion",
         {
@@ -176,6 +101,56 @@ def default_mesh(sizes: Sizes) -> Iterator[Table]:
             "friction, when many steps are made at once. The motion is one rank's work.",
         ),
     )
+    runs = [_measured(sizes.ranks[-1], "reduce", "friction", mesh) for mesh in sizes.meshes]
+    note = "Peaks are sums over the ranks, of each rank's own largest resident set."
+    yield _stages("scaling", "The paper's boom as shells, by size", runs, note)
+    yield Table.of_rows(
+        "scaling-memory",
+        "Peak memory when a stage ends, GB over all ranks",
+        {"dofs a segment": ".0f", "idle": ".2f", **dict.fromkeys(REMEMBERED, ".2f")},
+        [(run["dofs"], run["idle"], *(run["peaks"][at] for at in REMEMBERED)) for run in runs],
+    )
+    dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
+    wall = _exponent(dofs, [run["total_seconds"] for run in runs])
+    # What starts up with the processes is there without any shell.
+    memory = _exponent(dofs, [run["peaks"]["fields"] - run["idle"] for run in runs])
+    yield Table.of_rows(
+        "scaling-goals",
+        "What growing takes",
+        {"what": "", "measured": ".3g", "goal": ".3g"},
+        [
+            ("power of the size with which wall time grows", wall, EXPONENT_GOAL),
+            ("the same of peak memory beyond that of idle processes", memory, None),
+            ("wall s of the largest", last["total_seconds"], seconds),
+            ("peak GB of the largest", last["peaks"]["fields"], peak),
+        ],
+    )
+
+
+def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str) -> Table:
+    """What each stage of each run takes."""
+    return Table.of_rows(
+        name,
+        title,
+        {
+            "case": "",
+            "mesh m": ".2g",
+            "ranks": ".0f",
+            "dofs a segment": ".0f",
+            **{f"{stage} s": ".2f" for stage in STAGES},
+            "all s": ".2f",
+            "modes": ".0f",
+            "peak GB": ".2f",
+            "compliance error": ".1g",
+        },
+        [
+            (run["case"], run["mesh"], run["ranks"], run["dofs"],
+             *(run["seconds"][stage] for stage in STAGES), run["total_seconds"], run["modes"],
+             run["peaks"]["fields"], run["errors"]["contact_compliance"])
+            for run in runs
+        ],
+        (note,),
+    )  # fmt: skip
 
 
 def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
@@ -231,12 +206,12 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     told: dict[str, Any] = {
         "case": name,
         "ranks": comm.size,
-        "degrees_of_freedom": reduced.num_dofs,
+        "mesh": options.mesh_size,
+        "dofs": reduced.num_dofs // 2,
         "modes": reduced.system.num_modes,
         "seconds": reduced.seconds,
         "total_seconds": total,
         "idle": idle,
-        "peak": summed["fields"],
         "peaks": summed,
         "errors": reduced.errors,
     }
@@ -287,8 +262,8 @@ def _peak() -> float:
 
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure, print, and write ``scaling.json`` and ``scaling.md``."""
-    tables = chain(default_mesh(sizes), by_size(sizes))
-    leave(folder, "scaling", "What a shell costs", {"sizes": asdict(sizes)}, tables, console)
+    data = {"sizes": asdict(sizes)}
+    leave(folder, "scaling", "What a shell costs", data, measured(sizes), console)
 
 
 if __name__ == "__main__":

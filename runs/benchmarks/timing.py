@@ -10,8 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
-from runs.report.tables import write
-from runs.studies.study import Table
+from runs.report.tables import Table, write
 
 # What takes less is run as often as takes so many seconds together, and the mean counts.
 MEASURABLE = 0.05

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
@@ -16,7 +17,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from runs.folder.files import whole
-from runs.report.theme import NONE, count, fixed, number
+from runs.report.theme import NONE, count, fixed, number, repeated
 
 # Letters that fit in a line of the report with its usual font, and in one of a file.
 ROOMY = 115
@@ -85,7 +86,8 @@ class TextTable:
         )
 
 
-Cell = str | float | None
+# Text, a number, repetitions of one, or none.
+Cell = str | float | list[float] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,8 @@ class Column:
 
     Args:
         heading: with the unit in its second line.
-        cells: one for each row; None for none, a text for what is no number.
+        cells: one for each row; None for none, a text for what is no number; repetitions are shown
+            with the digits that they have in common.
         form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
         factor: from the unit of the numbers to that of the heading.
     """
@@ -114,6 +117,8 @@ class Column:
             return cell
         if cell is None:
             return NONE
+        if isinstance(cell, list):
+            return repeated(cell)
         if not self.form:
             return count(cell)
         digits = int(self.form[1:-1])
@@ -124,7 +129,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Numbers for people; as :class:`TextTable`, but for the columns.
+    """Numbers for people and for programs; as :class:`TextTable`, but for the columns.
 
     A column may end before the others: there are none of its numbers then.
     """
@@ -135,12 +140,47 @@ class Table:
     name: str = ""
     statements: Sequence[str] = ()
 
+    @classmethod
+    def of_rows(
+        cls,
+        name: str,
+        title: str,
+        columns: Mapping[str, str],
+        rows: Sequence[Sequence[Cell]],
+        notes: Sequence[str] = (),
+    ) -> Table:
+        """From rows whose numbers are in the units of the headings.
+
+        Args:
+            name, title, notes: of the table.
+            columns: heading → form of its numbers.
+            rows: a cell for each heading.
+        """
+        parts = [
+            Column(heading, [row[i] for row in rows], form)
+            for i, (heading, form) in enumerate(columns.items())
+        ]
+        return cls(title, parts, notes, name)
+
+    @property
+    def data(self) -> list[dict[str, Cell]]:
+        """Each row by its headings, in their units, as JSON can say it."""
+        columns = [[_plain(cell, of.factor) for cell in of.cells] for of in self.columns]
+        headings = [of.heading for of in self.columns]
+        return [dict(zip(headings, row, strict=True)) for row in zip_longest(*columns)]
+
     @property
     def text(self) -> TextTable:
         """As it is shown."""
         rows = list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
         headings = tuple(column.heading for column in self.columns)
         return TextTable(self.title, headings, rows, self.notes, self.name, self.statements)
+
+
+def _plain(cell: Cell, factor: float) -> Cell:
+    if isinstance(cell, str | list) or cell is None:
+        return cell
+    return float(factor * cell) if math.isfinite(cell) else None
 
 
 def write(

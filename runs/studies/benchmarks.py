@@ -10,10 +10,11 @@ from functools import partial
 import numpy as np
 
 from runs.case.build import build_boom
+from runs.report.tables import Cell, Table
 from runs.report.theme import scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Reference, Refined, error_plot, refined_table
-from runs.studies.study import Cell, Proof, Study, Table
+from runs.studies.study import Proof, Study
 from shell_model.forms import DRILLING, DRILLING_OF_CURVED
 from shell_model.verification import benchmarks
 from shell_model.verification.benchmarks import PUBLISHED, SHEAR_RIGID
@@ -201,7 +202,7 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> tuple[Table, list[Proof]]
         )
     columns = {"what": "", "tie / (G t)": ".1g", "largest change from the default (%)": ".4f"}
     title = "What the drilling tie changes"
-    return Table("drilling", title, columns, rows, (DRILLING_NOTE,)), proofs
+    return Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,)), proofs
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:

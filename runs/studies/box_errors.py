@@ -11,8 +11,8 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 
 from runs.studies.box_pair import (
+    FREQUENCY,
     PROBES,
-    Answers,
     Blow,
     Part,
     blow,
@@ -56,7 +56,7 @@ class Measured(NamedTuple):
         unit: of the values.
         segment: 0 for the outer box, 1 for the inner one.
         family: of the motions.
-        probe: whose compliance it is; None for the lowest natural frequency.
+        probe: whose compliance it is, or ``FREQUENCY``, the lowest natural one.
         allowed: what counts as proven of the thinnest walls.
     """
 
@@ -65,13 +65,12 @@ class Measured(NamedTuple):
     unit: str
     segment: Literal[0, 1]
     family: Family
-    probe: str | None = None
+    probe: str = FREQUENCY
     allowed: float = ALLOWED
 
-    def of(self, answers: Sequence[Mapping[Family, Answers]]) -> float:
+    def of(self, answers: Sequence[Mapping[Family, Mapping[str, float]]]) -> float:
         """Its value in one of the models."""
-        found = answers[self.segment][self.family]
-        return found.frequency if self.probe is None else found.compliances[self.probe]
+        return answers[self.segment][self.family][self.probe]
 
 
 FREQUENCIES = (
@@ -173,7 +172,7 @@ def _refined(
     }, struck
 
 
-def measure(parts: Sequence[Mapping[Family, Part]]) -> list[Mapping[Family, Answers]]:
+def measure(parts: Sequence[Mapping[Family, Part]]) -> list[dict[Family, dict[str, float]]]:
     """Of both segments."""
     return [{family: part.measure() for family, part in of.items()} for of in parts]
 

@@ -13,7 +13,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from mpi4py import MPI
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
@@ -22,7 +21,6 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
-from geometry.mesh import mesh_segment
 from geometry.section import BoxSection
 from runs.studies.motions import SLOW
 from shell_model.contact.wall_points import gauss
@@ -32,7 +30,8 @@ from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
-from shell_model.segment_shell import Shell, assemble_segment
+from shell_model.segment_shell import Shell
+from shell_model.verification.lone_segment import shell_alone
 from shell_model.verification.plates import STEEL
 from shell_model.verification.solid import assemble_solid
 from shell_model.verification.solid_mesh import mesh_quarter
@@ -56,6 +55,7 @@ CONTACT = 1.0e10
 AFTER = 1.0e-2  # s
 OUTPUT_STEP = 1.0e-5  # s
 
+FREQUENCY = "frequency"
 # Up to the frequencies of a blow of some milliseconds.
 KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
@@ -106,19 +106,6 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 )
 
 
-class Answers(NamedTuple):
-    """What is measured of a family.
-
-    Args:
-        frequency: the lowest of its elastic modes, in Hz.
-        compliances: name of a probe → what a unit force on it moves it by at ``SLOW``, in m/N, or
-            rad/(N·m).
-    """
-
-    frequency: float
-    compliances: Mapping[str, float]
-
-
 @dataclass(frozen=True, slots=True)
 class Part:
     """A family of a segment's motions.
@@ -131,8 +118,10 @@ class Part:
     model: Shell
     rows: Mapping[str, Array]
 
-    def measure(self) -> Answers:
-        """The lowest elastic frequency, and what each probe gives way, by one factorisation."""
+    def measure(self) -> dict[str, float]:
+        """``FREQUENCY`` → the lowest of its elastic modes, in Hz; name of a probe → what a unit
+        force on it moves it by at ``SLOW``, in m/N or rad/(N·m). By one factorisation.
+        """
         model = self.model
         solve = ShiftedSolver(model, SLOW)
         inverse, mass, stiffness = (
@@ -154,7 +143,7 @@ class Part:
         )
         moved = {what: float(row @ inverse(row)) for what, row in self.rows.items()}
         solve.destroy()
-        return Answers(float(np.sqrt(omega2.max()) / (2.0 * np.pi)), moved)
+        return {FREQUENCY: float(np.sqrt(omega2.max()) / (2.0 * np.pi)), **moved}
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,24 +164,14 @@ class Blow:
     reduction_error: float
 
     @property
-    def peak(self) -> float:
-        """Largest force in N."""
-        return float(self.force.max())
-
-    @property
-    def impulse(self) -> float:
-        """Of all touches, in N·s."""
-        return float(self.force.sum() * OUTPUT_STEP)
-
-    @property
-    def duration(self) -> float:
-        """Of all touches, in s."""
-        return float(np.count_nonzero(self.force) * OUTPUT_STEP)
-
-    @property
-    def left(self) -> float:
-        """Where the tip is at the end, in m."""
-        return float(self.tip[-1])
+    def told(self) -> dict[tuple[str, str], float]:
+        """What of all its touches, and the unit → the value."""
+        return {
+            ("largest force", "kN"): 1.0e-3 * float(self.force.max()),
+            ("impulse", "N·s"): float(self.force.sum() * OUTPUT_STEP),
+            ("time in contact", "ms"): 1.0e3 * float(np.count_nonzero(self.force) * OUTPUT_STEP),
+            ("tip at the end", "mm"): 1.0e3 * float(self.tip[-1]),
+        }
 
 
 def pair(wall: float) -> tuple[Segment, Segment]:
@@ -207,10 +186,7 @@ def pair(wall: float) -> tuple[Segment, Segment]:
 
 def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Part]:
     """A segment's families as shells, with triangles of a size in m."""
-    assert segment.section is not None
-    breaks = {str(x): x for x in _places(segment, probes)}
-    mesh = mesh_segment(segment.section, breaks, size)
-    whole = assemble_segment(MPI.COMM_SELF, segment, mesh)
+    whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
     rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
     jobs = Folding(whole).jobs(rows, np.zeros((len(rows), 0)))
     return {
@@ -236,7 +212,9 @@ def solid_parts(
 ) -> dict[Family, Part]:
     """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
     assert isinstance(segment.section, BoxSection)
-    places = _places(segment, probes)
+    read = (x for probe in probes for x in probe.places)
+    held = (support.x for support in segment.supports)
+    places = sorted({segment.start, segment.end, *held, *read})
     mesh = mesh_quarter(segment.section, places, along, around, splits, layers)
     families = dict.fromkeys(probe.family for probe in probes)
     models = {family: assemble_solid(segment, mesh, family) for family in families}
@@ -287,14 +265,6 @@ def blow(outer: Part, inner: Part, wall: float) -> Blow:
         np.asarray(motion.data["contact_force"].values[:, 0]),
         np.asarray(motion.data["tip"].values),
         max(max(part.compliance_error, part.reading_error) for part in coordinates),
-    )
-
-
-def _places(segment: Segment, probes: Sequence[Probe]) -> list[float]:
-    """x in m at which both meshes have outlines."""
-    supports = [support.x for support in segment.supports]
-    return sorted(
-        {segment.start, segment.end, *supports, *(x for probe in probes for x in probe.places)}
     )
 
 

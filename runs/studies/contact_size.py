@@ -21,10 +21,11 @@ from dynamics.step import contact_step
 from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
+from runs.report.tables import Table
 from runs.studies.motions import OUTPUT_STEP, PHASE, finer, friction_case, gap_system, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Proof, Study, Table
+from runs.studies.study import Proof, Study
 
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01
@@ -141,7 +142,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
             proofs.append(
                 Proof(what, values[default], values[-1], UNIT, "other code", finer_by, ALLOWED)
             )
-    of_size = Table(
+    of_size = Table.of_rows(
         "contact-size",
         "What the size of a contact means",
         {

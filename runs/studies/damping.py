@@ -19,8 +19,9 @@ from geometry.arrays import Array
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
+from runs.report.tables import Table
 from runs.studies.motions import gap_system, model_of, without_friction
-from runs.studies.study import Proof, Study, Table
+from runs.studies.study import Proof, Study
 
 # Booms, and their cases.
 BOOMS = {
@@ -120,7 +121,7 @@ def study(tell: Callable[[str], None]) -> Study:
     proofs.append(Proof(residual, max(residuals), 0.0, "", "analytic", source, 1.0e-4))
     modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
     columns = {"boom": "", "asked\n%": ".3g", **modes}
-    table = Table("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
+    table = Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
     return Study("damping", "Damping ratios asked for and measured", [table], proofs)
 
 

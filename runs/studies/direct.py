@@ -21,9 +21,10 @@ from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.pipeline.motion import Plan
+from runs.report.tables import Table
 from runs.studies.motions import friction_case, gap_system, lasting, loaded, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Plot, Proof, Study, Table
+from runs.studies.study import Plot, Proof, Study
 
 # Allowed of the tip, as a part of its range.
 ALLOWED = 0.005
@@ -159,7 +160,7 @@ def compare(
     halvings = np.log2(np.divide(off_larger[2:-1], off_larger[3:]))
     steps = [run.step for run in direct]
     order = float(np.polyfit(np.log(steps), np.log(off_larger[2:]), 1)[0])
-    table = Table(
+    table = Table.of_rows(
         f"direct-{where.replace(' ', '-')}",
         f"The reduced shell against the unreduced one, {where}, mesh of {sizes.mesh:g} m",
         {

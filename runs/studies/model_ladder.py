@@ -13,9 +13,10 @@ import numpy as np
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.report.tables import Table
 from runs.studies.motions import CASE, friction_case, gap_system, model_of, trajectories
 from runs.studies.pads import flexibility_table
-from runs.studies.study import Study, Table
+from runs.studies.study import Study
 
 # From the paper's series to the shell: what is changed, and the model that has it.
 WALK = (
@@ -54,7 +55,7 @@ def walk(case: Case) -> Table:
         return float(distance[early].max()), float(distance.max())
 
     before = [names[0], *names[:-1]]
-    return Table(
+    return Table.of_rows(
         "walk",
         "From the paper's series to the shell",
         {

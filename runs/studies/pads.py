@@ -15,8 +15,9 @@ from geometry.contact_places import Patch, pads
 from runs.case.build import build_boom
 from runs.case.contact import PadTable
 from runs.case.schema import Case
+from runs.report.tables import Cell, Table
 from runs.studies.motions import SLOW, compliance, gap_system, model_of
-from runs.studies.study import Cell, Proof, Table
+from runs.studies.study import Proof
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
@@ -41,7 +42,7 @@ def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
         alone = compliance(system, upper_rows(system)) - rigid
         rows.append((name, *together, *(alone - together)))
     stations = contacts[0][2].stations
-    return Table(
+    return Table.of_rows(
         "flexibility",
         "Flexibility of the stations beyond Timoshenko's beam",
         {

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from runs.studies.study import Kind, Plot, Proof, Table
+from runs.report.tables import Table
+from runs.studies.study import Kind, Plot, Proof
 
 # Of a grid convergence index of three or more grids (Roache 1998).
 SAFETY = 1.25
@@ -127,7 +128,7 @@ def refined_table(
         mesh: name of a mesh of a size, "edges × {:g}" say.
     """
     sizes = max((one.sizes for one in found), key=len)
-    return Table(
+    return Table.of_rows(
         name,
         title,
         {

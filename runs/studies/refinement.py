@@ -12,8 +12,9 @@ from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case, Model
+from runs.report.tables import Cell, Table
 from runs.studies.motions import finer, friction_case, model_of, trajectories
-from runs.studies.study import Cell, Study, Table
+from runs.studies.study import Study
 
 # The models whose integration is refined, and parts of the case's own step.
 STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")
@@ -125,7 +126,7 @@ def study(tell: Callable[[str], None]) -> Study:
         "first tip peak (mm)": ".2f",
     }
     title = "Convergence of the paper's example with friction"
-    table = Table("convergence", title, columns, rows, (NOTE,))
+    table = Table.of_rows("convergence", title, columns, rows, (NOTE,))
     return Study("refinement", "How the motion settles", [table])
 
 

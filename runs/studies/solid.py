@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from runs.report.tables import Cell, Table
 from runs.studies.box_errors import (
     COMPLIANCES,
     EVERY,
@@ -25,7 +26,7 @@ from runs.studies.box_errors import (
 from runs.studies.box_pair import PROBES, SPEED, pair, solid_parts
 from runs.studies.refined import refined_table
 from runs.studies.solid_itself import solid_proofs
-from runs.studies.study import Cell, Plot, Proof, Study, Table
+from runs.studies.study import Plot, Proof, Study
 
 # Errors of which the table says how thick a wall they take.
 LIMITS = (0.01, 0.02, 0.05)
@@ -47,7 +48,7 @@ SIZES_NOTE = "On the coarsest of the three meshes, which refine the edges around
 
 def error_table(comparisons: Sequence[Comparison]) -> Table:
     """The shell's error at every thickness, its order, and where it passes each limit."""
-    return Table(
+    return Table.of_rows(
         "solid-error",
         "Error of the shell against a solid",
         {
@@ -100,13 +101,13 @@ def other_sizes(sizes: Sizes) -> Table:
         ]
     columns = {"walls": "", "edges along x\nhalved (%)": ".2f", "four layers\nfor two (%)": ".2f"}
     title = "What further refinement changes of the solid"
-    return Table("solid-sizes", title, columns, rows, (SIZES_NOTE,))
+    return Table.of_rows("solid-sizes", title, columns, rows, (SIZES_NOTE,))
 
 
 def blow_table(comparisons: Sequence[Comparison]) -> Table:
     """One blow of the inner box against the outer one."""
     worst = max(struck.reduction_error for one in comparisons for struck in one.blows)
-    return Table(
+    return Table.of_rows(
         "solid-blow",
         "One blow of the inner box against the outer one's head",
         {"walls": "", "shell": ".5g", "solid": ".5g", "difference (%)": ".2f"},
@@ -180,13 +181,8 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
 
 def _blows(one: Comparison) -> list[tuple[str, str, float, float]]:
     """What of a blow, its unit, and its values of the shell and of the solid."""
-    shell, solid = one.blows
-    return [
-        ("largest force", "kN", 1.0e-3 * shell.peak, 1.0e-3 * solid.peak),
-        ("impulse", "N·s", shell.impulse, solid.impulse),
-        ("time in contact", "ms", 1.0e3 * shell.duration, 1.0e3 * solid.duration),
-        ("tip at the end", "mm", 1.0e3 * shell.left, 1.0e3 * solid.left),
-    ]
+    shell, solid = (struck.told for struck in one.blows)
+    return [(what, unit, shell[what, unit], solid[what, unit]) for what, unit in shell]
 
 
 def _error_plot(what: str, measured: Sequence[Measured], comparisons: Sequence[Comparison]) -> Plot:

@@ -13,24 +13,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from mpi4py import MPI
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
 from runs.case.build import build_boom
+from runs.report.tables import Cell, Table
 from runs.studies.motions import friction_case
-from runs.studies.study import Cell, Proof, Study, Table
+from runs.studies.study import Proof, Study
 from shell_model.cross_section import Outline, Row
-from shell_model.reduction.products import gram, times
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.reduction.products import quadratic_form
+from shell_model.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
-
-COMM = MPI.COMM_SELF
-# In Hz, in place of zero: nothing holds a segment along x. Far below all elastic modes.
-STATIC = 0.01
+from shell_model.verification.lone_segment import compliances, shell_alone
 
 # The error of the mesh; what the walls beside a plate, and the force on a short thick ring, add.
 ALLOWED = 0.01
@@ -118,34 +113,21 @@ def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, S
 
 def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
     """A segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
-    shell = _shell(segment, sizes.mesh, stations)
+    shell = shell_alone(segment, sizes.mesh, stations)
     held, standing = segment, shell
     if not segment.supports:
         held = replace(segment, supports=tuple(Support(x) for x in sizes.pins))
-        standing = _shell(held, sizes.mesh, stations)
-    solve = ShiftedSolver(standing, STATIC)
-    flexibilities = []
-    for x in stations:
-        top, bottom = (_corners(standing.outline(x), side) for side in (1.0, -1.0))
-        both = _compliance(standing, solve, 0.5 * top + 0.5 * bottom)
-        one = _compliance(standing, solve, top)
-        flexibilities.append((both - _timoshenko(held, x), one - both))
-    solve.destroy()
-    together, one_more = 1.0e9 * np.array(flexibilities).T
+        standing = shell_alone(held, sizes.mesh, stations)
+    tops, bottoms = (
+        [_corners(standing.outline(x), side) for x in stations] for side in (1.0, -1.0)
+    )
+    both = [0.5 * top + 0.5 * bottom for top, bottom in zip(tops, bottoms, strict=True)]
+    together, alone = 1.0e9 * np.reshape(compliances(standing, *both, *tops), (2, -1))
+    beam = 1.0e9 * np.array([_timoshenko(held, x) for x in stations])
     free = shell.rigid_motions().shape[1]
     frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
-    return Variant(f"{segment.name}, {what}", _mass(shell), together, one_more, frequencies)
-
-
-def _shell(segment: Segment, size: float, lines: Sequence[float] = ()) -> SegmentShell:
-    """A segment with mesh lines at its supports, its stiffeners and some more places."""
-    assert segment.section is not None
-    plates = diaphragm_breaks(segment)
-    breaks = {"start": segment.start, "end": segment.end} | plates | collar_breaks(segment)
-    places = [*lines, *(support.x for support in segment.supports)]
-    breaks |= {f"place-{k}": x for k, x in enumerate(places, start=1)}
-    mesh = mesh_segment(segment.section, breaks, size, closed=tuple(plates))
-    return assemble_segment(COMM, segment, mesh)
+    name = f"{segment.name}, {what}"
+    return Variant(name, _mass(shell), together - beam, alone - together, frequencies)
 
 
 def _corners(outline: Outline, side: float) -> Row:
@@ -163,17 +145,11 @@ def _timoshenko(segment: Segment, x: float) -> float:
     return bending + (a + a**2 / span) / (material.shear_modulus * section.shear_area)
 
 
-def _compliance(shell: SegmentShell, solve: ShiftedSolver, row: Row) -> float:
-    """What a unit force moves its own reading by, in m/N."""
-    force = shell.row(row)[:, None]
-    return float(gram(shell.comm, force, solve(force))[0, 0])
-
-
 def _mass(shell: SegmentShell) -> float:
     """What a slide along x carries, in kg."""
-    slide = np.zeros((shell.free.size, 1))
-    slide[shell.node_dofs[:, 0] - shell.owned[0]] = 1.0
-    return float(gram(shell.comm, slide, times(shell.mass, slide))[0, 0])
+    slide = np.zeros(shell.free.size)
+    slide[shell.node_dofs[:, 0]] = 1.0
+    return quadratic_form(shell.mass, slide)
 
 
 def racking(outline: Outline) -> Row:
@@ -198,10 +174,9 @@ def racking_stiffness(
     """
     stiffness = []
     for plates in ((), (Diaphragm(0.5, thickness),)):
-        shell = _shell(_piece(material, section, 1.0, diaphragms=plates), size, (0.5,))
-        solve = ShiftedSolver(shell, STATIC)
-        stiffness.append(1.0 / _compliance(shell, solve, racking(shell.outline(0.5))))
-        solve.destroy()
+        shell = shell_alone(_piece(material, section, 1.0, diaphragms=plates), size, (0.5,))
+        (compliance,) = compliances(shell, racking(shell.outline(0.5)))
+        stiffness.append(1.0 / compliance)
     return stiffness[1] - stiffness[0]
 
 
@@ -217,17 +192,14 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
     length = 0.1 * (section.width + section.height)
     collars = (Collar(0.0, length, collar),) if collar else ()
     ring = _piece(Material(young, 0.0, 7850.0), section, length, collars=collars)
-    shell = _shell(ring, size, (0.5 * length,))
+    shell = shell_alone(ring, size, (0.5 * length,))
     across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))
-    rows = (
+    forces = (
         weight * side * shell.outline(x).flange_deflection(side, 0.0)
         for x, weight in across
         for side in (1.0, -1.0)
     )
-    solve = ShiftedSolver(shell, STATIC)
-    found = _compliance(shell, solve, sum(rows, Row()))
-    solve.destroy()
-    return found * length
+    return compliances(shell, sum(forces, Row()))[0] * length
 
 
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
@@ -254,7 +226,7 @@ def _piece(
 def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> Table:
     """One row a variant."""
     flexibility = "both flanges (nm/N)", "one flange more (nm/N)"
-    return Table(
+    return Table.of_rows(
         "variants",
         "Collars and diaphragms on the paper's boom",
         {
@@ -279,7 +251,7 @@ def sums(
 ) -> Table:
     """What both segments of a joint give way together, for some pairs of variants."""
     head, tail, closed = outer[-1], inner[len(sizes.collars)], inner[-2]
-    return Table(
+    return Table.of_rows(
         "stiffened-stations",
         "Flexibility of a contact, both segments together",
         {"with": "", **{f"at {x:g} m (nm/N)": ".2f" for x in stations}},

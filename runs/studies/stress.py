@@ -16,23 +16,19 @@ from mpi4py import MPI
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom
 from geometry.contact_places import Stretch
-from geometry.mesh import mesh_segment, plate_thickness
+from geometry.mesh import plate_thickness
 from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
 from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Plot, Proof, Study
 from shell_model.boom_shell import ShellOptions, reduce_boom
 from shell_model.contact.corner_lines import CornerLines
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment_shell import assemble_segment
 from shell_model.stress.history import near_places
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import ShellStress, wall_forces
+from shell_model.verification.lone_segment import at_rest, shell_alone
 
 INNER = 1
-
-# Hz, in place of zero, since nothing holds the segment along x: nothing elastic is so slow.
-STATIC = 0.01
 
 # Relative errors with which a stress counts as proven: away from contacts, over a patch, and of
 # the reduction.
@@ -81,22 +77,17 @@ class Pressed:
             size: of the mesh in m.
         """
         segment = boom.segments[INNER]
-        assert segment.section is not None
-        breaks = {"start": segment.start, "end": segment.end}
-        breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(INNER), start=1)}
-        mesh = mesh_segment(segment.section, breaks, size)
-        shell = assemble_segment(MPI.COMM_SELF, segment, mesh)
+        shell = shell_alone(segment, size, boom.stations_of(INNER))
         force = segment.load * shell.unit_loads["z"]
         corners, length = CornerLines(shell), boom.contact_length(boom.joints[0])
         for x, (side, strength) in contact_forces(boom).items():
             row = corners.deflection(Stretch.on(segment, x, length), "z", 0.0, side)
             force -= side * strength * shell.row(row)
-        solve = ShiftedSolver(shell, STATIC)
-        moved = solve(force[:, None])
-        solve.destroy()
-        modes = gather_stress_modes(shell, moved)
+        modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
         assert modes is not None
-        return cls(boom, ShellStress.still(mesh, plate_thickness(segment, mesh), modes))
+        assert shell.mesh is not None
+        thickness = plate_thickness(segment, shell.mesh)
+        return cls(boom, ShellStress.still(shell.mesh, thickness, modes))
 
     @classmethod
     def reduced(cls, boom: Boom, laws: Sequence[ContactLaw], size: float) -> Pressed:

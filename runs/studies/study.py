@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from runs.report.tables import TextTable
-from runs.report.theme import fixed, number, repeated
+from runs.report.tables import Cell, Table
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
-Cell = str | float | list[float] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,39 +47,6 @@ class Proof:
     def holds(self) -> bool:
         """Whether the error is one that is allowed."""
         return self.error <= self.allowed
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Numbers under headings, for people and for programs.
-
-    Args:
-        name: of its place in the report and in the JSON file.
-        title: above it.
-        columns: heading → how its numbers are shown: ".2f" with two decimals, ".3g" with three
-            significant digits, "~" repetitions with the digits that they have in common, "" where
-            there is text alone.
-        rows: a cell for each heading, numbers in the heading's unit; None for none.
-        notes: sentences below it.
-    """
-
-    name: str
-    title: str
-    columns: Mapping[str, str]
-    rows: Sequence[Sequence[Cell]]
-    notes: Sequence[str] = ()
-
-    @property
-    def text(self) -> TextTable:
-        """For people."""
-        forms = list(self.columns.values())
-        rows = [tuple(map(_shown, row, forms)) for row in self.rows]
-        return TextTable(self.title, list(self.columns), rows, self.notes, name=self.name)
-
-    @property
-    def data(self) -> list[dict[str, Any]]:
-        """For programs: each row by its headings, as JSON can say it."""
-        return [dict(zip(self.columns, map(_plain, row), strict=True)) for row in self.rows]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,21 +90,6 @@ class Study:
     plots: Sequence[Plot] = ()
 
     @property
-    def data(self) -> dict[str, list[dict[str, Any]]]:
+    def data(self) -> dict[str, list[dict[str, Cell]]]:
         """The numbers of each table by its name, as JSON."""
         return {table.name: table.data for table in self.tables}
-
-
-def _shown(cell: Cell, form: str) -> str:
-    if isinstance(cell, str):
-        return cell
-    if isinstance(cell, list):
-        return repeated(cell)
-    digits = int(form[1:-1])
-    return fixed(cell, digits) if form.endswith("f") else number(cell, digits)
-
-
-def _plain(cell: Cell) -> Cell:
-    if isinstance(cell, str | list) or cell is None:
-        return cell
-    return float(cell) if math.isfinite(cell) else None

@@ -7,8 +7,9 @@ friction the tip over the whole run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
+from runs.report.tables import Table
+from runs.report.theme import number
 from runs.studies.motions import (
     OUTPUT_STEP,
     friction_case,
@@ -26,7 +29,7 @@ from runs.studies.motions import (
     without_friction,
 )
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
-from runs.studies.study import Plot, Proof, Study, Table
+from runs.studies.study import Plot, Proof, Study
 
 # Of the highest frequency of the contacts, see dynamics.step: thrice what a run would take, which
 # changes the tip with friction by less than 0.1 % of its range.
@@ -35,15 +38,11 @@ PHASE = 0.1
 DEPTH = 1.0e-3
 DEFAULT_POINTS = (8, 4)
 
-PEAKS = {"first tip peak\nwithout friction (mm)": ".1f", "with friction (mm)": ".1f"}
 NOTES = (
     "A surface has no pads: the corners of the inner box press on the outer flange beside its web, "
     "and the flange gives way there.",
     "Pads at the ends of the overlap have their middles half their length inside, which shortens "
     "the arm of the couple that holds the inner segment, and lets it tilt more within the play.",
-)
-PENALTY_NOTE = (
-    "The default presses as both stations do when the segments approach each other alike."
 )
 
 
@@ -68,25 +67,12 @@ class Sizes:
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
 
 
-@dataclass(frozen=True, slots=True)
-class Contact:
-    """A way to touch, and what it does.
-
-    Args:
-        name: of it.
-        case: what touches so.
-        system: its shell, with friction.
-        peaks: first tip peak in mm without and with friction.
-    """
+class Contact(NamedTuple):
+    """A way to touch: its name, what touches so, and its shell, with friction."""
 
     name: str
     case: Case
     system: GapSystem
-    peaks: Array
-
-    def off(self, other: Contact) -> Array:
-        """By how much the peaks are off another's, in %."""
-        return 100.0 * (self.peaks / other.peaks - 1.0)
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
@@ -96,46 +82,55 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     update: dict[str, object] = {"mesh_size": sizes.mesh, "contact_tolerance": "any"}
     shell = shell_of(case).model_copy(update=update)
 
-    def touching(name: str, case: Case, update: Mapping[str, object]) -> Contact:
+    def touching(name: str, case: Case, **update: object) -> Contact:
         tell(f"contact {name}")
         system = gap_system(case, build_boom(case), shell.model_copy(update=update))
-        return Contact(name, case, system, _first_peaks(system, sizes))
+        return Contact(name, case, system)
 
     stations = [
-        touching("near webs", case, {}),
-        touching("across", case, {"contact_line": "across"}),
+        touching("near webs", case),
+        touching("across", case, contact_line="across"),
         *(
-            touching(f"pads of {length:g} m x {width:g} m", with_pads(case, length, width), {})
+            touching(f"pads of {length:g} m x {width:g} m", with_pads(case, length, width))
             for length, width in sizes.pads
         ),
     ]
     surfaces = {
-        points: touching(
-            f"surface, {points[0]} x {points[1]} points",
+        (along, across): touching(
+            f"surface, {along} x {across} points",
             case,
-            {"contact_line": "surface", "surface_points": points},
+            contact_line="surface",
+            surface_points=(along, across),
         )
-        for points in sizes.points
+        for along, across in sizes.points
     }
     lines, padded = stations[0], stations[2]
     default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
+    softer = [
+        Contact(f"{default.name}, {part:g} of the penalty", case, _scaled(default.system, part))
+        for part in sizes.penalties
+    ]
     tell("motions with friction")
     tips = {
         contact.name: np.asarray(move(contact.system, sizes.duration, PHASE).data["tip"].values)
         for contact in (lines, default)
     }
-    tell("penalties")
-    penalties = _penalties(case, default.system, sizes)
+    apart = np.abs(tips[lines.name] - tips[default.name]).max() / np.ptp(tips[default.name])
+    notes = (
+        f"With friction, over {sizes.duration:g} s, the tip of the surface is up to "
+        f"{100.0 * apart:.1f} % of its range from that of near webs.",
+        f"Its default penalty of {number(_density(case, default.system))} N/m³ presses as both "
+        "stations do when the segments approach each other alike. Points are along the overlap, "
+        "and across half a wall.",
+        *NOTES,
+    )
+    tell("first peaks")
+    peaks = _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
     time = (OUTPUT_STEP * np.arange(len(tips[lines.name]))).tolist()
     return Study(
         "surface-contact",
         "Contact over the whole overlap",
-        [
-            _contact_table([*stations, default], tips, sizes),
-            penalties,
-            _points_table(surfaces),
-            flexibility_table([(one.name, one.case, one.system) for one in stations]),
-        ],
+        [peaks, flexibility_table(stations)],
         [*_proofs(case, default.system), *pad_proofs(case, sizes.pads[0], padded.system)],
         [
             Plot(
@@ -152,10 +147,8 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     )
 
 
-def _first_peaks(system: GapSystem, sizes: Sizes) -> Array:
-    """First tip peak in mm without and with friction."""
-    both = without_friction(system), system
-    return 1.0e3 * np.array([move(one, sizes.peak, PHASE).first_peak()[1] for one in both])
+def _scaled(system: GapSystem, part: float) -> GapSystem:
+    return replace(system, laws=[law.shared(part) for law in system.laws])
 
 
 def _upper_stiffness(system: GapSystem) -> float:
@@ -163,80 +156,35 @@ def _upper_stiffness(system: GapSystem) -> float:
     return sum(term.stiffness for law in system.laws for term in law.terms if term.side > 0.0)
 
 
-def _contact_table(contacts: Sequence[Contact], tips: Mapping[str, Array], sizes: Sizes) -> Table:
-    one, other = tips.values()
-    apart = 100.0 * float(np.abs(one - other).max() / np.ptp(other))
-    return Table(
-        "surface",
-        "Where the segments touch",
-        {
-            "contact": "",
-            "modes": ".0f",
-            "rows": ".0f",
-            **PEAKS,
-            "without friction\noff near webs (%)": ".1f",
-            "with friction\noff near webs (%)": ".1f",
-        },
-        [
-            (contact.name, contact.system.num_modes, len(contact.system.laws), *contact.peaks,
-             *contact.off(contacts[0]))
-            for contact in contacts
-        ],
-        (
-            f"With friction, over {sizes.duration:g} s, the tip of the surface is up to "
-            f"{apart:.1f} % of its range from that of near webs.",
-            *NOTES,
-        ),
-    )  # fmt: skip
-
-
-def _penalties(case: Case, system: GapSystem, sizes: Sizes) -> Table:
+def _density(case: Case, system: GapSystem) -> float:
+    """The default penalty per area in N/mⁿ⁺²."""
     boom = build_boom(case)
     (joint,) = boom.joints
     section = boom.segments[joint.inner].section
     assert section is not None
     start, end = boom.overlap(joint)
-    density = _upper_stiffness(system) / (section.size("y") * (end - start))
-    peaks = {
-        part: _first_peaks(replace(system, laws=[law.shared(part) for law in system.laws]), sizes)
-        for part in sizes.penalties
-    }
-    stiffest = peaks[sizes.penalties[-1]]
-    return Table(
-        "surface-penalty",
-        "Penalty per area",
-        {
-            "part of the default": ".3g",
-            "k_A (N/m³)": ".3g",
-            **PEAKS,
-            "off the stiffest (%)": ".2f",
-        },
+    return _upper_stiffness(system) / (section.size("y") * (end - start))
+
+
+def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> Table:
+    """The tip's first peak without and with friction, and how far it is off the first contact's."""
+    both = np.array(
         [
-            (part, part * density, *found, 100.0 * (found[1] / stiffest[1] - 1.0))
-            for part, found in peaks.items()
-        ],
-        (PENALTY_NOTE,),
+            [move(one, sizes.peak, PHASE).first_peak()[1] for one in (without_friction(of), of)]
+            for _, _, of in contacts
+        ]
     )
-
-
-def _points_table(surfaces: Mapping[tuple[int, int], Contact]) -> Table:
-    finest = surfaces[max(surfaces, key=lambda points: (points[1], points[0]))]
-    return Table(
-        "surface-points",
-        "Contact points of a surface",
-        {
-            "along x half across": "",
-            "rows": ".0f",
-            "modes": ".0f",
-            **PEAKS,
-            "off most across (%)": ".2f",
-        },
-        [
-            (f"{along} x {across}", len(contact.system.laws), contact.system.num_modes,
-             *contact.peaks, contact.off(finest)[1])
-            for (along, across), contact in surfaces.items()
-        ],
-    )  # fmt: skip
+    off = both / both[0] - 1.0
+    columns = {"contact": "", "modes": ".0f", "rows": ".0f"}
+    for how in ("without", "with"):
+        columns[f"first tip peak\n{how} friction (mm)"] = ".1f"
+        columns[f"off near webs\n{how} friction (%)"] = ".1f"
+    numbers = np.stack([1.0e3 * both, 100.0 * off], axis=2).reshape(len(both), -1)
+    rows = [
+        (name, system.num_modes, len(system.laws), *row)
+        for (name, _, system), row in zip(contacts, numbers, strict=True)
+    ]
+    return Table.of_rows("surface", "Where the segments touch", columns, rows, notes)
 
 
 def _proofs(case: Case, system: GapSystem) -> list[Proof]:

@@ -13,7 +13,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -23,14 +22,16 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.report.tables import Cell, Table
 from runs.studies.mesh import peak_heights
 from runs.studies.motions import finer, friction_case, gap_system, move, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Cell, Proof, Study, Table
+from runs.studies.study import Proof, Study
 
 # What is allowed of the first peak, and of the tip as a part of its range.
-ALLOWED = 0.002, 0.02
+PEAK, TIP = 0.002, 0.02
+TIP_OF_RANGE = "tip, part of its range"
 # Outputs over which a pad's force is averaged: single blows are a matter of microseconds.
 HELD = 20
 
@@ -75,26 +76,32 @@ class Moved:
 
     Args:
         tip: (num_times,) in m.
-        peaks: heights of its first peaks in m.
+        peaks: (num_peaks,) heights of its first ones in m; NaN without it.
         forces: (num_stations,) largest of each, in N, over ``HELD`` outputs.
     """
 
     tip: Array
-    peaks: Sequence[float]
+    peaks: Array
     forces: Array
 
-    def peak(self, which: int = 0) -> float:
-        """Height of one in m; NaN without it."""
-        return self.peaks[which] if which < len(self.peaks) else float("nan")
-
     @classmethod
-    def of(cls, system: GapSystem, duration: float, peaks: int) -> Moved:
+    def of(cls, system: GapSystem, duration: float, num_peaks: int) -> Moved:
         """From rest, in s."""
         motion = move(system, duration)
         held = np.cumsum(np.pad(motion.data["contact_force"].values, ((1, 0), (0, 0))), axis=0)
         means = (held[HELD:] - held[:-HELD]) / HELD
-        tip = np.asarray(motion.data["tip"].values)
-        return cls(tip, peak_heights(motion)[:peaks], np.abs(means).max(axis=0))
+        peaks = np.full(num_peaks, np.nan)
+        heights = peak_heights(motion)[:num_peaks]
+        peaks[: len(heights)] = heights
+        return cls(np.asarray(motion.data["tip"].values), peaks, np.abs(means).max(axis=0))
+
+    def changes(self, finer: Moved) -> Array:
+        """(num_peaks + 2,) relative changes of the peaks, then of the stations' forces as parts of
+        the largest, and of the tip as a part of its range, from here to a finer mesh.
+        """
+        forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
+        tip = np.abs(self.tip - finer.tip).max() / np.ptp(finer.tip)
+        return np.append(np.abs(self.peaks / finer.peaks - 1.0), [forces, tip])
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,37 +116,26 @@ class Contact:
     name: str
     moved: Mapping[Point, Sequence[Moved]]
 
-    def peak_change(self, point: Point, which: int = 0) -> float:
-        """Relative change of a peak from the default mesh to the finest; NaN without it."""
-        default, fine = (moved.peak(which) for moved in self.moved[point][-2:])
-        return abs(default / fine - 1.0)
+    @property
+    def changes(self) -> Array:
+        """(num_points, num_peaks + 2) from the default mesh to the finest; NaN without a peak."""
+        return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
-    def force_change(self, point: Point) -> float:
-        """Largest change of a station's force, as a part of the largest force."""
-        default, fine = (moved.forces for moved in self.moved[point][-2:])
-        return float(np.abs(default - fine).max() / fine.max())
-
-    def tip_change(self, point: Point) -> float:
-        """Largest change of the tip, as a part of its range."""
-        default, fine = (moved.tip for moved in self.moved[point][-2:])
-        return float(np.abs(default - fine).max() / np.ptp(fine))
-
-    def worst(self, change: Callable[[Point], float]) -> tuple[float, Point]:
-        """The largest change over all points, and where it is; NaN where there is none."""
-        known = [(change(p), p) for p in self.moved if np.isfinite(change(p))]
-        return max(known, default=(float("nan"), next(iter(self.moved))))
+    def worst(self, which: int) -> tuple[float, Point]:
+        """The largest of a kind of changes over all points, and where; NaN where there is none."""
+        changes = self.changes[:, which]
+        points = list(self.moved)
+        if np.isnan(changes).all():
+            return float("nan"), points[0]
+        at = int(np.nanargmax(changes))
+        return float(changes[at]), points[at]
 
     @property
     def proofs(self) -> list[Proof]:
         """First peaks and tips of the default mesh against half of all edges."""
         found = []
-        for what, change, allowed in zip(
-            ("first tip peak", "tip, part of its range"),
-            (self.peak_change, self.tip_change),
-            ALLOWED,
-            strict=True,
-        ):
-            value, point = self.worst(change)
+        for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
+            value, point = self.worst(which)
             name = f"{what}, {self.name}, worst of {len(self.moved)} points ({point})"
             source = "all edges half as long"
             found.append(Proof(name, value, 0.0, "", "other code", source, allowed))
@@ -148,15 +144,14 @@ class Contact:
     def hardest(self, sizes: Sizes) -> list[Refined]:
         """Peaks and pad forces at the largest play and load."""
         meshes = self.moved[max(self.moved, key=lambda p: (p.load, p.play))]
-        values = {
-            ("tip peak", "mm"): [[1e3 * peak for peak in moved.peaks] for moved in meshes],
-            ("pad force", "kN"): [(1e-3 * moved.forces).tolist() for moved in meshes],
-        }
         return [
-            Refined(f"{self.name}: {what} {i}", unit, sizes.meshes, of_meshes)
-            for (what, unit), each in values.items()
-            # As many as all meshes have.
-            for i, of_meshes in enumerate(zip(*each, strict=False), start=1)
+            Refined(f"{self.name}: {what} {i}", unit, sizes.meshes, values.tolist())
+            for what, unit, each in (
+                ("tip peak", "mm", 1e3 * np.array([moved.peaks for moved in meshes])),
+                ("pad force", "kN", 1e-3 * np.array([moved.forces for moved in meshes])),
+            )
+            for i, values in enumerate(each.T, start=1)
+            if np.isfinite(values).all()
         ]
 
 
@@ -192,27 +187,17 @@ def measure(
 
 def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
     """The largest changes of each way to touch."""
+    peaks = [f"peak {which}\n(%)" for which in range(1, sizes.peaks + 1)]
+    changes = [*peaks, "pad forces\n(%)", "tip, part of\nits range (%)"]
     rows: list[Sequence[Cell]] = []
     for contact in contacts:
-        read: list[Callable[[Point], float]] = [
-            *(partial(contact.peak_change, which=which) for which in range(sizes.peaks)),
-            contact.force_change,
-            contact.tip_change,
-        ]
-        worst = [contact.worst(change) for change in read]
-        changes = [100.0 * change for change, _ in worst]
-        rows.append((contact.name, len(contact.moved), *changes, str(worst[-1][1])))
-    return Table(
+        worst = [contact.worst(which) for which in range(len(changes))]
+        parts = [100.0 * change for change, _ in worst]
+        rows.append((contact.name, len(contact.moved), *parts, str(worst[-1][1])))
+    return Table.of_rows(
         "working-load",
         "From the default mesh to one with all edges half as long",
-        {
-            "contact": "",
-            "points": ".0f",
-            **{f"peak {which}\n(%)": ".2f" for which in range(1, sizes.peaks + 1)},
-            "pad forces\n(%)": ".2f",
-            "tip, part of\nits range (%)": ".2f",
-            "where": "",
-        },
+        {"contact": "", "points": ".0f", **dict.fromkeys(changes, ".2f"), "where": ""},
         rows,
         (
             f"The largest change over plays of {1e3 * min(sizes.plays):g} to "
@@ -226,7 +211,7 @@ def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
 
 def point_table(contact: Contact) -> Table:
     """First peaks and the changes at every point of one way to touch, a row each."""
-    return Table(
+    return Table.of_rows(
         f"points-{contact.name.replace(' ', '-')}",
         f"Every point, {contact.name}",
         {
@@ -237,16 +222,13 @@ def point_table(contact: Contact) -> Table:
             "largest pad force (kN)": ".4g",
         },
         [
-            (
-                str(point),
-                1e3 * meshes[-2].peak(),
-                100.0 * contact.peak_change(point),
-                100.0 * contact.tip_change(point),
-                1e-3 * float(meshes[-1].forces.max()),
+            (str(point), 1e3 * meshes[-2].peaks[0], *(100.0 * changes[[0, -1]]),
+             1e-3 * meshes[-1].forces.max())
+            for (point, meshes), changes in zip(
+                contact.moved.items(), contact.changes, strict=True
             )
-            for point, meshes in contact.moved.items()
         ],
-    )
+    )  # fmt: skip
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:

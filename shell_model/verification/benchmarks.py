@@ -18,8 +18,6 @@ from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from shell_model.verification.static_shell import StaticShell, hold
 
 X, Y, Z = 0, 1, 2
-# Nodes closer than this to an end lie on it.
-AT_END = 1.0e-7
 # In place of 5/6: no shear strain to speak of.
 SHEAR_RIGID = 100.0
 
@@ -89,8 +87,7 @@ def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
         )
 
     shell = StaticShell(*grid(surface, n, n), 0.25, Material(4.32e8, 0.0, 1.0), drilling)
-    at_end = np.abs(shell.nodes[:, X] - half_length) < AT_END
-    held = shell.mirror(X) | shell.mirror(Y) | hold(shell.node_dofs[at_end][:, [Y, Z]])
+    held = shell.mirror(X) | shell.mirror(Y) | shell.hold_at(X, half_length, [Y, Z])
     solution = shell.solve(held, shell.surface_load(np.array([0.0, 0.0, -90.0])))
     middle = shell.node_at(surface(np.zeros(1), np.ones(1))[0])
     return float(-solution[shell.node_dofs[middle, Z]])
@@ -120,8 +117,7 @@ def pinched_cylinder(
 
     material = Material(3.0e6, 0.3, 1.0)
     shell = StaticShell(*grid(surface, n, n), 3.0, material, drilling, shear_correction)
-    at_end = np.abs(shell.nodes[:, X] - half_length) < AT_END
-    held = hold(shell.node_dofs[at_end][:, [Y, Z]])
+    held = shell.hold_at(X, half_length, [Y, Z])
     held |= shell.mirror(X) | shell.mirror(Y) | shell.mirror(Z)
     pushed = np.array([0.0, 0.0, radius])
     solution = shell.solve(held, shell.point_load(pushed, np.array([0.0, 0.0, -0.25])))
@@ -169,11 +165,8 @@ def twisted_beam(n: int, drilling: float = DRILLING_OF_CURVED) -> TwistedBeam:
         return np.stack([length * along, s * np.cos(angle), s * np.sin(angle)], axis=1)
 
     shell = StaticShell(*grid(surface, 6 * n, n), 0.32, Material(29.0e6, 0.22, 1.0), drilling)
-    root, rotations = (
-        np.abs(places[:, X]) < AT_END for places in (shell.nodes, shell.rotation_nodes)
-    )
-    held = hold(shell.node_dofs[root]) | hold(shell.rotation_dofs[rotations])
-    tip = np.abs(shell.nodes[:, X] - length) < AT_END
+    held = shell.hold_at(X, 0.0, [X, Y, Z], [X, Y, Z])
+    tip = shell.at(X, length)
     middle = shell.node_dofs[shell.node_at(np.array([length, 0.0, 0.0]))]
     in_plane, out_of_plane = (
         shell.solve(held, shell.line_load(tip, np.eye(3)[axis]))[middle[axis]] for axis in (Z, Y)

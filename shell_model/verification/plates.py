@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 from geometry.arrays import Array, Indices
 from geometry.boom import Material
 from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
-from shell_model.verification.benchmarks import AT_END, X, Y, grid
+from shell_model.segment_shell import ON_LINE
+from shell_model.verification.benchmarks import X, Y, Z, grid
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.static_shell import StaticShell, hold
 
@@ -23,6 +24,17 @@ PATCH_THICKNESS = 0.05
 
 # Columns are the patch's x and y and its normal in space: no axis lies along one of space.
 OBLIQUE = np.asarray(Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix())
+
+
+def rigidities(thickness: float) -> tuple[float, float]:
+    """D in N m and S = 5/6 G t in N/m of a plate of steel, t in m."""
+    bending = STEEL.youngs_modulus * thickness**3 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
+    return bending, SHEAR_CORRECTION * STEEL.shear_modulus * thickness
+
+
+def rectangle(length: float, width: float) -> Field:
+    """Places (num, 3) in m on [0, length] × [0, width], of parameters (num,) from 0 to 1."""
+    return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +59,7 @@ class ConstantStrain:
     @property
     def couple(self) -> Array:
         """(3,) in N m/m² with which the state is in balance: e3 × Q, Q the shear force."""
-        q1, q2 = SHEAR_CORRECTION * STEEL.shear_modulus * PATCH_THICKNESS * self.shear
+        q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
         return np.array([-q2, q1, 0.0])
 
 
@@ -113,7 +125,7 @@ class Patch:
         """With n edges along each side; inner points are off their places by a fifth of one."""
 
         def surface(x: Array, y: Array) -> Array:
-            inside = (np.abs(x - 0.5) < 0.5 - AT_END) & (np.abs(y - 0.5) < 0.5 - AT_END)
+            inside = (np.abs(x - 0.5) < 0.5 - ON_LINE) & (np.abs(y - 0.5) < 0.5 - ON_LINE)
             off = 0.2 / n * inside
             x, y = x + off * np.sin(17.0 * x + 5.0 * y), y + off * np.cos(7.0 * x - 13.0 * y)
             return np.asarray(np.stack([x, y, np.zeros_like(x)], axis=1) @ OBLIQUE.T)
@@ -141,7 +153,7 @@ class Patch:
             (shell.nodes, shell.node_dofs),
             (shell.rotation_nodes, shell.rotation_dofs),
         ):
-            edge = np.abs(places @ OBLIQUE[:, :2] - 0.5).max(axis=1) > 0.5 - AT_END
+            edge = np.abs(places @ OBLIQUE[:, :2] - 0.5).max(axis=1) > 0.5 - ON_LINE
             held |= hold(dofs[edge], exact[dofs[edge]])
         return shell.solve(held, shell.surface_load(np.zeros(3), OBLIQUE @ state.couple))
 
@@ -170,20 +182,18 @@ class SupportedPlate:
 
     def frequencies(self, n: int, count: int) -> Array:
         """(count,) lowest natural frequencies in Hz of the shell, n edges along each side."""
-
-        def surface(x: Array, y: Array) -> Array:
-            return np.stack([self.length * x, self.width * y, np.zeros_like(x)], axis=1)
-
         # The drilling tie and the wall's inertia have frequencies of their own, from
         # √(12 DRILLING G/ρ)/(2π t) on: in a thick plate a soft tie comes too near.
-        shell = StaticShell(*grid(surface, n, n), self.thickness, STEEL, DRILLING_OF_CURVED)
+        shell = StaticShell(
+            *grid(rectangle(self.length, self.width), n, n),
+            self.thickness,
+            STEEL,
+            DRILLING_OF_CURVED,
+        )
         held: dict[int, float] = {}
         for axis, size in ((X, self.length), (Y, self.width)):
-            nodes, rotations = (
-                np.abs(places[:, axis] - 0.5 * size) > 0.5 * size - AT_END
-                for places in (shell.nodes, shell.rotation_nodes)
-            )
-            held |= hold(shell.node_dofs[nodes]) | hold(shell.rotation_dofs[rotations, axis])
+            for edge in (0.0, size):
+                held |= shell.hold_at(axis, edge, [X, Y, Z], [axis])
         return natural_frequencies(shell.held(held), count)
 
     def kirchhoff(self, count: int) -> Array:
@@ -198,9 +208,8 @@ class SupportedPlate:
         With k² = (mπ/a)² + (nπ/b)² and the slope along the wave, ω² is the lower root of
         (S k² − ρt ω²)(D k² + S − ρt³/12 ω²) = S² k², S = 5/6 G t.
         """
-        t, nu, k2 = self.thickness, STEEL.poissons_ratio, self._wave_numbers2()
-        plate = STEEL.youngs_modulus * t**3 / (12.0 * (1.0 - nu**2))
-        shear = SHEAR_CORRECTION * STEEL.shear_modulus * t
+        t, k2 = self.thickness, self._wave_numbers2()
+        plate, shear = rigidities(t)
         mass, inertia = STEEL.density * t, STEEL.density * t**3 / 12.0
         square = mass * inertia
         linear = mass * (plate * k2 + shear) + inertia * shear * k2

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from geometry.arrays import Array
-from shell_model.forms import SHEAR_CORRECTION
-from shell_model.verification.benchmarks import AT_END, X, Y, Z, grid
-from shell_model.verification.plates import STEEL
+from shell_model.verification.benchmarks import X, Y, Z, grid
+from shell_model.verification.plates import STEEL, rectangle, rigidities
 from shell_model.verification.static_shell import StaticShell, hold
 
 Edges = Literal["simply supported", "clamped"]
@@ -49,11 +48,7 @@ class PressedPlate:
             size: edge length in m, of which sides and places of the patch are whole multiples.
         """
         sides = (self.length, self.width)
-
-        def surface(x: Array, y: Array) -> Array:
-            return np.stack([self.length * x, self.width * y, np.zeros_like(x)], axis=1)
-
-        points, triangles = grid(surface, *(round(side / size) for side in sides))
+        points, triangles = grid(rectangle(*sides), *(round(side / size) for side in sides))
         shell = StaticShell(points, triangles, self.thickness, STEEL)
         middles = points[triangles].mean(axis=1)[:, :2]
         pressed = ((middles > self.start) & (middles < self.end)).all(axis=1)
@@ -61,14 +56,9 @@ class PressedPlate:
         load = shell.surface_load(np.array([0.0, 0.0, 1.0 / area]), on=pressed)
         held = hold(shell.node_dofs[:, [X, Y]])
         for axis, side in ((X, self.length), (Y, self.width)):
-            nodes, rotations = (
-                np.abs(places[:, axis] - 0.5 * side) > 0.5 * side - AT_END
-                for places in (shell.nodes, shell.rotation_nodes)
-            )
-            turned = [X, Y] if self.edges == "clamped" else [axis]
-            held |= hold(shell.node_dofs[nodes, Z]) | hold(
-                shell.rotation_dofs[rotations][:, turned]
-            )
+            for edge in (0.0, side):
+                turned = [X, Y] if self.edges == "clamped" else [axis]
+                held |= shell.hold_at(axis, edge, [Z], turned)
         held |= hold(shell.rotation_dofs[:, Z])
         return float(load @ shell.solve(held, load))
 
@@ -77,9 +67,7 @@ class PressedPlate:
 
         Deflection and slopes are polynomials that keep the supports.
         """
-        nu, t = STEEL.poissons_ratio, self.thickness
-        plate = STEEL.youngs_modulus * t**3 / (12.0 * (1.0 - nu**2))
-        shear = SHEAR_CORRECTION * STEEL.shear_modulus * t
+        nu, (plate, shear) = STEEL.poissons_ratio, rigidities(self.thickness)
         (x, along), (y, over) = (_gauss(0.0, side) for side in (self.length, self.width))
         free = self.edges == "simply supported"
         deflection = _Field.of(self, x, y, (False, False))
@@ -110,9 +98,7 @@ class PressedPlate:
         """The same on simple supports, as a double series of sines (Navier 1823; with the shear of
         Reissner and Mindlin, whose plate bends alike between such supports).
         """
-        nu, t = STEEL.poissons_ratio, self.thickness
-        plate = STEEL.youngs_modulus * t**3 / (12.0 * (1.0 - nu**2))
-        shear = SHEAR_CORRECTION * STEEL.shear_modulus * t
+        plate, shear = rigidities(self.thickness)
         waves = np.pi * np.arange(1, terms + 1)
         means = [
             (np.cos(waves * first / side) - np.cos(waves * last / side)) * side

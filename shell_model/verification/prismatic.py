@@ -9,16 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Array, Indices
-from geometry.boom import Material
 from geometry.mesh import mesh_segment, plain_thickness
 from geometry.section import Section
 from shell_model.cross_section import Outline
 from shell_model.forms import DRILLING
-from shell_model.verification.benchmarks import AT_END, X, Y, Z, grid
+from shell_model.verification.benchmarks import X, Y, Z, grid
 from shell_model.verification.eigenmodes import natural_frequencies
+from shell_model.verification.plates import STEEL
 from shell_model.verification.static_shell import StaticShell, hold
-
-STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,16 +97,16 @@ class Member:
         turn = np.cross([1.0, 0.0, 0.0], shell.nodes)
         held: dict[int, float] = {}
         for x, angle in ((0.0, 0.0), (self.length, 1.0)):
-            at = np.abs(shell.nodes[:, X] - x) < AT_END
+            at = shell.at(X, x)
             held |= hold(shell.node_dofs[at][:, [Y, Z]], angle * turn[at][:, [Y, Z]])
         held |= hold(shell.node_dofs[:1, X])
         solution = shell.solve(held, np.zeros(shell.num_dofs))
         moved = solution[shell.node_dofs]
-        end = np.abs(shell.nodes[:, X] - self.length) < AT_END
+        end = shell.at(X, self.length)
         torque = float((shell.forces(solution)[shell.node_dofs] * turn)[end].sum())
         angles = []
         for x in (0.25 * self.length, 0.75 * self.length):
-            at = np.abs(shell.nodes[:, X] - x) < AT_END
+            at = shell.at(X, x)
             off = turn[at] - turn[at].mean(axis=0)
             angles.append(float((off * moved[at]).sum() / (off**2).sum()))
         rate = (angles[1] - angles[0]) / (0.5 * self.length)
@@ -175,9 +173,8 @@ class PlainBox:
         shell = self.shell(size, drilling, breaks=breaks)
         held = hold(shell.node_dofs[:1, X])
         for support in supports:
-            at = np.abs(shell.nodes[:, X] - support) < AT_END
-            held |= hold(shell.node_dofs[at][:, [Y, Z]])
-        at = np.abs(shell.nodes[:, X] - x) < AT_END
+            held |= shell.hold_at(X, support, [Y, Z])
+        at = shell.at(X, x)
         outline = Outline(x, shell.nodes[at], shell.node_dofs[at], self.section)
         force = np.zeros(shell.num_dofs)
         for dof, weight in outline.flange_deflection(1.0, y).items():

@@ -7,7 +7,7 @@ places, whatever the facets' frames are.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from geometry.boom import Material
 from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.forms import DRILLING, SHEAR_CORRECTION, ShellForms
+from shell_model.reduction.products import times
 from shell_model.segment_shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
 
 # Part of the load that may be left over.
@@ -81,13 +82,26 @@ class StaticShell:
         assert distance[node] < ON_LINE, f"no node at {place}"
         return node
 
+    def at(self, axis: int, place: float) -> Mask:
+        """(num_nodes,) which displacement nodes lie at a place in m along an axis."""
+        return np.asarray(np.abs(self.nodes[:, axis] - place) < ON_LINE)
+
+    def hold_at(
+        self, axis: int, place: float, along: Sequence[int], about: Sequence[int] = ()
+    ) -> dict[int, float]:
+        """What holds all nodes at a place in m along an axis.
+
+        Args:
+            axis, place: of the nodes.
+            along, about: components of their displacements and rotations.
+        """
+        turned = np.abs(self.rotation_nodes[:, axis] - place) < ON_LINE
+        moved = self.node_dofs[self.at(axis, place)]
+        return hold(moved[:, list(along)]) | hold(self.rotation_dofs[turned][:, list(about)])
+
     def mirror(self, axis: int) -> dict[int, float]:
         """What holds a half on the plane through the origin across an axis, as the other half."""
-        others = [i for i in range(3) if i != axis]
-        on_plane, rotations = (
-            np.abs(places[:, axis]) < ON_LINE for places in (self.nodes, self.rotation_nodes)
-        )
-        return hold(self.node_dofs[on_plane, axis]) | hold(self.rotation_dofs[rotations][:, others])
+        return self.hold_at(axis, 0.0, [axis], [i for i in range(3) if i != axis])
 
     def surface_load(
         self, force: Array, couple: Array | None = None, on: Mask | None = None
@@ -173,13 +187,7 @@ class StaticShell:
 
     def forces(self, solution: Array) -> Array:
         """(num_dofs,) forces in N and moments in N m that keep a solution, K times it."""
-        right, left = self.stiffness.createVecs()
-        right.array[:] = solution
-        self.stiffness.mult(right, left)
-        found = left.array.copy()
-        right.destroy()
-        left.destroy()
-        return np.asarray(found)
+        return np.asarray(times(self.stiffness, solution[:, None])[:, 0])
 
     def held(self, dofs: Held) -> Shell:
         """The shell with some degrees of freedom held at zero, ready to vibrate."""

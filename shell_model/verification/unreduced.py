@@ -14,7 +14,7 @@ opens or closes within it. Any number of ranks may share the shells.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -139,7 +139,6 @@ def integrate_directly(
     output_step: float = 1.0e-3,
     radius: float = RADIUS,
     energy_bound: float = ENERGY_BOUND,
-    progress: Callable[[float], None] | None = None,
 ) -> DirectMotion:
     """Move the unreduced shells from rest. Collective.
 
@@ -150,7 +149,6 @@ def integrate_directly(
         output_step: in s.
         radius: ρ∞, see :class:`GeneralisedAlpha`.
         energy_bound: largest energy residual that passes.
-        progress: called with the part done, 0 to 1.
 
     Raises:
         NumericsError: forces are not found, numbers are not finite, or the energy residual passes
@@ -165,7 +163,7 @@ def integrate_directly(
         for number, (shell, load) in enumerate(zip(full.shells, full.loads, strict=True))
     ]
     try:
-        return _march(full, alpha, steppers, outputs, substeps, energy_bound, progress)
+        return _march(full, alpha, steppers, outputs, substeps, energy_bound)
     finally:
         for stepper in steppers:
             stepper.destroy()
@@ -178,7 +176,6 @@ def _march(
     outputs: int,
     substeps: int,
     energy_bound: float,
-    progress: Callable[[float], None] | None,
 ) -> DirectMotion:
     """Make ``substeps`` steps for each of the outputs."""
     rows = ResistingRows(
@@ -212,8 +209,6 @@ def _march(
         energies[k, [2, 5]] = rows.contact_energy, rows.friction_loss
         if k == outputs or k % max(1, outputs // _CHECKS) == 0:
             check_energy(energies[: k + 1], alpha.step, energy_bound)
-        if progress is not None:
-            progress(k / outputs)
     return DirectMotion(
         time=substeps * alpha.step * np.arange(outputs + 1),
         observed=dict(zip(full.observers, observed.T, strict=True)),

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from runs.report.tables import Table
 from runs.studies import convergence, verification
-from runs.studies.study import Plot, Proof, Study, Table
+from runs.studies.study import Plot, Proof, Study
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 
@@ -43,7 +44,9 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     study = Study(
         "shells",
         "Shells",
-        tables=[Table("roof", "Roof", {"mesh": "", "m": ".2f"}, [("fine", 0.3), ("no", None)])],
+        tables=[
+            Table.of_rows("roof", "Roof", {"mesh": "", "m": ".2f"}, [("fine", 0.3), ("no", None)])
+        ],
         proofs=[proof(0.3030)],
         plots=[Plot("roof", "It settles", "h (m)", "error", {"roof": ([1, 2], [1, 4])}, "So.")],
     )

@@ -47,4 +47,4 @@ def test_stiffeners_act_where_they_are() -> None:
     assert tail[2] < min(tail[:2])
     # The head's mass lowers what bends as a whole.
     assert collared["f1 (Hz)"] < outer["f1 (Hz)"]
-    assert [len(table.rows) for table in found.tables] == [6, 6]
+    assert [len(rows) for rows in found.data.values()] == [6, 6]
