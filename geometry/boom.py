@@ -43,11 +43,6 @@ __all__ = [
     "Support",
 ]
 
-# What stations press of a segment's corners, over the overlap, and stops, over the height of the
-# box: about 0.1 m in the paper's boom, as slide pads are long.
-_OF_OVERLAP = 0.1
-_OF_HEIGHT = 0.2
-
 
 @dataclass(frozen=True, slots=True)
 class Boom:
@@ -162,23 +157,6 @@ class Boom:
         """x in m between which both segments of a joint are."""
         return _overlap(joint, self.segments)
 
-    def contact_length(self, place: Joint | Stop) -> float:
-        """What a joint's stations or a stop press along the corners of boxes, in m."""
-        if place.contact_length is not None:
-            return place.contact_length
-        if isinstance(place, Joint):
-            return _OF_OVERLAP * self._room(place)
-        section = self.segments[place.segment].section
-        assert section is not None
-        return min(_OF_HEIGHT * section.size("z"), self._room(place))
-
-    def _room(self, place: Joint | Stop) -> float:
-        """Length in m on which they may press."""
-        if isinstance(place, Stop):
-            return self.segments[place.segment].length
-        start, end = self.overlap(place)
-        return end - start
-
     @property
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
@@ -275,13 +253,19 @@ class Boom:
                     )
 
     def _check_contact_length(self, where: str, place: Joint | Stop) -> None:
-        length, room = place.contact_length, self._room(place)
-        if length is not None and isinstance(place, Joint) and place.tied:
+        length = place.contact_length
+        if length is None:
+            return
+        if isinstance(place, Stop):
+            what, room = "segment", self.segments[place.segment].length
+        elif place.tied:
             raise BoomError(
                 f"{where}.contact_length", "the joint is tied, and nothing touches; leave it out"
             )
-        if length is not None and not 0.0 < length <= room:
-            what = "segment" if isinstance(place, Stop) else "overlap"
+        else:
+            start, end = self.overlap(place)
+            what, room = "overlap", end - start
+        if not 0.0 < length <= room:
             raise BoomError(
                 f"{where}.contact_length",
                 f"must be above 0 and not above the {what}'s {room:g} m, got {length:g} m",

@@ -22,6 +22,11 @@ from geometry.segment import Segment
 
 ContactLine = Literal["near webs", "across", "surface"]
 
+# What stations press of a segment's corners, over the overlap, and stops, over the height of the
+# box: about 0.1 m in the paper's boom, as slide pads are long.
+_OF_OVERLAP = 0.1
+_OF_HEIGHT = 0.2
+
 
 @dataclass(frozen=True, slots=True)
 class Patch:
@@ -125,14 +130,13 @@ class Rest:
 
 def rests(boom: Boom) -> list[Rest]:
     """Every stop of a boom whose sections are known."""
-    return [
-        Rest(
-            station,
-            stop,
-            Stretch.on(boom.segments[stop.segment], stop.x, boom.contact_length(stop)),
-        )
-        for station, stop in boom.numbered_stops
-    ]
+    found = []
+    for station, stop in boom.numbered_stops:
+        segment = boom.segments[stop.segment]
+        assert segment.section is not None
+        length = stop.contact_length or min(_OF_HEIGHT * segment.section.size("z"), segment.length)
+        found.append(Rest(station, stop, Stretch.on(segment, stop.x, length)))
+    return found
 
 
 def pads(boom: Boom) -> list[Pad]:
@@ -147,7 +151,8 @@ def pads(boom: Boom) -> list[Pad]:
         for number, joint in enumerate(boom.joints):
             if joint.tied:
                 continue
-            length = boom.contact_length(joint)
+            start, end = boom.overlap(joint)
+            length = joint.contact_length or _OF_OVERLAP * (end - start)
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None

@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom
-from geometry.contact_places import Stretch
+from geometry.contact_places import pads
 from geometry.mesh import plate_thickness
 from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
@@ -79,9 +79,10 @@ class Pressed:
         segment = boom.segments[INNER]
         shell = shell_alone(segment, size, boom.stations_of(INNER))
         force = segment.load * shell.unit_loads["z"]
-        corners, length = CornerLines(shell), boom.contact_length(boom.joints[0])
+        corners = CornerLines(shell)
+        pressed = {pad.x: pad.pressed[0] for pad in pads(boom)}
         for x, (side, strength) in contact_forces(boom).items():
-            row = corners.deflection(Stretch.on(segment, x, length), "z", 0.0, side)
+            row = corners.deflection(pressed[x], "z", 0.0, side)
             force -= side * strength * shell.row(row)
         modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
         assert modes is not None
