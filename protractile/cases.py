@@ -16,6 +16,7 @@ from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case as run_models
+from runs.pipeline.run import silent
 from runs.sweep.variation import Unplaced, find
 
 # How messages call a case that has left its file.
@@ -99,10 +100,6 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
 
         comm = MPI.COMM_SELF
     with TemporaryDirectory() as meshes:
-        run = run_models(chosen, _CASE, comm, Path(meshes), _say_nothing, Cache.of_user())
+        run = run_models(chosen, _CASE, comm, Path(meshes), silent, Cache.of_user())
     assert run is not None
     return run.results
-
-
-def _say_nothing(model: str, stage: str, part: float) -> None:
-    """A notebook has no progress to show."""

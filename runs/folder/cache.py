@@ -12,16 +12,16 @@ goes.
 from __future__ import annotations
 
 import hashlib
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
+from runs.folder import records
 from runs.folder.files import beside
 from runs.process.notices import NOTICES
 from runs.process.shown import shown
@@ -42,10 +42,13 @@ def key(*content: Any) -> str:
     """SHA-256 of content: numbers to the last bit, dataclasses with their names.
 
     Raises:
-        TypeError: something is neither a number, a text, an array nor made of these.
+        TypeError: something cannot be a record's, see :func:`runs.folder.records.pack`.
     """
-    text = json.dumps([_canonical(thing) for thing in content], ensure_ascii=True)
-    return hashlib.sha256(text.encode()).hexdigest()
+    digest = hashlib.sha256()
+    for parts in records.pack(content).values():
+        for part in parts:
+            digest.update(part)
+    return digest.hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,22 +180,3 @@ def _sums(key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> bytes:
             digest.update(part)
         lines.append(f"{digest.hexdigest()}  {key}/{name}\n")
     return "".join(lines).encode()
-
-
-def _canonical(thing: Any) -> Any:
-    """The thing in JSON's terms; floats by their bits."""
-    if thing is None or isinstance(thing, bool | int | str):
-        return thing
-    if isinstance(thing, float):
-        return thing.hex()
-    if isinstance(thing, np.ndarray):
-        data = np.ascontiguousarray(thing)
-        return [str(data.dtype), list(data.shape), hashlib.sha256(data.tobytes()).hexdigest()]
-    if is_dataclass(thing) and not isinstance(thing, type):
-        parts = {field.name: _canonical(getattr(thing, field.name)) for field in fields(thing)}
-        return {type(thing).__qualname__: parts}
-    if isinstance(thing, Mapping):
-        return {str(name): _canonical(value) for name, value in thing.items()}
-    if isinstance(thing, Sequence):
-        return [_canonical(part) for part in thing]
-    raise TypeError(f"{type(thing).__qualname__} has no content to tell it by")

@@ -19,7 +19,7 @@ from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
+from runs.pipeline.run import run_case, silent
 from runs.report.verdict import Judgement
 
 Stiffness = Literal["restored", "literal"]
@@ -200,7 +200,7 @@ def _but_exponent(reading: Reading) -> Reading:
 
 
 def _results(case: Case) -> Results:
-    finished = run_case(case, "paper.toml", None, Path(), _silence)
+    finished = run_case(case, "paper.toml", None, Path(), silent)
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")
@@ -213,10 +213,6 @@ def _first_peak(run: Results, model: str) -> float:
     if height is None:
         raise NumericsError(f"{model}: no first peak")
     return height
-
-
-def _silence(model: str, stage: str, part: float) -> None:
-    """Several cases run at a time."""
 
 
 def _apart(run: Results, models: Sequence[str], since: float) -> float:

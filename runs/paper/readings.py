@@ -17,6 +17,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from pydantic import TypeAdapter
 from rich.console import Console
 
 from beam_model.kantorovich import Base
@@ -196,8 +197,8 @@ def load(folder: Path, case: Case) -> list[TextTable]:
     """
     try:
         data = json.loads((folder / FILE).read_text(encoding="utf-8"))
-        found, judged = data["case_hash"], [_judged(entry) for entry in data["readings"]]
-        tables = shown(judged)
+        found = data["case_hash"]
+        tables = shown(TypeAdapter(list[Judged]).validate_python(data["readings"]))
     except FileNotFoundError:
         return []
     except (OSError, ValueError, TypeError, KeyError) as error:
@@ -207,16 +208,6 @@ def load(folder: Path, case: Case) -> list[TextTable]:
         what = "is not of the case in case.toml; remove it, or survey the readings again"
         raise BadInput(str(folder), FILE, what)
     return tables
-
-
-def _judged(entry: Mapping[str, Any]) -> Judged:
-    """A reading as ``readings.json`` has it."""
-    return Judged(
-        Reading(**entry["reading"]),
-        {key: Finding(**finding) for key, finding in entry["findings"].items()},
-        entry["peaks"],
-        entry["energy_residual"],
-    )
 
 
 if __name__ == "__main__":

@@ -12,21 +12,13 @@ from collections.abc import Iterable, Mapping
 import xarray as xr
 
 from dynamics.predictability.comparison import (
-    Comparison,
     Distributions,
     PeakDifferences,
     Pointwise,
     compare,
 )
 from runs.case.schema import Case, Model
-from runs.pipeline.summary import (
-    Comparisons,
-    DistributionsLevel,
-    Levels,
-    PeaksLevel,
-    PointwiseLevel,
-    Whole,
-)
+from runs.pipeline.summary import Comparisons, Levels, Whole
 
 # Differences over a whole run are told until here, too, in s.
 HALFWAY = 5.0
@@ -71,10 +63,13 @@ def compare_models(
         return None
     found = Comparisons(reference=reference)
     if ensembles is not None and cutoff is not None:
-        one = ensembles.sel(model=reference).astype(float)
+        one, *others = (
+            ensembles.sel(model=name).astype(float)
+            for name in (reference, *_others(ensembles, reference))
+        )
         found.ensembles = {
-            name: _levels(compare(one, ensembles.sel(model=name).astype(float), cutoff))
-            for name in _others(ensembles, reference)
+            str(other["model"].item()): Levels.model_validate(compare(one, other, cutoff))
+            for other in others
         }
     if rubs(case):
         found.whole = {
@@ -85,29 +80,6 @@ def compare_models(
 
 def _others(data: xr.Dataset, reference: str) -> list[str]:
     return [str(name) for name in data["model"].values if name != reference]
-
-
-def _levels(comparison: Comparison) -> Levels:
-    pointwise, peaks, spread = comparison.pointwise, comparison.peaks, comparison.distributions
-    return Levels(
-        pointwise=PointwiseLevel(
-            until=pointwise.until, largest=pointwise.largest, rms=pointwise.rms
-        ),
-        peaks=PeaksLevel(
-            time=peaks.times.tolist(),
-            time_spread=peaks.time_spreads.tolist(),
-            height=peaks.heights.tolist(),
-            height_spread=peaks.height_spreads.tolist(),
-            explained=peaks.explained.tolist(),
-        ),
-        distributions=DistributionsLevel(
-            since=spread.since,
-            range=list(spread.ranges),
-            mean=list(spread.means),
-            deviation=list(spread.deviations),
-            distance=spread.distance,
-        ),
-    )
 
 
 def _whole(trajectories: xr.Dataset, reference: str, name: str) -> Whole:

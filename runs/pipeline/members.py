@@ -82,16 +82,7 @@ def sum_up(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
     return EnsembleSummary(
         horizons={f"{share:g}": time for share, time in shares},
         energy_residual=float(ensemble["energy_residual"].max()),
-        slow_peaks=None
-        if peaks is None
-        else CommonPeaks(
-            time=peaks.times.tolist(),
-            time_spread=peaks.time_spreads.tolist(),
-            height=peaks.heights.tolist(),
-            height_spread=peaks.height_spreads.tolist(),
-            period=peaks.period,
-            period_spread=peaks.period_spread,
-        ),
+        slow_peaks=None if peaks is None else CommonPeaks.model_validate(peaks),
     )
 
 

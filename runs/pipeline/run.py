@@ -42,6 +42,10 @@ if TYPE_CHECKING:
 Progress = Callable[[str, str, float], None]
 
 
+def silent(model: str, stage: str, part: float) -> None:
+    """A :data:`Progress` that nobody watches."""
+
+
 # How often a step that leaves energy unaccounted for is halved.
 HALVINGS = 2
 

@@ -12,7 +12,8 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+import numpy as np
+from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
 
 from runs.case.schema import EnsembleTable
 from shell_model.stress.summary import StressSummary
@@ -22,14 +23,28 @@ def _known(number: Any) -> Any:
     return None if isinstance(number, float) and not math.isfinite(number) else number
 
 
+def _listed(values: Any) -> Any:
+    return values.tolist() if isinstance(values, np.ndarray) else values
+
+
 # A number, and None for NaN and infinity, which JSON does not have.
 Known = Annotated[float | None, BeforeValidator(_known)]
+Numbers = Annotated[list[float], BeforeValidator(_listed)]
 
 
 class Entry(BaseModel):
     """A table of the summary, which has no other keys than its own."""
 
     model_config = ConfigDict(extra="forbid", validate_assignment=True)
+
+
+class Measured(Entry):
+    """What is measured elsewhere, by the same names or by their plurals."""
+
+    model_config = ConfigDict(
+        from_attributes=True,
+        alias_generator=AliasGenerator(validation_alias=lambda n: AliasChoices(n, f"{n}s")),
+    )
 
 
 class Peak(NamedTuple):
@@ -39,16 +54,13 @@ class Peak(NamedTuple):
     height: Known
 
 
-class CommonPeaks(Entry):
-    """Peaks of the slow motion that all members of an ensemble have.
+class CommonPeaks(Measured):
+    """Of :class:`dynamics.predictability.low_pass.SlowPeaks`, in s and m."""
 
-    Means in s and m, and half the distance between the members' extremes; ``period`` in s.
-    """
-
-    time: list[float]
-    time_spread: list[float]
-    height: list[float]
-    height_spread: list[float]
+    time: Numbers
+    time_spread: Numbers
+    height: Numbers
+    height_spread: Numbers
     period: Known
     period_spread: Known
 
@@ -140,26 +152,26 @@ class ModelSummary(Entry):
     stress: StressSummary | None = None
 
 
-class PointwiseLevel(Entry):
-    """The tip from moment to moment ``until`` a time in s; parts of its range."""
+class PointwiseLevel(Measured):
+    """Of :class:`dynamics.predictability.comparison.Pointwise`."""
 
     until: float
     largest: float
     rms: float
 
 
-class PeaksLevel(Entry):
-    """Slow peaks less those of the reference, in s and m, and whether spreads explain it."""
+class PeaksLevel(Measured):
+    """Of :class:`dynamics.predictability.comparison.PeakDifferences`, in s and m."""
 
-    time: list[float]
-    time_spread: list[float]
-    height: list[float]
-    height_spread: list[float]
-    explained: list[bool]
+    time: Numbers
+    time_spread: Numbers
+    height: Numbers
+    height_spread: Numbers
+    explained: Annotated[list[bool], BeforeValidator(_listed)]
 
 
-class DistributionsLevel(Entry):
-    """All values from a time in s on, of (reference, model) in m, and Kolmogorov's distance."""
+class DistributionsLevel(Measured):
+    """Of :class:`dynamics.predictability.comparison.Distributions`, in s and m."""
 
     since: Known
     range: list[Known]
@@ -168,7 +180,7 @@ class DistributionsLevel(Entry):
     distance: Known
 
 
-class Levels(Entry):
+class Levels(Measured):
     """Two ensembles compared, at three levels."""
 
     pointwise: PointwiseLevel

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import shutil
 from collections.abc import Sequence
@@ -11,7 +10,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from runs.case import toml
@@ -155,22 +153,17 @@ def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
     Behind the X stands ``y`` where the station works to the sides, and ``#2`` and so forth where
     others are at the same place.
     """
-    columns: dict[str, xr.DataArray] = {}
+    columns = {}
     places = _places(trajectories)
     for name, variable in trajectories.data_vars.items():
         if "station" in variable.dims:
-            for place, values in zip(places, variable.transpose("station", ...), strict=True):
+            of_stations = variable.drop_vars(["station", "direction"], errors="ignore")
+            for place, values in zip(places, of_stations.transpose("station", ...), strict=True):
                 columns[f"{name}@{place}"] = values
         else:
             columns[str(name)] = variable
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["model", "time", *columns])
-        times = trajectories["time"].values
-        for i, model in enumerate(trajectories["model"].values):
-            table = np.column_stack([times, *(c.isel(model=i).values for c in columns.values())])
-            for row in table.tolist():
-                writer.writerow([model, *("" if np.isnan(v) else f"{v:.9g}" for v in row)])
+    table = xr.Dataset(columns).to_dataframe(["model", "time"])
+    table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
 
 
 def _places(trajectories: xr.Dataset) -> list[str]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -74,7 +73,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         whole_folder(part / "figures") as figures,
     ):
         data.to_netcdf(netcdf, engine="scipy")
-        _write_csv(plan, outcomes, table)
+        _write_csv(data, outcomes, table)
         draw(data, plan.play_free, figures)
     return data
 
@@ -125,16 +124,12 @@ def _number(outcome: Outcome, model: str, quantity: Quantity) -> float:
     return math.nan if value is None else value
 
 
-def _write_csv(plan: Plan, outcomes: Sequence[Outcome], path: Path) -> None:
+def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:
     """One line for each point and model."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            [*(v.key for v in plan.variations), "model", *(q.name for q in QUANTITIES), "failure"]
-        )
-        for point, outcome in zip(plan.points, outcomes, strict=True):
-            for model in point.case.models:
-                values = [_number(outcome, model.name, quantity) for quantity in QUANTITIES]
-                cells = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-                failure = outcome.failures.get(model.name, "")
-                writer.writerow([*point.values, model.name, *cells, failure])
+    *keys, model = data["failed"].dims
+    table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
+    # As they were given, and not as what was computed from them.
+    table[keys] = table[keys].astype(str)
+    names = data[model].values
+    table["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]
+    table.to_csv(path, index=False, float_format="%.9g", lineterminator="\r\n")

@@ -33,7 +33,7 @@ from runs.case.user_files import check_left
 from runs.folder.cache import Cache, Files, key
 from runs.folder.versions import program
 from runs.pipeline import members
-from runs.pipeline.run import Progress, run_case
+from runs.pipeline.run import Progress, run_case, silent
 from runs.process import notices, ranks
 from runs.process.interruption import undone
 from runs.sweep.points import Point
@@ -201,7 +201,7 @@ def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
         alone = case.model_copy(update={"models": (model,)})
         with TemporaryDirectory(dir=scratch) as meshes:
             try:
-                finished = run_case(alone, "", comm, Path(meshes), _silence, cache)
+                finished = run_case(alone, "", comm, Path(meshes), silent, cache)
             except NumericsError as error:
                 # The file, the point and the model's name stand before it where it is shown.
                 outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
@@ -262,7 +262,3 @@ def _read(case: Case, files: Files) -> Outcome:
     if not measured or outcome.models.keys() | outcome.failures.keys() != models:
         raise ValueError(f"{_POINT} is not of the case's models")
     return outcome
-
-
-def _silence(model: str, stage: str, part: float) -> None:
-    """Several points run at a time."""

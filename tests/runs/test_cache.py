@@ -173,7 +173,7 @@ def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
     assert key(paper_boom, 0.1) == key(same, 0.1)
     assert len({key(paper_boom, 0.1), key(changed, 0.1), key(paper_boom, 0.2)}) == 3
     assert key(np.arange(3.0)) != key(np.arange(3)) != key(np.arange(3).reshape(3, 1))
-    with pytest.raises(TypeError, match="function has no content to tell it by"):
+    with pytest.raises(TypeError, match="function cannot be kept: it is no data"):
         key(keep)
 
 

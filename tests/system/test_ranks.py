@@ -62,7 +62,7 @@ def test_two_ranks_run_a_shell_as_one_does(
     text = Path(COARSE).read_text(encoding="utf-8")
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
-    monkeypatch.setattr("runs.report.output.render_snapshots", lambda *arguments: [])
+    monkeypatch.setattr("runs.report.snapshots.render_snapshots", lambda *arguments: [])
     options = ("--models", models, "--no-cache", "--out")
     assert protractile("run", case, *options, tmp_path / "one") == 0
     answer = two_ranks(COMMAND, "run", "case.toml", *options, "two")

@@ -186,7 +186,7 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("runs.report.output.render_snapshots", refuse),
+                patch("runs.report.snapshots.render_snapshots", refuse),
                 patch("runs.sweep.run.ProcessPoolExecutor", here),
                 patch.object(Sheet, "savefig", dot),
             ):
