@@ -14,10 +14,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -43,12 +41,11 @@ from runs.benchmarks.generic_solvers import (
 from runs.benchmarks.timing import NOISE, by_turns, leave
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import of_kind
-from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.report.tables import Table, wide_console
 from runs.report.theme import repeated
+from runs.studies.motions import gap_system, model_of, shell_of
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")
@@ -130,8 +127,7 @@ class Method:
 
 def five_terms(case: Case) -> GapSystem:
     """The paper's five-term series."""
-    model = next(m for m in case.models if m.name == "kantorovich-5")
-    return build(case, build_boom(case), model).system
+    return build(case, build_boom(case), model_of(case, "kantorovich-5")).system
 
 
 def compare(case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes) -> Table:
@@ -302,20 +298,11 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
 
 
 def _shell_system(case: Case) -> GapSystem | None:
-    """The case's shell, reduced; None without one, or without FEniCSx."""
-    models = of_kind(ShellTable, case.models)
+    """The case's shell, reduced; None without FEniCSx."""
     try:
-        mpi = import_module("mpi4py.MPI")
-        import_module("shell_model.boom_shell")
+        return gap_system(case, build_boom(case), shell_of(case))
     except ImportError:
         return None
-    if not models:
-        return None
-    with TemporaryDirectory() as folder:
-        meshes = Path(folder) / "meshes"
-        boom = build_boom(case)
-        reduced = build(case, boom, models[0], workshop(mpi.COMM_SELF, meshes))
-    return reduced.system
 
 
 def bench(sizes: Sizes, folder: Path, console: Console) -> None:

@@ -13,7 +13,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from mpi4py import MPI
 
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
@@ -75,6 +74,8 @@ def shell_of(case: Case) -> ShellTable:
 
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
+    from mpi4py import MPI
+
     with TemporaryDirectory(prefix="protractile-") as scratch:
         folder = Path(scratch) / model.name
         return build(case, boom, model, workshop(MPI.COMM_SELF, folder)).system
