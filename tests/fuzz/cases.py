@@ -7,18 +7,15 @@ import re
 from collections.abc import Callable
 from random import Random
 
+from runs.case.schema import case_schema
 from tests.fuzz.values import any_value
 
 _LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)
 _NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e-?\d+)?")
-_KEYS = (
-    "supports", "masses", "load", "viscous_damping", "lateral_load", "section", "collars",
-    "diaphragms", "friction", "normal_forces", "lateral_play", "restitution", "tied", "pad",
-    "stiffness_below", "exponent", "step", "modes", "tolerance", "contact_line", "surface_points",
-    "rotary_inertia", "theory", "base", "contact", "demand", "ramp", "frequency", "table", "file",
-    "released", "direction", "kind", "name", "x", "gravity", "from", "to", "moment", "force_table",
-    "force_file",
-)  # fmt: skip
+# Every key of every table that a case may have.
+_KEYS = sorted(
+    {key for table in case_schema()["$defs"].values() for key in table.get("properties", ())}
+)
 _TABLES = (
     "[payload]\nmass = {}\n", "[damping]\nmodal = {}\n", "[damping]\nstiffness = {}\n",
     "[damping]\nmass = {}\n", '[start]\nstate = "equilibrium"\n',
@@ -29,6 +26,10 @@ _TABLES = (
     '[[stop]]\nsegment = "inner"\nx = 18.0\nplay = 0.1\nstiffness = {}\n',
     "[ensemble]\nmembers = {}\n", "[ensemble]\nmembers = 3\nrelative = {}\n",
     "[ensemble]\nmembers = 3\nseed = {}\n",
+    '[[load]]\nsegment = "inner"\nfrom = 12.0\nto = {}\nmagnitude = -10.0\n',
+    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\nmoment = true\n',
+    '[[model]]\nname = "more"\nkind = "rigid"\ncontact = {{ force_table = [[0.001, {}]] }}\n',
+    '[[model]]\nname = "more"\nkind = "shell"\ncontact_tolerance = {}\n',
 )  # fmt: skip
 
 
