@@ -13,7 +13,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
@@ -48,16 +47,6 @@ def silent(model: str, stage: str, part: float) -> None:
 
 # How often a step that leaves energy unaccounted for is halved.
 HALVINGS = 2
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What one model leaves; ``ensemble`` and ``shell`` where it has one."""
-
-    trajectory: Trajectory
-    summary: ModelSummary
-    ensemble: xr.Dataset | None
-    shell: ShellOutput | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +101,8 @@ def run_case(
     boom = build_boom(case)
     first_rank = comm is None or comm.rank == 0
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
-    outcomes: dict[str, Outcome] = {}
+    outcomes: dict[str, Finished] = {}
+    shells: dict[str, ShellOutput] = {}
     failures: dict[str, str] = {}
     first_failure = None
     for number, model in enumerate(case.models, start=1):
@@ -129,7 +119,9 @@ def run_case(
         except _SharedFailure as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         if outcome is not None:
-            outcomes[model.name] = outcome
+            outcomes[model.name], shell = outcome
+            if shell is not None:
+                shells[model.name] = shell
     if not first_rank:
         return None
     if first_failure is not None and not outcomes:
@@ -151,7 +143,6 @@ def run_case(
     trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
-    shells = {name: out.shell for name, out in outcomes.items() if out.shell is not None}
     return Run(Results(case, data, summary, ensembles), shells)
 
 
@@ -183,7 +174,7 @@ def _run_model(
     progress: Progress,
     cache: Cache | None,
     kept: Cache | None,
-) -> Outcome | None:
+) -> tuple[Finished, ShellOutput | None] | None:
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
@@ -218,7 +209,7 @@ def _run_model(
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
     summary.seconds = stages.seconds
-    return Outcome(moved.trajectory, summary, moved.ensemble, shell)
+    return moved, shell
 
 
 def _move(

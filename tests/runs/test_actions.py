@@ -10,6 +10,7 @@ import pytest
 
 from dynamics.excitation import Ramp, Sine, Step, Table
 from dynamics.integrators import Events
+from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import FiniteElementTable
@@ -17,7 +18,6 @@ from runs.case.messages import BadInput
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
 
 CANTILEVER = """
 title = "One segment"
@@ -56,9 +56,7 @@ def run(folder: Path, text: str) -> Results:
     """Results of the cantilever with what ``text`` says besides."""
     path = folder / "case.toml"
     path.write_text(CANTILEVER + text + ELEMENTS, encoding="utf-8")
-    finished = run_case(case_file.load(str(path)), "", None, folder, lambda *_: None)
-    assert finished is not None
-    return finished.results
+    return run_case(case_file.load(str(path)))
 
 
 def tip(folder: Path, text: str) -> np.ndarray:

@@ -14,10 +14,10 @@ from matplotlib import image
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
+from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
 from runs.report import theme
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
@@ -34,16 +34,9 @@ COARSE = CASES / "coarse.toml"
 WITH_PLAY = ["kantorovich-4", "kantorovich-5", "beam-fe"]
 
 
-def run(folder: Path, models: list[str]) -> Results:
-    case = case_file.select(case_file.load(str(COARSE)), "", models, None)
-    finished = run_case(case, "", None, folder, lambda *_: None)
-    assert finished is not None
-    return finished.results
-
-
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    return run(tmp_path_factory.mktemp("mesh"), [*WITH_PLAY, "beam-fe-tied"])
+def results() -> Results:
+    return run_case(case_file.load(str(COARSE)), [*WITH_PLAY, "beam-fe-tied"])
 
 
 @contextmanager
@@ -197,7 +190,7 @@ def test_close_up_marks_first_contacts_and_peaks(
 
 
 def test_draws_a_play_free_boom_alone(tmp_path: Path) -> None:
-    alone = run(tmp_path / "mesh", ["beam-fe-tied"])
+    alone = run_case(case_file.load(str(COARSE)), ["beam-fe-tied"])
     (tmp_path / "figures").mkdir()
     figures = draw(alone, tmp_path / "figures")
     stems = [figure.path.stem for figure in figures]

@@ -9,10 +9,10 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.kinds import KINDS
 from runs.case.messages import BadInput
-from runs.pipeline.run import run_case
 from tests.runs.coarse_case import COARSE
 from tests.runs.test_actions import CANTILEVER
 
@@ -29,9 +29,7 @@ def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     text = COARSE.partition("[[model]]")[0] + RIGID
     path.write_text(text, encoding="utf-8")
-    finished = run_case(case_file.load(str(path)), "", None, tmp_path, lambda *_: None)
-    assert finished is not None
-    summary = finished.results.summary.models["bodies"]
+    summary = run_case(case_file.load(str(path))).summary.models["bodies"]
     assert (summary.kind, summary.degrees_of_freedom) == ("rigid", 2)
     assert summary.energy_residual < 1e-5
     # A uniform load on a free body turns it nowhere.

@@ -14,6 +14,7 @@ import pytest
 from matplotlib import image
 from rich.console import Console
 
+from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
@@ -21,7 +22,6 @@ from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdict_table import print_verdicts
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
 from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
 from runs.report.figure_context import Figure
@@ -35,11 +35,8 @@ GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
-    case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
-    finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
-    assert finished is not None
-    return finished.results
+def results() -> Results:
+    return run_case(case_file.load(str(COARSE)), MODELS)
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ import xarray as xr
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
+from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -24,7 +25,6 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.folder.files import beside
-from runs.pipeline.run import run_case
 from runs.process.shown import shown
 from runs.report import theme
 from runs.sweep import output
@@ -243,7 +243,7 @@ def test_what_swings_on_does_not_settle_and_what_rests_has() -> None:
     assert settling_time(time, np.full(time.size, 0.3)) == 0.0
 
 
-def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> None:
+def test_numbers_are_those_of_single_runs(planned: Planned) -> None:
     """Reference: run_case on case files with each play, both models at a time."""
     sweeping = planned("joint.play=0.008,0.014")
     data = output.write(sweeping, run(sweeping), Path("out"))
@@ -252,15 +252,13 @@ def test_numbers_are_those_of_single_runs(planned: Planned, tmp_path: Path) -> N
         Path("single.toml").write_text(
             text.replace("play = 0.014", f"play = {play}"), encoding="utf-8"
         )
-        case = case_file.select(case_file.load("single.toml"), "", FAST)
-        single = run_case(case, "", None, tmp_path, lambda *_: None)
-        assert single is not None
-        for name, summary in single.results.summary.models.items():
+        single = run_case(case_file.load("single.toml"), FAST)
+        for name, summary in single.summary.models.items():
             there = data.sel({"joint.play": play, "model": name})
-            tip = single.results.trajectories["tip"].sel(model=name).values
+            tip = single.trajectories["tip"].sel(model=name).values
             assert float(there["tip_amplitude"]) == 0.5 * (tip.max() - tip.min()) > 0.0
-            sagging = single.results.trajectories.assign(tip=lambda data: data["tip"] - 1.0)
-            lower = measure(replace(single.results, trajectories=sagging), name)
+            sagging = single.trajectories.assign(tip=lambda data: data["tip"] - 1.0)
+            lower = measure(replace(single, trajectories=sagging), name)
             assert lower["tip_amplitude"] == pytest.approx(float(there["tip_amplitude"]), rel=1e-12)
             for key in ("peak_contact_force", "first_contact", "energy_residual"):
                 expected = math.nan if getattr(summary, key) is None else getattr(summary, key)
