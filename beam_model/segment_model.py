@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from dynamics.contact import ContactLaw, PowerContact
-from dynamics.excitation import Excitation
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -53,7 +52,7 @@ def gap_system(
         modes.load,
         boom.stations,
         _observed(boom, modes),
-        [Excitation(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads],
+        [(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads],
         modes.damping,
     )
 

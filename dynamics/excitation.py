@@ -154,6 +154,16 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
+class Released:
+    """In place of a history: the load has acted for ever, and is let go at t = 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thrown:
+    """In place of a history: its impulse, as if it had acted for 1 s, is given at t = 0."""
+
+
+@dataclass(frozen=True, slots=True)
 class Excitation:
     """A modal load that follows a history.
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
-from dynamics.excitation import Excitation
+from dynamics.excitation import Excitation, History, Released, Thrown
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
@@ -103,7 +103,7 @@ class GapBuilder(Generic[R]):
         load: Array,
         places: Sequence[tuple[float, str]],
         observed: Mapping[str, tuple[R, str]],
-        excitations: Sequence[Excitation],
+        loads: Sequence[tuple[Array, History | Released | Thrown]],
         damping: Array | None = None,
     ) -> GapSystem:
         """The gap system in modal coordinates.
@@ -113,12 +113,16 @@ class GapBuilder(Generic[R]):
             omega2, load: (num_modes,) of the modes.
             places: x in m and direction of each station.
             observed: what a trajectory records, and its unit, by its name.
-            excitations: loads that change with time.
+            loads: (num_modes,) what pushes beside ``load``, and when.
             damping: (num_modes,) in 1/s; none unless given.
         """
 
         def rows(readings: Sequence[R]) -> Array:
             return np.array([read(reading) for reading in readings]).reshape(-1, omega2.size)
+
+        def total(kind: type[Released | Thrown]) -> Array:
+            pushes = (push for push, when in loads if isinstance(when, kind))
+            return sum(pushes, np.zeros(omega2.size))
 
         return GapSystem(
             omega2=omega2,
@@ -131,7 +135,13 @@ class GapBuilder(Generic[R]):
             damping=np.zeros(0) if damping is None else damping,
             friction_rows=rows([friction.reading for friction in self.frictions]),
             frictions=[friction.law for friction in self.frictions],
-            excitations=excitations,
+            excitations=[
+                Excitation(push, when)
+                for push, when in loads
+                if not isinstance(when, Released | Thrown)
+            ],
+            released=total(Released),
+            thrown=total(Thrown),
             station_directions=[direction for _, direction in places],
             grounded=self.grounded,
         )

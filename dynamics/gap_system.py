@@ -67,6 +67,10 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: the direction of each station's relative displacement; "z" for all
             unless given.
+        released: (num_modes,) modal load in N/√kg that has acted for ever and is let go at t = 0,
+            and
+        thrown: (num_modes,) modal impulse in N·s/√kg that is given then, for whoever starts a
+            motion; zero unless given.
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
 
     Raises:
@@ -87,21 +91,22 @@ class GapSystem:
     excitations: Sequence[Excitation] = ()
     station_directions: Sequence[str] = ()
     grounded: Sequence[int] = ()
+    released: Array = field(default_factory=lambda: np.zeros(0))
+    thrown: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
-        if self.damping.size == 0:
-            object.__setattr__(self, "damping", np.zeros(n))
-        if self.dashpots.size == 0:
-            object.__setattr__(self, "dashpots", np.zeros((0, n)))
-        if self.friction_rows.size == 0:
-            object.__setattr__(self, "friction_rows", np.zeros((0, n)))
+        of_modes = {name: (n,) for name in ("damping", "released", "thrown")}
+        empty = of_modes | {name: (0, n) for name in ("dashpots", "friction_rows")}
+        for name, zeros in empty.items():
+            if getattr(self, name).size == 0:
+                object.__setattr__(self, name, np.zeros(zeros))
         if not self.station_directions:
             object.__setattr__(self, "station_directions", ("z",) * len(self.stations))
         expected = {
             "omega2": (self.omega2, (n,)),
             "load": (self.load, (n,)),
-            "damping": (self.damping, (n,)),
+            **{name: (getattr(self, name), shape) for name, shape in of_modes.items()},
             "dashpots": (self.dashpots, (len(self.dashpots), n)),
             "rows": (self.rows, (m, n)),
             "station_of_row": (self.station_of_row, (m,)),

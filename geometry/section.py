@@ -214,11 +214,6 @@ class Section(Protocol):
         hole = self.face(direction, 1).inside - self.face(direction, -1).inside
         return hole - (inner.face(direction, 1).outside - inner.face(direction, -1).outside)
 
-    def offset_of(self, inner: Section, direction: Direction) -> float:
-        """Where the centroid of a section is that stands in the middle of this one, in m."""
-        within = inner.face(direction, 1).outside + inner.face(direction, -1).outside
-        return 0.5 * (self.face(direction, 1).inside + self.face(direction, -1).inside - within)
-
     def on_plates(self, places: Array) -> Mask:
         """(num_places,) which places (num_places, 2) lie on a mid-line."""
         distance = np.min([plate.distance(places) for plate in self.plates], axis=0)

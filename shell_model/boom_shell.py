@@ -14,7 +14,6 @@ import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
-from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
@@ -180,10 +179,7 @@ def reduce_boom(
         np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
         boom.stations,
         observed,
-        [
-            Excitation(coordinates.push(load.segment, push), load.history)
-            for load, push in timed_loads
-        ],
+        [(coordinates.push(load.segment, push), load.history) for load, push in timed_loads],
     )
     seconds["rows"] += perf_counter() - start
     start = perf_counter()

@@ -4,38 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import History, Ramp, Sine, Step, Table
+from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import BoomError, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad
 from runs.case.messages import choices
 from runs.case.schema import Case, HistoryTable, LoadTable
-
-
-@dataclass(frozen=True, slots=True)
-class _Past:
-    """The history of what is over when the motion begins."""
-
-    kinks = ()
-    peak = 0.0
-    fastest = 0.0
-
-    def __call__(self, time: Array) -> Array:
-        return np.zeros(np.shape(time))
-
-
-class Released(_Past):
-    """That of a load which has acted for ever and is let go at t = 0."""
-
-
-class Blow(_Past):
-    """That of a load whose impulse, as if it had acted for 1 s, is given at t = 0."""
 
 
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
@@ -67,9 +46,9 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     for name, speed in case.start.velocity.items():
         index = _segment("start.velocity", name, segments)
         momentum = speed * segments[index].mass_per_length
-        given.append(Load(index, "z", momentum, None, Blow(), inertial=True))
+        given.append(Load(index, "z", momentum, None, Thrown(), inertial=True))
         given += [
-            Load(index, "z", speed * point.mass, point.x, Blow())
+            Load(index, "z", speed * point.mass, point.x, Thrown())
             for point in segments[index].masses
         ]
     return tuple(given)
@@ -131,18 +110,13 @@ def start(system: GapSystem, case: Case) -> tuple[GapSystem, Array, Array]:
     Raises:
         NumericsError: there is no static equilibrium to start from.
     """
-    held, velocity = np.zeros((2, system.num_modes))
-    for excitation in system.excitations:
-        if isinstance(excitation.history, Released):
-            held += excitation.load
-        elif isinstance(excitation.history, Blow):
-            velocity += excitation.load
     system = system.gathered()
+    held = system.released.copy()
     if case.start.state == "equilibrium":
         held += system.load
         for excitation in system.excitations:
             held += excitation.load * excitation.history(np.zeros(1))[0]
-    return system, equilibrium(system, held), velocity
+    return system, equilibrium(system, held), system.thrown
 
 
 def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
@@ -152,7 +126,7 @@ def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
     return names.index(name)
 
 
-def _load_history(where: str, table: LoadTable) -> History:
+def _load_history(where: str, table: LoadTable) -> History | Released:
     history = _history(where, table)
     if table.released and not isinstance(history, Step):
         raise BoomError(

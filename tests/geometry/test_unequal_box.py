@@ -93,8 +93,6 @@ def test_faces_count_from_the_centroid() -> None:
     assert (top.inside, bottom.inside) == pytest.approx((0.28 - z, -0.29 - z), rel=1e-12)
     inner = BoxSection(height=0.53, width=0.30, flange=0.02, web=0.02)
     assert BOX.room_around(inner, "z") == pytest.approx(0.02, rel=1e-12)
-    assert BOX.offset_of(inner, "z") == pytest.approx(-0.005 - z, rel=1e-12)
-    assert inner.offset_of(inner, "z") == 0.0
 
 
 def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None:
