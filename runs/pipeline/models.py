@@ -14,11 +14,11 @@ from geometry.boom import Boom
 from runs.case.build import joined
 from runs.case.kinds.model import Built, Workshop
 from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from runs.folder.cache import Cache
     from shell_model.boom_shell import ReducedShell
 
 
