@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 from numba import njit
-from scipy.optimize import brentq
 
 from dynamics.arrays import Array
 
@@ -127,6 +126,8 @@ class ContactLaw(ABC):
     def _slope_on(
         self, side: float, measure: Callable[[ContactLaw, Array], Array], value: float
     ) -> float:
+        from scipy.optimize import brentq
+
         def excess(log_depth: float) -> float:
             found = abs(float(measure(self, np.array(side * np.exp(log_depth)))))
             return float(np.log(max(found, _LEAST)) - np.log(max(value, _LEAST)))
@@ -295,6 +296,8 @@ def restitution_damping(restitution: float, speed: float) -> float:
     Raises:
         ValueError: an argument is out of its range.
     """
+    from scipy.optimize import brentq
+
     e = restitution
     if not 0.0 < e <= 1.0:
         raise ValueError(f"restitution must be above 0 and at most 1, got {e}")

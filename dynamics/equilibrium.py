@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.optimize import minimize
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, contact_terms
@@ -71,6 +70,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     def tangent(x: Array) -> Array:
         slopes = contact_slopes(unit * rows @ x, terms)
         return np.asarray(stiffness + (rows.T * slopes) @ rows)
+
+    from scipy.optimize import minimize
 
     found = minimize(
         energy,

@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
-from scipy.optimize import brentq
+from numpy.polynomial import Polynomial
 
 from geometry.arrays import Array, Mask
 
@@ -31,6 +31,9 @@ COMPONENT: Mapping[Direction, int] = {"y": 1, "z": 2}
 
 # No inner box is lower than this part of the outer one.
 SMALLEST = 1.0e-6
+
+# Part of a root below which its imaginary part is round-off.
+_REAL = 1.0e-8
 
 
 class SectionError(ValueError):
@@ -372,28 +375,19 @@ def infer_outer_section(
         SectionError: no wall thickness gives these numbers.
     """
 
-    def box(height: float) -> BoxSection:
-        width = height / height_to_width
-        wall = area / (2.0 * (height + width))
-        return BoxSection(height, width, wall, wall)
-
-    # Thin-walled estimate of the height: J/A = h² (1 + 3/r) / (12 (1 + 1/r)).
-    shape = (1.0 + 3.0 / height_to_width) / (12.0 * (1.0 + 1.0 / height_to_width))
-    estimate = float(np.sqrt(second_moment_of_area / area / shape))
-    try:
-        height = brentq(
-            lambda h: box(h).second_moment_of_area - second_moment_of_area,
-            0.7 * estimate,
-            1.3 * estimate,
-            xtol=1e-15 * estimate,
-            rtol=1e-14,
-        )
-    except ValueError:
+    # With width = h/r and wall = c/h, 6 J = c ((1 + 3/r) h² + (3 + 1/r) c²/h²); of its two roots h²
+    # the larger one has the thinner wall.
+    c = area / (2.0 * (1.0 + 1.0 / height_to_width))
+    high, low = 1.0 + 3.0 / height_to_width, (3.0 + 1.0 / height_to_width) * c**2
+    half = 3.0 * second_moment_of_area / c
+    root = half**2 - high * low
+    if root < 0.0:
         raise SectionError(
             f"no uniform-wall box has A = {area:.6g} m², J = {second_moment_of_area:.6g} m⁴ and "
             f"height/width = {height_to_width:g}; give the section explicitly"
-        ) from None
-    return box(height)
+        )
+    height = float(np.sqrt((half + np.sqrt(root)) / high))
+    return BoxSection(height, height / height_to_width, c / height, c / height)
 
 
 def infer_inner_section(
@@ -414,30 +408,22 @@ def infer_inner_section(
     high, wide = (outer.face(axis, 1).inside - outer.face(axis, -1).inside for axis in ("z", "y"))
     outside_height, widest = high - 2.0 * clearance, wide
 
-    def box(wall: float) -> BoxSection:
-        height = outside_height - wall
-        return BoxSection(height, area / (2.0 * wall) - height, wall, wall)
-
-    def defect(wall: float) -> float:
-        return box(wall).second_moment_of_area - second_moment_of_area
-
     # With height = H − t and width = A/2t − height, the wall is thickest where the width is
     # down to the wall itself, and thinnest where width + t fills the outer section.
     thickest = area / (2.0 * max(outside_height, SMALLEST * high))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))
-    walls = np.linspace(thinnest, thickest, 401)[:-1]
-    try:
-        signs = np.sign([defect(wall) for wall in walls])
-    except SectionError:  # no room at all
-        signs = np.zeros(0)
-    crossing = np.flatnonzero(signs[:-1] != signs[1:])
-    if crossing.size == 0:
+    t = Polynomial([0.0, 1.0])
+    h = outside_height - t
+    defect = (area - 2.0 * t * h) * (3.0 * h**2 + t**2) + 2.0 * t * h * (h**2 + 3.0 * t**2)
+    roots = (defect - 12.0 * second_moment_of_area).roots()
+    real = np.sort(roots.real[np.abs(roots.imag) < _REAL * np.abs(roots)])
+    walls = real[(real > thinnest) & (real < thickest)]
+    if walls.size == 0:
         raise SectionError(
             f"no uniform-wall box with A = {area:.6g} m² and J = {second_moment_of_area:.6g} m⁴ "
             f"closes a clearance of {clearance:g} m in a room of {high:.6g} m x {wide:.6g} m; give "
             "the section explicitly: pads then take up the difference to the stated clearance"
         )
-    first = crossing[0]
-    wall = brentq(defect, walls[first], walls[first + 1], xtol=1e-15 * walls[first], rtol=1e-14)
-    return box(float(wall))
+    wall, height = float(walls[0]), float(outside_height - walls[0])
+    return BoxSection(height, area / (2.0 * wall) - height, wall, wall)
