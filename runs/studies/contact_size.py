@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -27,10 +27,18 @@ from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Proof, Study
 
+if TYPE_CHECKING:
+    from shell_model.segment_shell import SegmentShell
+
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01
 NANO = 1.0e9
 UNIT = "1e-9 m/N"
+
+# N/m of an elastic support, which what is in balance does not feel.
+SPRING = 1.0e6
+# How far beside a support its force is in balance, in m: beyond its fine mesh.
+BESIDE = 0.33
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +55,7 @@ class Sizes:
         loads: over the paper's.
     """
 
-    meshes: Sequence[float] = (2.0, 1.0, 0.5)
+    meshes: Sequence[float] = (1.0, 0.5, 0.25)
     default: float = 1.0
     lengths: Sequence[float] = (0.05, 0.1, 0.2)
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
@@ -98,6 +106,45 @@ def squeezed(contact: Contact, part: float) -> Array:
     return np.asarray(local[first])
 
 
+def supported(case: Case, parts: Sequence[float]) -> list[float]:
+    """What the outer segment's walls give way at its last support, in m/N, a value for each mesh.
+
+    An elastic support pulls the walls there, and halves of its force push the same walls back on
+    both sides, where all meshes have a line.
+
+    Args:
+        case: of the boom.
+        parts: of the default edge lengths, falling.
+    """
+    from shell_model.boom_shell import assemble_segments
+    from shell_model.contact.local_compliance import shell_compliance
+
+    boom = build_boom(case)
+    outer = boom.segments[0]
+    supports = tuple(replace(support, stiffness=SPRING) for support in outer.supports)
+    elastic = replace(outer, supports=supports)
+    x = max(support.x for support in supports)
+    there, found = None, []
+    for part in parts:
+        options = finer(shell_of(case), part).options()
+        held = replace(boom, segments=(elastic, *boom.segments[1:]))
+        shell, *_ = assemble_segments(held, options, MPI.COMM_SELF)
+        there = there or _lines_beside(shell, x)
+        before, at, after = (
+            shell.row(shell.outline(line).wall_deflection("z")) for line in (there[0], x, there[1])
+        )
+        share = (there[1] - x) / (there[1] - there[0])
+        squeeze = at - share * before - (1.0 - share) * after
+        found.append(float(shell_compliance(shell, squeeze[:, None])[0, 0]))
+    return found
+
+
+def _lines_beside(shell: SegmentShell, x: float) -> tuple[float, float]:
+    lines = np.unique(shell.nodes[:, 0])
+    before, after = (lines[np.abs(lines - x - far).argmin()] for far in (-BESIDE, BESIDE))
+    return float(before), float(after)
+
+
 def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     """The tip's first peak in m under each load, on the default mesh."""
     model = finer(shell_of(contact.case), sizes.default)
@@ -123,14 +170,18 @@ def plate_proofs(sizes: Sizes) -> list[Proof]:
 
 
 def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
-    """Corners and pads of several sizes, and a plate."""
+    """Corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
     tell("plates")
     proofs = plate_proofs(sizes)
+    tell("support")
+    held = [NANO * value for value in supported(friction_case(), sizes.meshes)]
     stations = [x for x, _ in build_boom(friction_case()).stations]
     default = sizes.meshes.index(sizes.default)
     finer_by = f"edges {1.0 / sizes.meshes[-1]:g} times as short"
-    rows, found = [], []
+    what = "local compliance, elastic support, at 2 m"
+    proofs.append(Proof(what, held[default], held[-1], UNIT, "other code", finer_by, ALLOWED))
+    rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, held)]
     for contact in contacts_of(friction_case(), sizes):
         tell(contact.name)
         local = NANO * np.array([squeezed(contact, part) for part in sizes.meshes])

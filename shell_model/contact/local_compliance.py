@@ -42,14 +42,26 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        jobs = Folding(shell).jobs(rows, rows[:, :0])
-        for root, family in shared(shell.comm, jobs, _answers):
-            found[np.ix_(touching, touching)] += shell.comm.bcast(family, root)
+        found[np.ix_(touching, touching)] += shell_compliance(shell, rows)
+    return found
+
+
+def shell_compliance(shell: SegmentShell, rows: Array) -> Array:
+    """(num_rows, num_rows) in m/N what forces on the rows of a shell do to each other. Collective.
+
+    Args:
+        shell: not reduced.
+        rows: (num_owned, num_rows).
+    """
+    jobs = Folding(shell).jobs(rows, rows[:, :0])
+    found = np.zeros((rows.shape[1], rows.shape[1]))
+    for root, family in shared(shell.comm, jobs, _answers):
+        found += shell.comm.bcast(family, root)
     return found
 
 
 def _answers(_: int, job: Job) -> Array:
-    """(num_contacts, num_contacts) what the rows of a family do to each other."""
+    """(num_rows, num_rows) the same of a family."""
     solve = ShiftedSolver(job.shell(), SLOW)
     answers = job.forces.T @ solve(job.forces)
     solve.destroy()

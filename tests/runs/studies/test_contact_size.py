@@ -30,10 +30,11 @@ def test_pads_beside_the_webs_give_way_more() -> None:
     told: list[str] = []
     found = study(told.append, TINY)
     corner, pad = "corner of 0.1 m", "pad of 0.2 m x 0.06 m"
-    assert told == ["plates", corner, pad]
+    assert told == ["plates", "support", corner, pad]
     meshes = found.data["local-compliance"]
     local = np.array([[row[f"edges × {part:g}"] for part in TINY.meshes] for row in meshes])
-    of_corner, of_pad = np.split(local, 2)
+    of_support, of_corner, of_pad = local[0], local[1:3], local[3:]
+    assert of_support[-1] == pytest.approx(of_support[-2], rel=0.01)
     assert of_corner.shape == (2, 3)
     assert (np.diff(of_corner, axis=1) > 0.0).all()
     assert (of_pad > 10.0 * of_corner).all()
