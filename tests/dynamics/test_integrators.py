@@ -60,7 +60,7 @@ def test_few_modes_go_from_contact_to_contact() -> None:
         omega2=np.arange(1.0, many + 1.0),
         load=np.ones(many),
         rows=np.ones((1, many)),
-        damping=np.zeros(0),
+        **dict.fromkeys(("damping", "released", "thrown"), np.zeros(0)),
         friction_rows=np.zeros((0, 0)),
         observers={},
     )
