@@ -381,13 +381,16 @@ def infer_outer_section(
     high, low = 1.0 + 3.0 / height_to_width, (3.0 + 1.0 / height_to_width) * c**2
     half = 3.0 * second_moment_of_area / c
     root = half**2 - high * low
-    if root < 0.0:
+    try:
+        if root < 0.0:
+            raise SectionError("no height has this J")
+        height = float(np.sqrt((half + np.sqrt(root)) / high))
+        return BoxSection(height, height / height_to_width, c / height, c / height)
+    except SectionError:
         raise SectionError(
             f"no uniform-wall box has A = {area:.6g} m², J = {second_moment_of_area:.6g} m⁴ and "
             f"height/width = {height_to_width:g}; give the section explicitly"
-        )
-    height = float(np.sqrt((half + np.sqrt(root)) / high))
-    return BoxSection(height, height / height_to_width, c / height, c / height)
+        ) from None
 
 
 def infer_inner_section(
@@ -418,7 +421,7 @@ def infer_inner_section(
     defect = (area - 2.0 * t * h) * (3.0 * h**2 + t**2) + 2.0 * t * h * (h**2 + 3.0 * t**2)
     roots = (defect - 12.0 * second_moment_of_area).roots()
     real = np.sort(roots.real[np.abs(roots.imag) < _REAL * np.abs(roots)])
-    walls = real[(real > thinnest) & (real < thickest)]
+    walls = real[(real > thinnest) & (real < min(thickest, 0.5 * outside_height))]
     if walls.size == 0:
         raise SectionError(
             f"no uniform-wall box with A = {area:.6g} m² and J = {second_moment_of_area:.6g} m⁴ "

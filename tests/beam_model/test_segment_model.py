@@ -17,7 +17,7 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
-from geometry.boom import Boom, Joint, Material, Segment, Support
+from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
 
 Models = Callable[..., list[SegmentModel]]
@@ -51,6 +51,16 @@ def test_tied_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models)
     assert np.abs(errors[-1]).max() < 2e-6
     assert np.abs(errors[-2]).max() < 1e-4
     np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
+
+
+def test_pads_do_not_matter_to_a_tied_boom(paper_boom: Boom, elements: Models) -> None:
+    """Reference: the same boom without pads, equal bits."""
+    (joint,) = paper_boom.joints
+    padded = replace(paper_boom, joints=(replace(joint, pad=PadSize(0.2, 0.06)),))
+    models = elements(1.0)
+    np.testing.assert_array_equal(
+        tied_system(padded, models).frequencies, tied_system(paper_boom, models).frequencies
+    )
 
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])

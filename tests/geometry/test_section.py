@@ -197,13 +197,29 @@ def test_no_uniform_box_closes_a_clearance_of_14_mm() -> None:
         infer_inner_section(PAPER_AREAS[1], PAPER_SECOND_MOMENTS[1], outer, 14.0e-3)
 
 
-def test_no_outer_box_so_compact() -> None:
+def test_no_uniform_box_is_as_thick_as_its_room() -> None:
+    """Half of the height that a clearance leaves is the thickest wall."""
     message = (
-        "no uniform-wall box has A = 0.01 m², J = 1e-06 m⁴ and height/width = 1.5; "
-        "give the section explicitly"
+        "no uniform-wall box with A = 0.0005 m² and J = 0.0001 m⁴ closes a clearance of 0.3 m "
     )
+    with pytest.raises(SectionError, match=f"^{re.escape(message)}"):
+        infer_inner_section(5e-4, 1e-4, infer_outer_section(0.02, 8e-4, 1.5), 0.3)
+
+
+@pytest.mark.parametrize(
+    ("area", "second_moment", "ratio", "numbers"),
+    [
+        (0.01, 1.0e-6, 1.5, "A = 0.01 m², J = 1e-06 m⁴ and height/width = 1.5"),
+        (0.03, 1.01389e-4, 2.0, "A = 0.03 m², J = 0.000101389 m⁴ and height/width = 2"),
+    ],
+    ids=["no root", "walls that meet"],
+)
+def test_no_outer_box_so_compact(
+    area: float, second_moment: float, ratio: float, numbers: str
+) -> None:
+    message = f"no uniform-wall box has {numbers}; give the section explicitly"
     with pytest.raises(SectionError, match=f"^{re.escape(message)}$"):
-        infer_outer_section(0.01, 1.0e-6, 1.5)
+        infer_outer_section(area, second_moment, ratio)
 
 
 @pytest.mark.parametrize(
