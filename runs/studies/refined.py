@@ -99,7 +99,12 @@ class Refined:
             size: of the mesh.
             finest: name of the finest mesh, the reference where there is no limit.
             allowed: relative error.
+
+        Raises:
+            ValueError: the finest mesh has no limit to be held against.
         """
+        if not self.settles and size == self.sizes[-1]:
+            raise ValueError(f"{what}: the finest mesh would be held against itself")
         value = self.values[self.sizes.index(size)]
         source, order = (
             ("limit of its refinement (Richardson 1911)", self.order)

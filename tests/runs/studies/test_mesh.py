@@ -10,7 +10,7 @@ from runs.studies.mesh import Sizes, study
 pytestmark = pytest.mark.slow
 
 
-TINY = Sizes(meshes=(8.0, 4.0, 2.0), default=2.0, duration=0.9, frequencies=2, peaks=1)
+TINY = Sizes(meshes=(8.0, 4.0, 2.0), default=4.0, duration=0.9, frequencies=2, peaks=1)
 
 
 def test_coarse_meshes_close_in() -> None:
@@ -32,5 +32,8 @@ def test_coarse_meshes_close_in() -> None:
     proofs = {proof.what: proof for proof in found.proofs}
     frequency = proofs["natural frequency 1, default mesh"]
     assert frequency.holds
+    assert frequency.value == lowest[1]
+    assert frequency.order == pytest.approx(2.0, abs=0.5)
+    assert frequency.source.startswith("limit of its refinement")
     assert lowest[2] == pytest.approx(7.2565, rel=1.0e-3)
     assert values["tip peak 1 (mm)"][2] == pytest.approx(177.5, rel=0.005)

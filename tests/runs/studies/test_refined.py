@@ -47,7 +47,9 @@ def test_no_order_without_convergence(values: tuple[float, ...]) -> None:
     assert math.isnan(found.limit)
     assert math.isnan(found.index)
     assert found.settled == values[-1]
-    assert found.against_limit("p", found.sizes[-1], "finest", 0.01).source == "finest"
+    assert found.against_limit("p", found.sizes[0], "finest", 0.01).source == "finest"
+    with pytest.raises(ValueError, match=r"^p: the finest mesh would be held against itself$"):
+        found.against_limit("p", found.sizes[-1], "finest", 0.01)
 
 
 def test_a_slow_order_leads_nowhere() -> None:
