@@ -143,14 +143,14 @@ def runs_of(
 
 
 def compare(
-    runs: Sequence[Run], where: str, name: str, sizes: Sizes
+    runs: Sequence[Run], name: str, where: str, sizes: Sizes
 ) -> tuple[Table, list[Proof], list[Plot]]:
     """All motions of a case beside the reduced shell's and beside that with more coordinates.
 
     Args:
         runs: of :func:`runs_of`.
+        name: of the table and the figures.
         where: the segments touch, and under which load.
-        name: of the figures.
         sizes: what is measured.
     """
     reduced, larger, *direct = runs
@@ -161,7 +161,7 @@ def compare(
     steps = [run.step for run in direct]
     order = float(np.polyfit(np.log(steps), np.log(off_larger[2:]), 1)[0])
     table = Table.of_rows(
-        f"direct-{where.replace(' ', '-')}",
+        name,
         f"The reduced shell against the unreduced one, {where}, mesh of {sizes.mesh:g} m",
         {
             "shell": "",
@@ -237,8 +237,8 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     padded = loaded(with_pads(case, *PAD), LOAD)
     hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
     found = [
-        compare(runs_of(case, sizes.steps, sizes, tell), "near webs", "direct", sizes),
-        compare(runs_of(padded, sizes.hard_steps, sizes, tell), hard, "direct-pads", sizes),
+        compare(runs_of(case, sizes.steps, sizes, tell), "direct-webs", "near webs", sizes),
+        compare(runs_of(padded, sizes.hard_steps, sizes, tell), "direct-pads", hard, sizes),
     ]
     return Study(
         "direct",

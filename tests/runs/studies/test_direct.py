@@ -36,7 +36,8 @@ def test_the_tip_is_that_of_the_unreduced_shell() -> None:
         "the unreduced shell, step 0.00025 s",
         "the unreduced shell, step 0.000125 s",
     ]
-    own, larger, coarse, fine = found.data["direct-near-webs"]
+    assert list(found.data) == ["direct-webs", "direct-pads"]
+    own, larger, coarse, fine = found.data["direct-webs"]
     assert own["unknowns"] < larger["unknowns"] < 0.1 * coarse["unknowns"]
     off, off_larger = "off the reduced (%)", "off more coordinates (%)"
     assert own[off] == larger[off_larger] == 0.0
