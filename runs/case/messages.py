@@ -71,6 +71,12 @@ class BadInput(Exception):
         return cls(file, *_explain(first["type"], first["loc"], first["input"], first.get("ctx")))
 
 
+def first_fault(error: ValidationError) -> str:
+    """Where and what the first fault is of a file that no user has written."""
+    fault = error.errors(include_url=False)[0]
+    return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
+
+
 def choices(known: Sequence[str]) -> str:
     """'a', 'b' or 'c'; the first few of many."""
     if len(known) > MOST_CHOICES:

@@ -17,14 +17,14 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 from rich.console import Console
 
 from beam_model.kantorovich import Base
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
 from runs.folder.files import whole
 from runs.paper.reading import (
@@ -201,13 +201,15 @@ def load(folder: Path, case: Case) -> list[TextTable]:
         tables = shown(TypeAdapter(list[Judged]).validate_python(data["readings"]))
     except FileNotFoundError:
         return []
+    except ValidationError as error:
+        what = f"{first_fault(error)}; is damaged or another version's"
     except (OSError, ValueError, TypeError, KeyError) as error:
-        what = f"cannot be understood ({error}); remove it, or survey the readings again"
-        raise BadInput(str(folder), FILE, what) from None
-    if found != toml.digest(case):
-        what = "is not of the case in case.toml; remove it, or survey the readings again"
-        raise BadInput(str(folder), FILE, what)
-    return tables
+        what = f"cannot be understood ({error})"
+    else:
+        if found == toml.digest(case):
+            return tables
+        what = "is not of the case in case.toml"
+    raise BadInput(str(folder), FILE, f"{what}; remove it, or survey the readings again")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.pipeline.summary import Summary
 
@@ -192,9 +192,7 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     except FileNotFoundError:
         what = "missing; give the folder of a run that has finished"
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        where = "".join(f"{step}: " for step in fault["loc"])
-        what = f"{where}{fault['msg']}; is damaged or another version's; run the case again"
+        what = f"{first_fault(error)}; is damaged or another version's; run the case again"
     except (OSError, ValueError, TypeError, KeyError) as error:
         what = f"cannot be understood ({error}); run the case again"
     raise BadInput(str(path.parent), path.name, what)

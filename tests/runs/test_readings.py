@@ -147,13 +147,20 @@ def check_refusals(folder: Path, paper: Case) -> None:
     )
     path = folder / "readings.json"
     whole = path.read_text(encoding="utf-8")
-    for text in (whole[:-20], "[]", '{"readings": []}', whole.replace('"exponent"', '"power"')):
+    for text in (whole[:-20], "[]", '{"readings": []}'):
         path.write_text(text, encoding="utf-8")
         with pytest.raises(BadInput) as refused:
             load(folder, paper)
         message = str(refused.value)
         assert message.startswith(f"{folder}: readings.json: cannot be understood (")
         assert message.endswith(f"); {remedy}")
+    path.write_text(whole.replace('"exponent"', '"power"'), encoding="utf-8")
+    with pytest.raises(BadInput) as refused:
+        load(folder, paper)
+    assert str(refused.value) == (
+        f"{folder}: readings.json: 0: reading: exponent: Field required; is damaged or another "
+        f"version's; {remedy}"
+    )
 
 
 def test_a_folder_without_a_survey_has_none(paper: Case, tmp_path: Path) -> None:
