@@ -172,8 +172,8 @@ def compare(case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes) 
             "motion s": ".3g",
             "tolerance": "",
             "energy residual": ".2g",
-            "wall s": "~",
-            "over event-driven": "~",
+            "wall s": "",
+            "over event-driven": "",
         },
         [
             (of.solver, of.rates, of.duration, of.tolerance, of.energy_residual, taken, ratio)
@@ -243,7 +243,7 @@ def steps(sizes: Sizes) -> Table:
     return Table.of_rows(
         "steps",
         "Splitting, ns per step while every row presses",
-        {"modes": ".0f", **{f"{m} rows": "~" for m in sizes.rows}},
+        {"modes": ".0f", **{f"{m} rows": "" for m in sizes.rows}},
         [
             (n, *([1e9 * part / made[n] for part in seconds[n, m]] for m in sizes.rows))
             for n in sizes.modes
@@ -288,7 +288,7 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
     return Table.of_rows(
         "ensembles",
         f"Ensembles, {sizes.duration:g} s, loads within {CHANGE:g}",
-        {"ensemble": "", "threads": ".0f", "repetitions": ".0f", "wall s": "~"},
+        {"ensemble": "", "threads": ".0f", "repetitions": ".0f", "wall s": ""},
         [
             (name, threads, len(taken), taken)
             for (name, threads, _), taken in zip(what, seconds, strict=True)

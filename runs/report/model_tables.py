@@ -142,8 +142,13 @@ def space_table(results: Results) -> Table | None:
         other = models[reference].first_peak[place].height
         columns += [
             Column(f"{way}\ns", [time for time, _ in shown], ".3f"),
-            Column("\nmm", [height for _, height in shown], ".1f", MILLI),
-            Column(f"off {reference}\n%", [_off(p.height, other) for p in peaks], ".2g", PERCENT),
+            Column(f"{way}\nmm", [height for _, height in shown], ".1f", MILLI),
+            Column(
+                f"{way}, off {reference}\n%",
+                [_off(p.height, other) for p in peaks],
+                ".2g",
+                PERCENT,
+            ),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
 

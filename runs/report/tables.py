@@ -88,6 +88,8 @@ class TextTable:
 
 # Text, a number, repetitions of one, or none.
 Cell = str | float | list[float] | None
+# The same as JSON says it, which knows no number that is not finite.
+Plain = str | float | list[float | None] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,7 @@ class Column:
     Args:
         heading: with the unit in its second line.
         cells: one for each row; None for none, a text for what is no number; repetitions are shown
-            with the digits that they have in common.
+            with the digits that they have in common, whatever the form.
         form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
         factor: from the unit of the numbers to that of the heading.
     """
@@ -118,7 +120,7 @@ class Column:
         if cell is None:
             return NONE
         if isinstance(cell, list):
-            return repeated(cell)
+            return repeated([self.factor * one for one in cell])
         if not self.form:
             return count(cell)
         digits = int(self.form[1:-1])
@@ -163,10 +165,16 @@ class Table:
         return cls(title, parts, notes, name)
 
     @property
-    def data(self) -> list[dict[str, Cell]]:
-        """Each row by its headings, in their units, as JSON can say it."""
+    def data(self) -> list[dict[str, Plain]]:
+        """Each row by its headings, in their units, as JSON can say it.
+
+        Raises:
+            ValueError: a heading is that of two columns.
+        """
         columns = [[_plain(cell, of.factor) for cell in of.cells] for of in self.columns]
         headings = [of.heading for of in self.columns]
+        if len({*headings}) < len(headings):
+            raise ValueError(f"{self.title}: two columns have the same heading, of {headings}")
         return [dict(zip(headings, row, strict=True)) for row in zip_longest(*columns)]
 
     @property
@@ -177,10 +185,19 @@ class Table:
         return TextTable(self.title, headings, rows, self.notes, self.name, self.statements)
 
 
-def _plain(cell: Cell, factor: float) -> Cell:
-    if isinstance(cell, str | list) or cell is None:
+def _plain(cell: Cell, factor: float) -> Plain:
+    """A cell in the unit of its heading; whole numbers stay so where that is their own."""
+    if isinstance(cell, str) or cell is None:
         return cell
-    return float(factor * cell) if math.isfinite(cell) else None
+    if isinstance(cell, list):
+        return [_number(one, factor) for one in cell]
+    return _number(cell, factor)
+
+
+def _number(value: float, factor: float) -> float | None:
+    if isinstance(value, int) and factor == 1.0:
+        return value
+    return float(factor * value) if math.isfinite(value) else None
 
 
 def write(

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from runs.report.tables import Cell, Table
+from runs.report.tables import Plain, Table
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
@@ -90,6 +90,6 @@ class Study:
     plots: Sequence[Plot] = ()
 
     @property
-    def data(self) -> dict[str, list[dict[str, Cell]]]:
+    def data(self) -> dict[str, list[dict[str, Plain]]]:
         """The numbers of each table by its name, as JSON."""
         return {table.name: table.data for table in self.tables}

@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import json
+import math
+import re
 from io import StringIO
 
+import numpy as np
 import pytest
 from rich.console import Console
 
-from runs.report.tables import ROOMY, TextTable
+from runs.report.tables import ROOMY, Column, Table, TextTable
 
 TABLE = TextTable(
     "Peaks", ("model", "first\nmm"), [("beam", "1 s\n2 mm"), ("[b]", "–")], ("A note.",), "peaks"
@@ -43,3 +47,32 @@ def test_so_is_one_with_longer_words_above_its_columns() -> None:
     heading = f"{'x' * (ROOMY - 5)} {'y' * (ROOMY - 5)}"
     assert not TextTable("", ("a", heading), [("x", "y")]).crowded
     assert TextTable("", ("a", f"x{heading}"), [("x", "y")]).crowded
+
+
+def test_rows_are_in_the_units_of_their_headings_as_json_says_them() -> None:
+    columns = (
+        Column("model", ["beam", "shell"]),
+        Column("steps", [7, np.int64(8)]),
+        Column("wall\nms", [[0.5, math.inf], 0.25], ".1f", 1.0e3),
+        Column("peak\nmm", [2, math.nan], ".1f", 1.0e3),
+        Column("shorter", [None]),
+    )
+    data = Table("Found", columns).data
+    assert json.dumps(data) == (
+        '[{"model": "beam", "steps": 7, "wall\\nms": [500.0, null], "peak\\nmm": 2000.0, '
+        '"shorter": null}, {"model": "shell", "steps": 8.0, "wall\\nms": 250.0, '
+        '"peak\\nmm": null, "shorter": null}]'
+    )
+
+
+def test_repetitions_are_shown_in_the_unit_of_their_heading() -> None:
+    """Reference: half the range, 10 ms, leaves two digits of the median."""
+    assert Column("wall\nms", [[0.41, 0.42, 0.43]], ".1f", 1.0e3).text == ["420"]
+
+
+def test_data_do_not_lose_a_column_to_one_of_the_same_heading() -> None:
+    table = Table("Peaks", (Column("mm", [1.0]), Column("mm", [2.0])))
+    assert table.text.rows == [("1", "2")]
+    message = re.escape("Peaks: two columns have the same heading, of ['mm', 'mm']")
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        assert table.data
