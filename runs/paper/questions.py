@@ -16,7 +16,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-Number = TypeVar("Number", int, float)
+_Found = TypeVar("_Found")
 
 
 class Lacking(Exception):
@@ -75,6 +75,10 @@ class Run:
         """What the summary says of a model."""
         self.check_ran(model)
         return self.results.summary.models[model.name]
+
+    def horizon(self, model: Model, share: float) -> float | None:
+        """When the members of a model are a share of the tip's range apart, in s; None if never."""
+        return _there(model, "ensemble", self.found(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
         """In s."""
@@ -162,7 +166,7 @@ class Run:
             raise Lacking(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
 
 
-def _there(model: Model, what: str, value: Number | None) -> Number:
+def _there(model: Model, what: str, value: _Found | None) -> _Found:
     if value is None:
         raise Lacking(f"{model.name!r} has no {what}.")
     return value

@@ -426,8 +426,8 @@ def _half_part(middle: float) -> str:
 
 def _horizons(run: Run, models: list[Model]) -> str:
     """From when on a single run of each model is a sample."""
-    sampled = [ensemble for model in models if (ensemble := run.found(model).ensemble)]
-    times = [time for one in sampled if (time := one.horizon(DIVERGENCE)) is not None]
+    horizons = [run.horizon(model, DIVERGENCE) for model in models]
+    times = [time for time in horizons if time is not None]
     if not times:
         return "The members of each model stay together."
     return (

@@ -139,6 +139,13 @@ def test_s2_and_s3_need_an_ensemble(case: Case) -> None:
         )
 
 
+def test_s3_needs_what_the_ensemble_of_each_model_tells(case: Case) -> None:
+    lacking = {"kantorovich-5": {"ensemble": None}}
+    found = verdicts(case, curves(), lacking, members(stratifying(0.3)))["S3"]
+    assert (found.verdict, found.measured) == ("undecided", None)
+    assert found.why == "'kantorovich-5' has no ensemble."
+
+
 @pytest.mark.parametrize(
     ("early", "drift", "conforming", "expected"),
     [
