@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Self
 
-from pydantic import AfterValidator, Field, ValidationInfo
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, Field, ValidationError, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from geometry.boom import Direction
 from runs.case.limits import (
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 # Each is a term of every row in every step of the time loop.
 MOST_POINTS = 1000
+
+_OF_POWER = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(
@@ -52,18 +54,28 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
     return points
 
 
-def _beside_table(given: float | None, info: ValidationInfo) -> float | None:
+def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> None:
     """A power law has a stiffness, and a table has neither that nor an exponent.
 
-    To the sides a stiffness of their own makes a power law beside any table.
+    Args:
+        table: with all its keys, in whatever order these are declared.
+        of_power: keys that belong to power laws alone.
+
+    Raises:
+        ValidationError: at the key that is missing, or given in vain.
     """
-    table = next((key for key in ("force_table", "force_file") if info.data.get(key)), None)
-    if given is not None and table is not None and not info.data.get("lateral_stiffness"):
-        what = f"{table} is given; leave one of them out"
-        raise PydanticCustomError("unsuitable", "{what}", {"what": what})
-    if given is None and table is None and info.field_name == "stiffness":
-        raise PydanticCustomError("missing", "missing")
-    return given
+    given = next((key for key in ("force_table", "force_file") if getattr(table, key)), None)
+    if given is not None:
+        keys = [key for key in of_power if getattr(table, key) is not None]
+        what = f"{given} is given; leave one of them out"
+        fault = PydanticCustomError("unsuitable", "{what}", {"what": what})
+    else:
+        keys = ["stiffness"] if table.stiffness is None else []
+        fault = PydanticCustomError("missing", "missing")
+    if keys:
+        # A validator's own error would not be at a key.
+        at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
+        raise ValidationError.from_exception_data(type(table).__name__, at)
 
 
 Forces = Annotated[
@@ -71,8 +83,6 @@ Forces = Annotated[
     Field(min_length=1, max_length=MOST_POINTS),
     AfterValidator(_check_points),
 ]
-OrTable = Annotated[Positive | None, AfterValidator(_beside_table)]
-ExponentOrTable = Annotated[Exponent | None, AfterValidator(_beside_table)]
 
 
 class RestitutionTable(Table):
@@ -108,17 +118,15 @@ class JointTable(Table):
     force_file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
     )
-    stiffness: OrTable = Field(
-        None,
-        validate_default=True,
-        description="the contact stiffness in N/m^n where the inner segment presses up",
+    stiffness: Positive | None = Field(
+        None, description="the contact stiffness in N/m^n where the inner segment presses up"
     )
-    stiffness_below: Annotated[NotNegative | None, AfterValidator(_beside_table)] = Field(
+    stiffness_below: NotNegative | None = Field(
         None,
         description="the contact stiffness in N/m^n where the inner segment presses down; the "
         "same as above unless given",
     )
-    exponent: ExponentOrTable = Field(
+    exponent: Exponent | None = Field(
         None, description="the exponent n of the contact law; 2 unless given"
     )
     restitution: RestitutionTable | None = Field(
@@ -138,7 +146,7 @@ class JointTable(Table):
     lateral_stiffness: Positive | None = Field(
         None, description="the contact stiffness to the sides in N/m^n; the same unless given"
     )
-    lateral_exponent: ExponentOrTable = Field(
+    lateral_exponent: Exponent | None = Field(
         None, description="the exponent n to the sides; the same unless given"
     )
     tied: Flag = Field(
@@ -154,6 +162,13 @@ class JointTable(Table):
         description="the length along x in m on which stations press the corners, as long as a "
         "slide pad, which shells alone heed; a tenth of the overlap unless given",
     )
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        # To the sides a stiffness of their own makes a power law beside any table.
+        lateral = () if self.lateral_stiffness else ("lateral_exponent",)
+        _check_law(self, (*_OF_POWER, *lateral))
+        return self
 
     def law(self, direction: Direction) -> ContactLaw:
         """The contact law of each station along z, or in space along y."""
@@ -178,18 +193,21 @@ class ContactTable(Table):
     force_file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
     )
-    stiffness: OrTable = Field(
-        None, validate_default=True, description="the contact stiffness in N/m^n"
-    )
-    stiffness_below: Annotated[NotNegative | None, AfterValidator(_beside_table)] = Field(
+    stiffness: Positive | None = Field(None, description="the contact stiffness in N/m^n")
+    stiffness_below: NotNegative | None = Field(
         None, description="the contact stiffness in N/m^n below; the same as above unless given"
     )
-    exponent: ExponentOrTable = Field(
+    exponent: Exponent | None = Field(
         None, description="the exponent n of the contact law; 2 unless given"
     )
     restitution: RestitutionTable | None = Field(
         None, description="the table of the contact's own damping; none unless given"
     )
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        _check_law(self, _OF_POWER)
+        return self
 
     def law(self, joint: JointTable, direction: Direction) -> ContactLaw:
         """As that of a joint, with its play."""

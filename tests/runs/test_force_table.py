@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
+from dynamics.contact_table import TableContact
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom, contact_laws
+from runs.case.contact import JointTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.models import build
@@ -76,6 +78,16 @@ def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
     assert law == same
 
 
+def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
+    to_the_sides = {"lateral_play": 0.01, "lateral_stiffness": 1.0e9, "lateral_exponent": 1.5}
+    joint = JointTable.model_validate(
+        {"outer": "a", "inner": "b", "stations": (1.0,), "play": 0.0, **to_the_sides}
+        | {"force_table": ((1.0e-3, 2.0),)}
+    )
+    assert joint.law("y") == PowerContact(1.0e9, 1.5, 5.0e-3)
+    assert joint.law("z") == TableContact((1.0e-3,), (2.0,), 0.0)
+
+
 @pytest.mark.parametrize(
     ("law", "message"),
     [
@@ -89,6 +101,8 @@ def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
          "joint[1].exponent: force_table is given; leave one of them out"),
         ("force_table = [[1e-3, 2.0]]\nlateral_play = 0.01\nlateral_exponent = 2.0",
          "joint[1].lateral_exponent: force_table is given; leave one of them out"),
+        ("lateral_stiffness = 1e9\nforce_table = [[1e-3, 2.0]]\nstiffness = 1e9",
+         "joint[1].stiffness: force_table is given; leave one of them out"),
         ("force_table = []", "joint[1].force_table: empty; give at least one"),
         ("force_table = [[0.0, 0.0], [1e-3, 2.0]]",
          "joint[1].force_table: depths must be finite and rise from above 0"),
