@@ -19,7 +19,8 @@ import xarray as xr
 from geometry.arrays import Array
 from shell_model.stress.stresses import ShellStress
 
-Indices = npt.NDArray[np.int32]
+# As the files of runs have them.
+Numbers = npt.NDArray[np.int32]
 
 # Walls are drawn with this part of the outer section's height; their thickness is not known here.
 WALL_DRAWN = 0.03
@@ -81,8 +82,8 @@ class MovingShell:
     """
 
     points: Array
-    triangles: Indices
-    segment: Indices
+    triangles: Numbers
+    segment: Numbers
     overlaps: Sequence[Overlap]
     stops: Sequence[Stop]
     modes: npt.NDArray[np.float32]
@@ -138,7 +139,7 @@ class MovingShell:
         state = self.state.sel(time=t, method="nearest").values
         return np.asarray(np.tensordot(state, self.modes, axes=1), dtype=np.float64)
 
-    def members(self, segment: int) -> Indices:
+    def members(self, segment: int) -> Numbers:
         """(num_members,) point numbers of a segment."""
         return np.asarray(np.unique(self.triangles[self.segment == segment]))
 
@@ -157,7 +158,7 @@ class MovingShell:
         held = self.points[across <= AT_REST * across.max()]
         return [held[np.abs(held[:, 0] - x) < SAME_PLACE] for x in np.unique(held[:, 0].round(6))]
 
-    def flange_in_plane(self, segment: int, side: int) -> Indices:
+    def flange_in_plane(self, segment: int, side: int) -> Numbers:
         """(num_points,) the points of a flange in the plane of bending, from base to tip.
 
         Args:

@@ -15,12 +15,11 @@ from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_array
 
-from geometry.arrays import Array, Mask
+from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh
 from geometry.section import COMPONENT, Direction
@@ -46,7 +45,6 @@ from shell_model.segment_shell import (
     owned_nodes,
 )
 
-Indices = npt.NDArray[np.integer[Any]]
 _Found = TypeVar("_Found")
 
 # Part of its largest value below which a force has no part in a family.
@@ -156,7 +154,7 @@ class Folding:
             quarter = [owned_nodes(space, part) for part in range(len(parts))]
             self._quarter_rows = _rows_of(quarter)
         first, _ = shell.owned
-        self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int32)
+        self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int64)
         for part, (nodes, dofs) in enumerate(parts):
             gathered = self._comm.gather(folded(nodes, self._mirrors))
             found: Sequence[Any] = []
