@@ -46,7 +46,9 @@ class Reading(dict[int, Row]):
     """What is read of a boom's segments: number of a segment → row."""
 
     def __add__(self, other: Reading) -> Reading:
-        return Reading({number: row + other[number] for number, row in self.items()})
+        """What both read, of all segments of either, in their common unit: m, say."""
+        both = {number: self.get(number, Row()) + row for number, row in other.items()}
+        return Reading(self | both)
 
     def __rmul__(self, factor: float) -> Reading:
         return Reading({number: factor * row for number, row in self.items()})

@@ -102,6 +102,10 @@ class ShellForms:
             unless given.
         shear_correction: part of G t that resists transverse shear; a large one is a thin shell
             after Kirchhoff and Love, whatever its thickness.
+
+    Attributes:
+        loaded: as given; what it is when the load is assembled counts.
+        load_direction: (3,) a constant that whoever assembles the load sets.
     """
 
     def __init__(
@@ -120,6 +124,10 @@ class ShellForms:
 
     @cached_property
     def stiffness(self) -> Any:
+        """Bilinear, to be assembled (num_dofs, num_dofs), in N/m, N and N·m between u and θ.
+
+        Twice the strain energy of a motion with itself.
+        """
         domain, t, material = self._space.mesh, self._thickness, self._material
         young, nu = map(self._constant, (material.youngs_modulus, material.poissons_ratio))
         correction, drilling = map(self._constant, (self._shear_correction, self._drilling))
@@ -136,6 +144,10 @@ class ShellForms:
 
     @cached_property
     def mass(self) -> Any:
+        """Bilinear, to be assembled (num_dofs, num_dofs), in kg for u and kg·m² for θ.
+
+        Twice the kinetic energy of velocities with themselves; u and θ do not couple.
+        """
         t, density = self._thickness, self._constant(self._material.density)
         (u, theta), (v, eta) = self._trial_and_test()
         inertia = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
@@ -143,6 +155,7 @@ class ShellForms:
 
     @cached_property
     def unit_load(self) -> Any:
+        """Linear, to be assembled (num_dofs,), in N for u and 0 for θ."""
         _, (v, _) = self._trial_and_test()
         load = self.loaded * ufl.dot(self.load_direction, v)
         return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))

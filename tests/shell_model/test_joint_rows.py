@@ -22,6 +22,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.cross_section import Reading, Row
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
 
@@ -92,6 +93,13 @@ def _area(boom: Boom, number: int) -> float:
     section = boom.segments[number].section
     assert section is not None
     return section.area
+
+
+def test_readings_add_up_over_the_segments_of_either() -> None:
+    one, other = Reading({0: Row({3: 1.0})}), Reading({0: Row({3: 0.5, 4: 2.0}), 1: Row({7: 1.0})})
+    both = {0: {3: 1.5, 4: 2.0}, 1: {7: 1.0}}
+    assert one + other == both
+    assert other + one == both
 
 
 def test_a_stop_reads_the_flange_that_it_meets() -> None:
