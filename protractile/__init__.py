@@ -63,9 +63,9 @@ if TYPE_CHECKING:
     from runs.case.messages import BadInput as BadInput
     from runs.case.schema import Case as Case
     from runs.pipeline.results import Results as Results
-    from shell_model.boom_shell import ReducedShell as ReducedShell
     from shell_model.boom_shell import ShellOptions as ShellOptions
-    from shell_model.boom_shell import reduce_boom as reduce_boom
+    from shell_model.reduced_shell import ReducedShell as ReducedShell
+    from shell_model.reduced_shell import reduce_boom as reduce_boom
 
 # Where each name is at home.
 _HOMES = {
@@ -96,7 +96,8 @@ _HOMES = {
         "runs.case.messages": "BadInput",
         "runs.case.schema": "Case",
         "runs.pipeline.results": "Results",
-        "shell_model.boom_shell": "ReducedShell ShellOptions reduce_boom",
+        "shell_model.boom_shell": "ShellOptions",
+        "shell_model.reduced_shell": "ReducedShell reduce_boom",
     }.items()
     for name in names.split()
 }

@@ -1,39 +1,33 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom as shells that touch at its stations: from plates to a gap system."""
+"""The boom as shells: meshed, assembled, with what acts on them and what is read of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
-from dynamics.gap_system import GapSystem
+from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
+from geometry.load import Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.spots import spots
-from shell_model.contact.local_compliance import (
-    compliance,
-    extrapolated_error,
-    full_compliance,
-    local_compliance,
-)
+from shell_model.contact.local_compliance import full_compliance, local_compliance
 from shell_model.contact.rows import gap_rows, ties
-from shell_model.contact.surface import SurfaceOptions, without_stiff_modes
+from shell_model.contact.surface import SurfaceOptions
 from shell_model.cross_section import Outline, Reading, Row
-from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.reduction.segment import KrylovOptions, reduce_segment
+from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment_shell import SegmentShell, assemble_segment
-from shell_model.stress.fields import gather_fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,145 +71,139 @@ class ShellOptions:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class ReducedShell:
-    """A gap system and what it cost to get there.
+class Stages:
+    """Wall time of the stages of a shell in s, and how far each is.
 
     Args:
-        system: of all segments.
-        num_dofs: of the shells before the reduction.
-        fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
-        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` as a
-            part of the local one, NaN where there is none, ``readings`` relative, and
-            ``frequency_limit_in_hz`` up to which each mode is right in itself.
-        local_compliance: (num_rows,) of the contacts in m/N, see
-            :func:`shell_model.contact.local_compliance.local_compliance`.
-        mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
-            there is none.
-        seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
-            values for each coordinate), reduction, fields (of displacement and stress), mesh error.
-        meshes: of the segments, on rank 0.
+        tell: called with the stage and the part of it that is done.
     """
 
-    system: GapSystem
-    num_dofs: int
-    fields: xr.Dataset | None
-    errors: dict[str, float]
-    local_compliance: Array
-    mesh_error: float
-    seconds: dict[str, float]
-    meshes: Sequence[SegmentMesh]
+    def __init__(self, tell: Callable[[str, float], None] | None = None) -> None:
+        self.tell = tell or (lambda stage, part: None)
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(
+        self, name: str, number: int = 0, count: int = 1
+    ) -> Iterator[Callable[[float], None]]:
+        """The part ``number`` of ``count`` of a stage; tells how much of that part is done."""
+        begin = perf_counter()
+        yield lambda part: self.tell(name, (number + part) / count)
+        self.tell(name, (number + 1) / count)
+        self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - begin
 
 
-def reduce_boom(
+@dataclass(frozen=True, slots=True)
+class BoomShell:
+    """All degrees of freedom of a boom.
+
+    Args:
+        comm: the ranks that share it.
+        shells: of its segments.
+        stations: x in m and direction of each.
+        rows: that press and rub.
+        ties: what stays at zero.
+        own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
+        loads: those that follow a history, and (num_owned,) what they push.
+        observed: what a motion records, with its unit.
+    """
+
+    comm: MPI.Comm
+    shells: Sequence[SegmentShell]
+    stations: Sequence[tuple[float, Direction]]
+    rows: GapBuilder[Reading]
+    ties: Sequence[Reading]
+    own_loads: Sequence[Array]
+    loads: Sequence[tuple[Load, Array]]
+    observed: Mapping[str, tuple[Reading, str]]
+
+    @property
+    def num_dofs(self) -> int:
+        """Of all segments."""
+        return sum(shell.num_dofs for shell in self.shells)
+
+    @property
+    def resisting(self) -> list[Reading]:
+        """What contacts read, then what friction does."""
+        contacts = [contact.reading for contact in self.rows.contacts]
+        return contacts + [friction.reading for friction in self.rows.frictions]
+
+    def forces(self, number: int) -> Array:
+        """(num_owned, num_forces) all that acts on a segment, contacts first."""
+        own = [push for load, push in self.loads if load.segment == number]
+        joined = self.joined(number)
+        return np.column_stack([joined, self.own_loads[number], *own])
+
+    def joined(self, number: int) -> Array:
+        """(num_owned, num_rows) what contacts, friction and ties read of a segment."""
+        return self.columns(number, [*self.resisting, *self.ties])
+
+    def columns(self, number: int, readings: Iterable[Reading]) -> Array:
+        """(num_owned, num_rows) of those readings that read a segment. Collective."""
+        shell = self.shells[number]
+        rows = [shell.row(reading[number]) for reading in readings if number in reading]
+        return np.array(rows).reshape(-1, shell.free.size).T
+
+    def local_compliance(self, whole: Array) -> Array:
+        """(num_contacts,) in m/N; NaN where nothing touches on the other side of the station.
+
+        Args:
+            whole: (num_contacts, num_contacts) the compliance of the contacts.
+        """
+        laws = [contact.law for contact in self.rows.contacts]
+        return local_compliance(whole, laws, [contact.station for contact in self.rows.contacts])
+
+    def full_compliance(self) -> Array:
+        """(num_contacts, num_contacts) of the contacts, all degrees of freedom in. Collective."""
+        return full_compliance(self.shells, self.rows.contacts)
+
+
+def assemble_boom(
     boom: Boom,
-    laws: Sequence[ContactLaw],
+    laws: Mapping[Direction, Sequence[ContactLaw]],
     options: ShellOptions,
     comm: MPI.Comm,
-    progress: Callable[[str, float], None] | None = None,
-    lateral_laws: Sequence[ContactLaw] = (),
-) -> ReducedShell:
-    """Mesh, assemble and reduce every segment. Collective.
+    stages: Stages | None = None,
+) -> BoomShell:
+    """The shells of a boom with what acts on them, not reduced. Collective.
 
     Args:
-        boom: all its segments with box sections.
-        laws: one for each joint, along z.
-        options: mesh, contact points, reduction.
-        comm: the ranks that share the work; the result is the same on each.
-        progress: called with the stage and the part of it that is done.
-        lateral_laws: one for each joint, along y; none for a flat boom.
+        boom: all its segments with sections.
+        laws: along each direction, one for each joint.
+        options: mesh and contact points.
+        comm: the ranks that share the work.
+        stages: told how far it is.
 
     Raises:
-        BoomError: a segment has no box section, or the contact line does not suit the boom.
+        BoomError: a segment has no section, or the contact line does not suit the boom.
     """
-    seconds = dict.fromkeys(("mesh", "assembly", "reduction"), 0.0)
-    planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
-    shells: list[SegmentShell] = []
-    tell = progress or (lambda stage, part: None)
+    watch = stages or Stages()
+    shells = assemble_segments(boom, options, comm, watch)
+    with watch.stage("rows"):
+        return BoomShell(
+            comm=comm,
+            shells=shells,
+            stations=boom.stations,
+            rows=gap_rows(boom, shells, laws, options.contact_line, options.surface),
+            ties=ties(boom, shells),
+            own_loads=[shell.own_load(boom.directions) for shell in shells],
+            loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
+            observed=_observed(boom, shells),
+        )
+
+
+def assemble_segments(
+    boom: Boom, options: ShellOptions, comm: MPI.Comm, stages: Stages | None = None
+) -> list[SegmentShell]:
+    """The shells of all segments alone. Collective."""
+    watch = stages or Stages()
+    shells, count = [], len(boom.segments)
     for number, segment in enumerate(boom.segments):
-        start = perf_counter()
-        mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
-        seconds["mesh"] += perf_counter() - start
-        tell("mesh", (number + 1) / len(boom.segments))
-        start = perf_counter()
-        shells.append(assemble_segment(comm, segment, mesh))
-        seconds["assembly"] += perf_counter() - start
-        tell("assembly", (number + 1) / len(boom.segments))
-
-    start = perf_counter()
-    tied = ties(boom, shells)
-    rows = gap_rows(boom, shells, planes, options.contact_line, options.surface)
-    own_loads = [own_load(boom, number, shell) for number, shell in enumerate(shells)]
-    timed_loads = [(load, load.push(_Member(shells[load.segment]))) for load in boom.loads]
-    contacts = [contact.reading for contact in rows.contacts]
-    readings = contacts + [friction.reading for friction in rows.frictions] + tied
-    krylov = options.krylov
-    if options.contact_line == "surface":
-        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
-    observed = _observed(boom, shells)
-    seconds["rows"] = perf_counter() - start
-    start = perf_counter()
-    reduced = []
-    lost = np.zeros(len(contacts))
-    for number, shell in enumerate(shells):
-        joined = [shell.row(reading[number]) for reading in readings if number in reading]
-        inputs = [*joined, own_loads[number]]
-        inputs += [push for load, push in timed_loads if load.segment == number]
-        read = [shell.row(reading[number]) for reading, _ in observed.values() if number in reading]
-        read_rows = np.array(read).reshape(-1, shell.free.size).T
-        report = partial(_report_part, tell, number, len(shells))
-        own = reduce_segment(shell, np.column_stack(inputs), krylov, report, readings=read_rows)
-        if options.contact_line == "surface" and joined:
-            own = without_stiff_modes(comm, own, np.column_stack(joined))
-        reduced.append(own)
-        touching = [i for i, reading in enumerate(contacts) if number in reading]
-        lost[touching] += own.lost_compliance[: len(touching)]
-    seconds["reduction"] = perf_counter() - start
-    start = perf_counter()
-    coordinates = BoomCoordinates(comm, shells, reduced, tied)
-    system = rows.system(
-        coordinates.row,
-        coordinates.omega2,
-        np.sum([coordinates.push(k, load) for k, load in enumerate(own_loads)], axis=0),
-        boom.stations,
-        observed,
-        [(coordinates.push(load.segment, push), load.history) for load, push in timed_loads],
-    )
-    seconds["rows"] += perf_counter() - start
-    start = perf_counter()
-    fields = gather_fields(shells, reduced)
-    if fields is not None:
-        fields = coordinates.of_fields(fields)
-    seconds["fields"] = perf_counter() - start
-    start = perf_counter()
-    apart = BoomCoordinates(comm, shells, reduced, ())
-    apart_rows = np.array([apart.row(reading) for reading in contacts])
-    whole = compliance(apart.omega2, apart_rows.reshape(-1, apart.omega2.size))
-    laws_of_rows, stations = system.laws, system.station_of_row.tolist()
-    local = local_compliance(whole, laws_of_rows, stations)
-    coarse = assemble_segments(boom, options.coarser, comm)
-    same = gap_rows(boom, coarse, planes, options.contact_line, options.surface)
-    coarser = local_compliance(full_compliance(coarse, same.contacts), laws_of_rows, stations)
-    off = extrapolated_error(local, coarser, options.order)
-    seconds["mesh error"] = perf_counter() - start
-    return ReducedShell(
-        system=system,
-        num_dofs=sum(shell.num_dofs for shell in shells),
-        fields=fields,
-        errors={
-            "contact_compliance": _largest(lost / local),
-            "readings": max(r.reading_error for r in reduced),
-            "frequency_limit_in_hz": min(r.frequency_limit for r in reduced),
-        },
-        local_compliance=local,
-        mesh_error=_largest(off),
-        seconds=seconds,
-        meshes=[shell.mesh for shell in shells if shell.mesh is not None],
-    )
-
-
-def _report_part(tell: Callable[[str, float], None], number: int, count: int, part: float) -> None:
-    tell("reduction", (number + part) / count)
+        with watch.stage("mesh", number, count):
+            mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
+        with watch.stage("assembly", number, count):
+            shells.append(assemble_segment(comm, segment, mesh))
+    return shells
 
 
 def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
@@ -242,56 +230,6 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     if options.mesh_folder is not None:
         mesh.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
     return mesh
-
-
-def assemble_segments(boom: Boom, options: ShellOptions, comm: MPI.Comm) -> list[SegmentShell]:
-    """The shells of all segments, not reduced. Collective."""
-    shells = []
-    for number, segment in enumerate(boom.segments):
-        mesh = segment_mesh(boom, number, options) if comm.rank == 0 else None
-        shells.append(assemble_segment(comm, segment, mesh))
-    return shells
-
-
-def own_load(boom: Boom, number: int, shell: SegmentShell) -> Array:
-    """(num_owned,) the uniform loads of a segment that are applied at t = 0 and kept, in N."""
-    segment = boom.segments[number]
-    load = segment.load * shell.unit_loads["z"]
-    if boom.spatial and segment.lateral is not None:
-        load += segment.lateral.load * shell.unit_loads["y"]
-    return load
-
-
-@dataclass(frozen=True, slots=True)
-class _Member:
-    """A segment as loads push it, see :class:`geometry.load.Member`; (num_owned,) each.
-
-    At one place a force is spread over the walls that carry it in their own plane, a moment over
-    all of them as bending stress is.
-    """
-
-    shell: SegmentShell
-
-    def force(self, x: float, direction: Direction) -> Array:
-        return self.shell.row(self.shell.outline(x).wall_deflection(direction))
-
-    def moment(self, x: float, direction: Direction) -> Array:
-        return self.shell.row(self.shell.outline(x).rotation(direction))
-
-    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        if span is None:
-            return self.shell.unit_loads[direction]
-        return self.shell.load_between(direction, *span)
-
-    def inertia(self, direction: Direction, force: float) -> Array:
-        acceleration = force / self.shell.segment.mass_per_length
-        whole = force * self.shell.unit_loads[direction]
-        return whole + acceleration * self.shell.stiffener_loads[direction]
-
-
-def _largest(parts: Array) -> float:
-    """Of those that are known; NaN where none is."""
-    return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
 
 
 def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Reading, str]]:

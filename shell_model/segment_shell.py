@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, NamedTuple
@@ -153,7 +153,7 @@ class Shell:
 
 @dataclass(frozen=True, slots=True)
 class SegmentShell(Shell):
-    """The shell of one segment.
+    """The shell of one segment, which loads push as they do a :class:`geometry.load.Member`.
 
     Args:
         unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
@@ -182,8 +182,27 @@ class SegmentShell(Shell):
         """The nodes at x, the same on every rank. Collective."""
         return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)
 
-    def load_between(self, direction: Direction, start: float, end: float) -> Array:
-        """(num_owned,) a uniform load of 1 N/m between mesh lines at two x in m. Collective."""
+    def own_load(self, directions: Iterable[Direction]) -> Array:
+        """(num_owned,) the segment's uniform loads that are applied at t = 0 and kept, in N."""
+        kept = {"z": self.segment.load}
+        if self.segment.lateral is not None:
+            kept["y"] = self.segment.lateral.load
+        parts = [kept[d] * self.unit_loads[d] for d in directions if d in kept]
+        return np.asarray(np.sum(parts, axis=0))
+
+    def force(self, x: float, direction: Direction) -> Array:
+        """(num_owned,) 1 N at x in m, spread over the walls that carry it in their own plane."""
+        return self.row(self.outline(x).wall_deflection(direction))
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        """(num_owned,) 1 N·m at x in m, spread over all walls as bending stress is."""
+        return self.row(self.outline(x).rotation(direction))
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        """(num_owned,) 1 N/m between mesh lines at two x in m, or along all of it. Collective."""
+        if span is None:
+            return self.unit_loads[direction]
+        start, end = span
         thickness = None
         if self.mesh is not None:
             x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
@@ -192,6 +211,12 @@ class SegmentShell(Shell):
         loaded = compat.cellwise_function(self.space.mesh, self.comm.bcast(thickness))
         forms.loaded.x.array[:] = loaded.x.array
         return _unit_load(self.comm, forms, direction) / self.section.area * self.free
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        """(num_owned,) an acceleration that the plain segment feels as so many N/m."""
+        acceleration = force / self.segment.mass_per_length
+        whole = force * self.unit_loads[direction]
+        return whole + acceleration * self.stiffener_loads[direction]
 
     def row(self, weights: Row) -> Array:
         """(num_owned,) this rank's part of a row given as global dof → weight."""

@@ -180,7 +180,8 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     """One run, in processes that are its own; rank 0 prints what it took."""
     from mpi4py import MPI
 
-    from shell_model.boom_shell import ShellOptions, reduce_boom
+    from shell_model.boom_shell import ShellOptions
+    from shell_model.reduced_shell import reduce_boom
 
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED[name]))

@@ -17,7 +17,7 @@ from runs.folder.versions import program
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.reduced_shell import ReducedShell
 
 _MESH = ".msh"
 
@@ -66,7 +66,7 @@ def _load(cache: Cache, name: str, mesh_folder: Path) -> ReducedShell | None:
 
 
 def _read(files: Files) -> tuple[ReducedShell, Files]:
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.reduced_shell import ReducedShell
 
     meshes = {name: content for name, content in files.items() if name.endswith(_MESH)}
     return records.unpack(files, ReducedShell), meshes

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from runs.folder.cache import Cache
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.reduced_shell import ReducedShell
 
 
 def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None) -> Built:

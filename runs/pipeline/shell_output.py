@@ -17,7 +17,7 @@ from shell_model.stress.summary import StressSummary
 
 if TYPE_CHECKING:
     from geometry.mesh import SegmentMesh
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.reduced_shell import ReducedShell
 
 
 @dataclass(frozen=True, slots=True)

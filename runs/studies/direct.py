@@ -98,9 +98,10 @@ def runs_of(
         sizes: what is measured.
         tell: told what is being moved.
     """
-    from shell_model.boom_shell import ShellOptions, reduce_boom
+    from shell_model.boom_shell import ShellOptions, assemble_boom
+    from shell_model.reduced_shell import reduce_boom
     from shell_model.reduction.segment import KrylovOptions
-    from shell_model.verification.unreduced import assemble_boom, integrate_directly
+    from shell_model.verification.unreduced import integrate_directly
 
     case = lasting(case, sizes.duration)
     boom, output_step = build_boom(case), case.time.output_step
@@ -130,7 +131,7 @@ def runs_of(
         found.append(
             Run(how, system.num_modes, taken, tip, impulse, motion.energy_residual, seconds)
         )
-    full = assemble_boom(boom, laws, options, MPI.COMM_SELF)
+    full = assemble_boom(boom, {"z": laws}, options, MPI.COMM_SELF)
     for step in steps:
         tell(f"the unreduced shell, step {step:g} s")
         start = perf_counter()

@@ -21,8 +21,9 @@ from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
 from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Plot, Proof, Study
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
+from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.history import near_places
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import ShellStress, wall_forces

@@ -19,15 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse
-from mpi4py import MPI
 
-from dynamics.contact import ContactLaw
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residual
-from dynamics.gap_builder import Contact, Friction
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError
-from shell_model.boom_shell import ShellOptions, assemble_segments, own_load
-from shell_model.contact.rows import gap_rows
+from geometry.boom import BoomError
+from shell_model.boom_shell import BoomShell
 from shell_model.cross_section import Reading, Row
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
@@ -40,37 +36,12 @@ _CHECKS = 20
 
 
 @dataclass(frozen=True, slots=True)
-class FullShell:
-    """All degrees of freedom of a boom.
-
-    Args:
-        comm: the ranks that share it.
-        shells: of the segments.
-        loads: (num_owned,) of each, in N, applied at t = 0 and kept.
-        contacts, frictions: rows that resist.
-        observers: name → what a motion records.
-    """
-
-    comm: MPI.Comm
-    shells: Sequence[SegmentShell]
-    loads: Sequence[Array]
-    contacts: Sequence[Contact[Reading]]
-    frictions: Sequence[Friction[Reading]]
-    observers: Mapping[str, Reading]
-
-    @property
-    def num_dofs(self) -> int:
-        """Of all segments."""
-        return sum(shell.num_dofs for shell in self.shells)
-
-
-@dataclass(frozen=True, slots=True)
 class DirectMotion:
     """A motion of the unreduced shells.
 
     Args:
         time: (num_times,) in s.
-        observed: name → (num_times,) in m.
+        observed: name → (num_times,) in the unit of what is read.
         contact_forces: (num_times, num_contacts) in N, means over the output interval that ends at
             the time, positive where the inner segment presses up.
         friction_forces: (num_times, num_frictions) in N, likewise, positive where they push the
@@ -94,46 +65,8 @@ class DirectMotion:
         return float(np.abs(energy_residual(self.energies)).max())
 
 
-def assemble_boom(
-    boom: Boom, laws: Sequence[ContactLaw], options: ShellOptions, comm: MPI.Comm
-) -> FullShell:
-    """The shells of a flat boom with what acts on them, not reduced. Collective.
-
-    Args:
-        boom: with constant loads and prescribed normal forces.
-        laws: one for each joint, without damping.
-        options: mesh and contact points.
-        comm: the ranks that share the shells.
-
-    Raises:
-        BoomError: it has what the direct integration does not take.
-    """
-    if boom.spatial or boom.loads or any(joint.tied for joint in boom.joints):
-        raise BoomError(
-            "joint",
-            "the unreduced shell moves in the plane, under constant loads, without tied joints",
-        )
-    shells = assemble_segments(boom, options, comm)
-    rows = gap_rows(boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface)
-    if any(contact.law.damping > 0.0 for contact in rows.contacts):
-        raise BoomError("joint", "the unreduced shell takes contacts without damping")
-    if any(friction.law.pressed_by for friction in rows.frictions):
-        raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
-    return FullShell(
-        comm,
-        shells,
-        [own_load(boom, number, shell) for number, shell in enumerate(shells)],
-        rows.contacts,
-        rows.frictions,
-        {
-            name: Reading({number: shells[number].outline(x).mean_deflection()})
-            for name, (number, x) in boom.observed.items()
-        },
-    )
-
-
 def integrate_directly(
-    full: FullShell,
+    full: BoomShell,
     duration: float,
     step: float,
     output_step: float = 1.0e-3,
@@ -143,7 +76,7 @@ def integrate_directly(
     """Move the unreduced shells from rest. Collective.
 
     Args:
-        full: what moves.
+        full: a flat boom with constant loads and prescribed normal forces.
         duration: in s; a whole number of output steps is made, at least one.
         step: in s, made smaller to fit the output step.
         output_step: in s.
@@ -151,16 +84,17 @@ def integrate_directly(
         energy_bound: largest energy residual that passes.
 
     Raises:
+        BoomError: it has what the direct integration does not take.
         NumericsError: forces are not found, numbers are not finite, or the energy residual passes
             its bound.
     """
+    _check(full)
     outputs = max(1, round(duration / output_step))
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     alpha = GeneralisedAlpha(output_step / substeps, radius)
-    resisting = [c.reading for c in full.contacts] + [f.reading for f in full.frictions]
     steppers = [
-        SegmentStepper(shell, load, _rows(resisting, number, shell), alpha)
-        for number, (shell, load) in enumerate(zip(full.shells, full.loads, strict=True))
+        SegmentStepper(shell, load, _rows(full.resisting, number, shell), alpha)
+        for number, (shell, load) in enumerate(zip(full.shells, full.own_loads, strict=True))
     ]
     try:
         return _march(full, alpha, steppers, outputs, substeps, energy_bound)
@@ -169,8 +103,21 @@ def integrate_directly(
             stepper.destroy()
 
 
+def _check(full: BoomShell) -> None:
+    in_space = any(direction == "y" for _, direction in full.stations)
+    if in_space or full.loads or full.ties:
+        raise BoomError(
+            "joint",
+            "the unreduced shell moves in the plane, under constant loads, without tied joints",
+        )
+    if any(contact.law.damping > 0.0 for contact in full.rows.contacts):
+        raise BoomError("joint", "the unreduced shell takes contacts without damping")
+    if any(friction.law.pressed_by for friction in full.rows.frictions):
+        raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
+
+
 def _march(
-    full: FullShell,
+    full: BoomShell,
     alpha: GeneralisedAlpha,
     steppers: Sequence[SegmentStepper],
     outputs: int,
@@ -179,17 +126,17 @@ def _march(
 ) -> DirectMotion:
     """Make ``substeps`` steps for each of the outputs."""
     rows = ResistingRows(
-        [contact.law for contact in full.contacts],
-        [friction.law for friction in full.frictions],
+        [contact.law for contact in full.rows.contacts],
+        [friction.law for friction in full.rows.frictions],
         np.sum([stepper.compliance for stepper in steppers], axis=0),
         1.0 / (1.0 - alpha.force_shift),
     )
-    readings = list(full.observers.values())
+    readings = [reading for reading, _ in full.observed.values()]
     observers = [_rows(readings, number, shell) for number, shell in enumerate(full.shells)]
-    contacts = len(full.contacts)
+    contacts = len(full.rows.contacts)
     observed = np.zeros((outputs + 1, len(readings)))
-    means = np.zeros((outputs + 1, contacts + len(full.frictions)))
-    slides = np.zeros((outputs + 1, len(full.frictions)))
+    means = np.zeros((outputs + 1, contacts + len(full.rows.frictions)))
+    slides = np.zeros((outputs + 1, len(full.rows.frictions)))
     energies = np.zeros((outputs + 1, len(ENERGIES)))
     energies[0, 2] = rows.contact_energy
     for k in range(1, outputs + 1):
@@ -211,7 +158,7 @@ def _march(
             check_energy(energies[: k + 1], alpha.step, energy_bound)
     return DirectMotion(
         time=substeps * alpha.step * np.arange(outputs + 1),
-        observed=dict(zip(full.observers, observed.T, strict=True)),
+        observed=dict(zip(full.observed, observed.T, strict=True)),
         contact_forces=means[:, :contacts],
         friction_forces=-means[:, contacts:],
         slides=slides,

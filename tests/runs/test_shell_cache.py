@@ -21,7 +21,7 @@ from runs.folder import records
 from runs.folder.cache import Cache
 from runs.pipeline.models import build, workshop
 from runs.process.shown import shown
-from shell_model.boom_shell import ReducedShell
+from shell_model.reduced_shell import ReducedShell
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,8 @@ from mpi4py import MPI
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Stop
 from runs.pipeline.shell_output import ShellOutput
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 
 pytestmark = pytest.mark.slow

@@ -115,8 +115,9 @@ def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
         from mpi4py import MPI
 
-        from shell_model.boom_shell import ShellOptions, reduce_boom
+        from shell_model.boom_shell import ShellOptions
         from shell_model.contact.surface import SurfaceOptions
+        from shell_model.reduced_shell import reduce_boom
 
         options = ShellOptions(
             mesh_size=0.05 * boom.segments[0].length,

@@ -18,7 +18,8 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 

@@ -14,7 +14,8 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.boom import BoomError
 from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -18,15 +18,18 @@ from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
+from dynamics.gap_builder import GapBuilder
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Stop
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from geometry.boom import Boom, BoomError, Direction, Stop
+from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
+from shell_model.cross_section import Reading
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha
-from shell_model.verification.unreduced import FullShell, assemble_boom, integrate_directly
+from shell_model.verification.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 
 _SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)
@@ -35,12 +38,12 @@ _SHORT_MOTION = """
 import json
 from dataclasses import replace
 from mpi4py import MPI
-from shell_model.boom_shell import ShellOptions
-from shell_model.verification.unreduced import assemble_boom, integrate_directly
+from shell_model.boom_shell import ShellOptions, assemble_boom
+from shell_model.verification.unreduced import integrate_directly
 from tests.shell_model.booms import LAW, flat_boom
 comm = MPI.COMM_WORLD
 law = replace(LAW, stiffness=1.0e9, exponent=1.0)
-full = assemble_boom(flat_boom(friction=0.2), [law], ShellOptions(1.0), comm)
+full = assemble_boom(flat_boom(friction=0.2), {"z": [law]}, ShellOptions(1.0), comm)
 motion = integrate_directly(full, 0.1, 5.0e-4)
 if comm.rank == 0:
     print(json.dumps([comm.size, motion.observed["tip"].tolist(), motion.energy_residual]))
@@ -71,9 +74,10 @@ class _Loaded:
         self._omega, self._gains = np.sqrt(omega2[few]), gains[few]
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
-        observers = {"tip": {0: tip}}
+        observed = {"tip": (Reading({0: tip}), "m")}
         self.few, self.all = (
-            FullShell(MPI.COMM_WORLD, [shell], [push], [], [], observers) for push in (narrow, load)
+            BoomShell(MPI.COMM_WORLD, [shell], [], GapBuilder(), [], [push], [], observed)
+            for push in (narrow, load)
         )
 
     def tip(self, time: Array) -> Array:
@@ -89,8 +93,9 @@ def loaded() -> _Loaded:
 
 
 @cache
-def _full(boom: Boom, size: float = 0.5) -> FullShell:
-    return assemble_boom(boom, [_SOFT] * len(boom.joints), ShellOptions(size), MPI.COMM_SELF)
+def _full(boom: Boom, size: float = 0.5) -> BoomShell:
+    laws = {"z": [_SOFT] * len(boom.joints)}
+    return assemble_boom(boom, laws, ShellOptions(size), MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
@@ -195,7 +200,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     exact = reference.data["tip"].values
     assert reference.first_contact < 0.38
     assert np.abs(motion.observed["tip"] - exact).max() < 1.0e-3 * np.ptp(exact)
-    at = [[contact.station == station for contact in full.contacts] for station in (0, 1)]
+    at = [[contact.station == station for contact in full.rows.contacts] for station in (0, 1)]
     pushed = motion.friction_forces - motion.contact_forces @ np.array(at).T
     data = reference.data
     given = (data["friction_force"] - data["contact_force"]).sum("time").values
@@ -239,8 +244,12 @@ def test_two_ranks_give_the_serial_motion(
     ],
 )
 def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message: str) -> None:
+    laws: Mapping[Direction, list[PowerContact]] = dict.fromkeys(
+        boom.directions, [law] * len(boom.joints)
+    )
+    full = assemble_boom(boom, laws, ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
-        assemble_boom(boom, [law] * len(boom.joints), ShellOptions(2.0), MPI.COMM_SELF)
+        integrate_directly(full, 1.0e-3, 1.0e-3)
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,9 @@ from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.cross_section import Reading, Row
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
 

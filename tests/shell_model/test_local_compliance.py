@@ -12,8 +12,9 @@ import pytest
 from mpi4py import MPI
 
 from geometry.boom import Boom, Stop
-from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import SLOW, compliance
+from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 

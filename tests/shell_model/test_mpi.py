@@ -18,7 +18,8 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
@@ -45,7 +46,8 @@ if comm.rank == 0:
 _REDUCED = """
 import json
 from mpi4py import MPI
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 comm = MPI.COMM_WORLD
 boom = boom_in_space(friction=0.2, sideways=0.3)

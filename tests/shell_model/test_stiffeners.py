@@ -21,8 +21,9 @@ from dynamics.excitation import Step
 from geometry.boom import Collar, Diaphragm, Load, Segment, Support
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.section import BoxSection
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.pictures.deformation import MovingShell
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment_shell import SegmentShell, assemble_segment

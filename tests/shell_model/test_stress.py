@@ -16,7 +16,8 @@ from mpi4py import MPI
 from geometry.arrays import Array
 from geometry.boom import Boom, Diaphragm, Support
 from geometry.mesh import SegmentMesh, diaphragm_breaks, mesh_segment
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
@@ -222,7 +223,8 @@ _ON_RANKS = """
 import json
 import numpy as np
 from mpi4py import MPI
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LAW, flat_boom
 shell = reduce_boom(flat_boom(), [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
 if MPI.COMM_WORLD.rank == 0:

@@ -20,10 +20,11 @@ from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, PadSize
 from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_points import Wall, WallPoints
 from shell_model.cross_section import COMPONENT
+from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom

@@ -18,10 +18,11 @@ from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Sup
 from geometry.contact_places import Stretch
 from geometry.section import Section
 from geometry.unequal_box import UnequalBox
-from shell_model.boom_shell import ReducedShell, ShellOptions, reduce_boom
+from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints
 from shell_model.cross_section import Row
+from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LAW, box_segment, flat_boom

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
-    from shell_model.boom_shell import ReducedShell
+    from shell_model.reduced_shell import ReducedShell
 
 
 @dataclass(frozen=True, slots=True)

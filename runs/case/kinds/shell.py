@@ -90,7 +90,7 @@ class ShellTable(ModelTable):
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
-        from shell_model.boom_shell import reduce_boom
+        from shell_model.reduced_shell import reduce_boom
 
         assert workshop is not None
         comm, folder = workshop.comm, workshop.mesh_folder

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""From plates to a gap system: the boom's shells reduced, with the errors of reduction and mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from mpi4py import MPI
+
+from dynamics.contact import ContactLaw
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom, Direction
+from geometry.mesh import SegmentMesh
+from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
+from shell_model.contact.local_compliance import compliance, extrapolated_error
+from shell_model.contact.surface import without_stiff_modes
+from shell_model.reduction.coordinates import BoomCoordinates
+from shell_model.reduction.segment import ReducedSegment, reduce_segment
+from shell_model.stress.fields import gather_fields
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedShell:
+    """A gap system and what it cost to get there.
+
+    Args:
+        system: of all segments.
+        num_dofs: of the shells before the reduction.
+        fields: displacement of every mesh vertex for each mode, on rank 0 (see ``fields``).
+        errors: measured reduction errors, the worst over the segments: ``contact_compliance`` as a
+            part of the local one, NaN where there is none, ``readings`` relative, and
+            ``frequency_limit_in_hz`` up to which each mode is right in itself.
+        local_compliance: (num_rows,) of the contacts in m/N, see
+            :func:`shell_model.contact.local_compliance.local_compliance`.
+        mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
+            there is none.
+        seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
+            values for each coordinate), reduction, fields (of displacement and stress), mesh error.
+        meshes: of the segments, on rank 0.
+    """
+
+    system: GapSystem
+    num_dofs: int
+    fields: xr.Dataset | None
+    errors: dict[str, float]
+    local_compliance: Array
+    mesh_error: float
+    seconds: dict[str, float]
+    meshes: Sequence[SegmentMesh]
+
+
+def reduce_boom(
+    boom: Boom,
+    laws: Sequence[ContactLaw],
+    options: ShellOptions,
+    comm: MPI.Comm,
+    progress: Callable[[str, float], None] | None = None,
+    lateral_laws: Sequence[ContactLaw] = (),
+) -> ReducedShell:
+    """Mesh, assemble and reduce every segment. Collective.
+
+    Args:
+        boom: all its segments with sections.
+        laws: one for each joint, along z.
+        options: mesh, contact points, reduction.
+        comm: the ranks that share the work; the result is the same on each.
+        progress: called with the stage and the part of it that is done.
+        lateral_laws: one for each joint, along y; none for a flat boom.
+
+    Raises:
+        BoomError: a segment has no section, or the contact line does not suit the boom.
+    """
+    stages = Stages(progress)
+    planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
+    full = assemble_boom(boom, planes, options, comm, stages)
+    reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
+    coordinates = BoomCoordinates(comm, full.shells, reduced, full.ties)
+    with stages.stage("rows"):
+        system = _gap_system(full, coordinates)
+    with stages.stage("fields"):
+        fields = gather_fields(full.shells, reduced)
+        if fields is not None:
+            fields = coordinates.of_fields(fields)
+    with stages.stage("mesh error"):
+        local = full.local_compliance(_compliance(full, reduced))
+        coarse = assemble_boom(boom, planes, options.coarser, comm)
+        coarse_local = coarse.local_compliance(coarse.full_compliance())
+        mesh_error = extrapolated_error(local, coarse_local, options.order)
+    return ReducedShell(
+        system=system,
+        num_dofs=full.num_dofs,
+        fields=fields,
+        errors={
+            "contact_compliance": _largest(_lost_compliance(full, reduced) / local),
+            "readings": max(segment.reading_error for segment in reduced),
+            "frequency_limit_in_hz": min(segment.frequency_limit for segment in reduced),
+        },
+        local_compliance=local,
+        mesh_error=_largest(mesh_error),
+        seconds=stages.seconds,
+        meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
+    )
+
+
+def _reduced(full: BoomShell, number: int, options: ShellOptions, stages: Stages) -> ReducedSegment:
+    """A segment by the motions that its forces excite and its observers read."""
+    shell, krylov, joined = full.shells[number], options.krylov, full.joined(number)
+    at_surface = options.contact_line == "surface"
+    if at_surface:
+        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
+    observed = full.columns(number, [reading for reading, _ in full.observed.values()])
+    with stages.stage("reduction", number, len(full.shells)) as tell:
+        own = reduce_segment(shell, full.forces(number), krylov, tell, readings=observed)
+        if at_surface and joined.size:
+            own = without_stiff_modes(full.comm, own, joined)
+    return own
+
+
+def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
+    """The boom in its coordinates."""
+    own_loads = [coordinates.push(number, load) for number, load in enumerate(full.own_loads)]
+    return full.rows.system(
+        coordinates.row,
+        coordinates.omega2,
+        np.sum(own_loads, axis=0),
+        full.stations,
+        full.observed,
+        [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],
+    )
+
+
+def _compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:
+    """(num_contacts, num_contacts) of the contacts, the segments apart."""
+    apart = BoomCoordinates(full.comm, full.shells, reduced, ())
+    rows = np.array([apart.row(contact.reading) for contact in full.rows.contacts])
+    return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size))
+
+
+def _lost_compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:
+    """(num_contacts,) what the reduction takes from it at most, in m/N."""
+    lost = np.zeros(len(full.rows.contacts))
+    for number, segment in enumerate(reduced):
+        touching = [i for i, row in enumerate(full.rows.contacts) if number in row.reading]
+        lost[touching] += segment.lost_compliance[: len(touching)]
+    return lost
+
+
+def _largest(parts: Array) -> float:
+    """Of those that are known; NaN where none is."""
+    return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
