@@ -19,7 +19,7 @@ from runs.studies.pads import flexibility_table
 from runs.studies.study import Study
 
 # From the paper's series to the shell: what is changed, and the model that has it.
-WALK = (
+LADDER = (
     ("the paper's five-term series", "kantorovich-5"),
     ("linear contact", "kantorovich-5-linear"),
     ("more terms", "kantorovich-24-printed"),
@@ -31,18 +31,18 @@ WALK = (
     ("section distortion", "timoshenko-distorting"),
     ("plates", "shell"),
 )
-# Up to when the walk is to explain all but a hundredth, in s.
+# Up to when the ladder is to explain all but a hundredth, in s.
 EXPLAINED = 5.0
 
 
-def walk(case: Case) -> Table:
-    """Each step of ``WALK``: what it changes of the tip, and what it leaves to the shell, largest
+def rungs(case: Case) -> Table:
+    """Each rung of ``LADDER``: what it changes of the tip, and what it leaves to the shell, largest
     differences as parts of the shell's range.
 
     Args:
         case: with its models.
     """
-    names = [name for _, name in WALK]
+    names = [name for _, name in LADDER]
     runs = trajectories(case_file.select(case, str(CASE), names))
     # A selection keeps the case's order.
     order = [model.name for model in case.models if model.name in names]
@@ -56,7 +56,7 @@ def walk(case: Case) -> Table:
 
     before = [names[0], *names[:-1]]
     return Table.of_rows(
-        "walk",
+        "ladder",
         "From the paper's series to the shell",
         {
             "with": "",
@@ -68,17 +68,17 @@ def walk(case: Case) -> Table:
         },
         [
             (what, name, *apart(name, previous), *apart(name, names[-1]))
-            for (what, name), previous in zip(WALK, before, strict=True)
+            for (what, name), previous in zip(LADDER, before, strict=True)
         ],
     )
 
 
 def study(tell: Callable[[str], None]) -> Study:
-    """The walk, and how much more the shell's stations give way than a beam's."""
+    """The ladder, and how much more the shell's stations give way than a beam's."""
     case = friction_case()
     tell("the models from the series to the shell")
-    steps = walk(case)
+    steps = rungs(case)
     tell("flexibility of the stations")
     shell = gap_system(case, build_boom(case), model_of(case, "shell"))
     flexibility = flexibility_table([("the shell's stations", case, shell)])
-    return Study("walk", "From the paper's series to the shell", [steps, flexibility])
+    return Study("model-ladder", "From the paper's series to the shell", [steps, flexibility])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runs.case.schema import Case
-from runs.studies.model_ladder import WALK
+from runs.studies.model_ladder import LADDER
 from runs.studies.motions import friction_case
 from runs.studies.refinement import Refinement, refine, with_step
 
@@ -38,6 +38,6 @@ def test_a_finer_step_settles_with_the_splitting_s_order(case: Case) -> None:
     assert found.rows[-1][2] is None
 
 
-def test_the_walk_has_its_models(case: Case) -> None:
+def test_the_ladder_has_its_models(case: Case) -> None:
     names = [model.name for model in case.models]
-    assert [name for _, name in WALK] == names
+    assert [name for _, name in LADDER] == names
