@@ -43,6 +43,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import build
+from runs.process import notices
 from runs.report.tables import Table, wide_console
 from runs.report.theme import repeated
 from runs.studies.motions import gap_system, model_of, shell_of
@@ -319,6 +320,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
+    notices.show()
     shown_on = wide_console()
     bench(Sizes(), OUT, shown_on)
     scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)

@@ -32,6 +32,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
+from runs.process import notices
 from runs.report.tables import Table, wide_console
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
@@ -268,6 +269,7 @@ def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
+    notices.show()
     if len(sys.argv) > 1:
         _run(*sys.argv[1:])
     else:

@@ -43,6 +43,7 @@ from runs.paper.reading import (
     judge_reading,
 )
 from runs.paper.rules import DIVERGENCE
+from runs.process import notices
 from runs.report.pages import page
 from runs.report.tables import TextTable, write
 from runs.report.theme import number
@@ -213,4 +214,5 @@ def load(folder: Path, case: Case) -> list[TextTable]:
 
 
 if __name__ == "__main__":
+    notices.show()
     survey(all_readings(), OUT, Console())

@@ -18,6 +18,7 @@ from PIL import Image
 from runs.case.messages import BadInput
 from runs.folder.files import whole
 from runs.pipeline.results import FIELDS, Results, read_fields
+from runs.process import notices
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.rendering import TITLES, require_opengl, telling_instants
@@ -76,6 +77,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
 
 def main() -> int:
     """Write the gallery; the exit status."""
+    notices.show()
     GALLERY.mkdir(parents=True, exist_ok=True)
     try:
         for name, picture in pictures(RUNS):

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import io
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
@@ -95,3 +98,26 @@ class _Here:
         future: Future[object] = Future()
         future.set_result(task(name))
         return future
+
+
+def test_what_libraries_tell_their_callers_is_not_shown(tmp_path: Path) -> None:
+    program = """
+import sys, warnings
+from runs.studies import convergence
+
+def survey(*_):
+    warnings.warn("of a library")
+    return []
+
+convergence.survey = survey
+convergence.main()
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "always", "-c", program],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stderr == ""
