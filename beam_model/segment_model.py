@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -43,9 +43,7 @@ def gap_system(
         pressing = rows.press(pad.station, law, [(pad.side, pad.weight, approach)])
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
-        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        row = modes.displacement(stop.segment, stop.x, "z")
-        rows.stop(station, law, [(0, 1.0, row)])
+        rows.stop(station, stop, [(0, 1.0, modes.displacement(stop.segment, stop.x, "z"))])
     return rows.system(
         lambda row: row,
         modes.omega2,

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw
+from dynamics.contact import ContactLaw, PowerContact
 from dynamics.excitation import Excitation, History, Released, Thrown
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
@@ -35,6 +35,19 @@ class Friction(NamedTuple, Generic[R]):
 
     reading: R
     law: DryFriction
+
+
+class Stop(Protocol):
+    """What of a stop on the ground makes its law, a :class:`dynamics.contact.PowerContact`."""
+
+    @property
+    def stiffness(self) -> float: ...
+    @property
+    def exponent(self) -> float: ...
+    @property
+    def clearance(self) -> float: ...
+    @property
+    def stiffness_below(self) -> float: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +82,9 @@ class GapBuilder(Generic[R]):
                 self.contacts.append(Contact(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 
-    def stop(self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]) -> None:
+    def stop(self, station: int, stop: Stop, points: Iterable[tuple[int, float, R]]) -> None:
         """Contact with the ground, as of :meth:`press`."""
+        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
         self.grounded.append(station)
         self.press(station, law, points)
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine, Pad, pads, rests
@@ -68,9 +68,7 @@ def gap_rows(
             pressing = rows.press(pad.station, law, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
     for rest, meeting in zip(resting, stopped, strict=True):
-        stop = rest.stop
-        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        rows.stop(rest.station, law, meeting)
+        rows.stop(rest.station, rest.stop, meeting)
     return rows
 
 
