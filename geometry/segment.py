@@ -28,7 +28,7 @@ class BoomError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³.
+    """Isotropic linear elasticity: E in Pa, ν, density in kg/m³; yield strength in Pa, where known.
 
     >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     >>> print(f"{1e-9 * steel.shear_modulus:.1f} GPa")
@@ -38,6 +38,7 @@ class Material:
     youngs_modulus: float
     poissons_ratio: float
     density: float
+    yield_strength: float | None = None
 
     @property
     def shear_modulus(self) -> float:

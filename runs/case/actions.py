@@ -6,43 +6,49 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import cosdg
 
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import BoomError, Segment, Stop
+from geometry.boom import BoomError, Direction, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad
 from runs.case.messages import choices
-from runs.case.schema import Case, HistoryTable, LoadTable
+from runs.case.schema import Case, GravityTable, HistoryTable, LoadTable
+
+STANDARD_GRAVITY = 9.80665
 
 
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Loads from t = 0 on, those released at t = 0, and those whose impulse throws a segment.
+    """Weights and loads from t = 0 on, those released then, those whose impulse throws a segment.
 
-    :func:`start` makes of the latter two what they leave at t = 0.
+    :func:`start` makes of the last two what they leave at t = 0.
 
     Raises:
-        BoomError: a name that is no segment, a history that cannot be.
+        BoomError: a name that is no segment, a history that cannot be, a payload's own gravity
+            beside that of all.
     """
+    if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
+        raise BoomError(
+            "payload.gravity",
+            "the table gravity is given, by which the payload weighs too; leave one of them out",
+        )
     given = [
         _load(f"load[{number}]", table, segments)
         for number, table in enumerate(case.loads, start=1)
     ]
     last = len(segments) - 1
-    if case.payload is not None and case.payload.gravity > 0.0:
-        weight = -case.payload.mass * case.payload.gravity
-        given.append(Load(last, "z", weight, segments[last].end, Step()))
+    if case.payload is not None and case.gravity is None:
+        gravity = STANDARD_GRAVITY if case.payload.gravity is None else case.payload.gravity
+        if gravity > 0.0:
+            weight = -case.payload.mass * gravity
+            given.append(Load(last, "z", weight, segments[last].end, Step()))
+    if case.gravity is not None:
+        given += _felt(-across(case.gravity), "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
         history = _history(f"base[{number}]", base)
-        for index, segment in enumerate(segments):
-            felt = -base.acceleration
-            inertia = felt * segment.mass_per_length
-            given.append(Load(index, base.direction, inertia, None, history, inertial=True))
-            given += [
-                Load(index, base.direction, felt * point.mass, point.x, history)
-                for point in segment.masses
-            ]
+        given += _felt(-base.acceleration, base.direction, history, segments)
     for name, speed in case.start.velocity.items():
         index = _segment("start.velocity", name, segments)
         momentum = speed * segments[index].mass_per_length
@@ -52,6 +58,36 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
             for point in segments[index].masses
         ]
     return tuple(given)
+
+
+def _felt(
+    acceleration: float, direction: Direction, history: History, segments: Sequence[Segment]
+) -> list[Load]:
+    """What all masses feel of an acceleration in m/s²."""
+    return [
+        load
+        for index, segment in enumerate(segments)
+        for load in (
+            Load(
+                index,
+                direction,
+                acceleration * segment.mass_per_length,
+                None,
+                history,
+                inertial=True,
+            ),
+            *(
+                Load(index, direction, acceleration * point.mass, point.x, history)
+                for point in segment.masses
+            ),
+        )
+    ]
+
+
+def across(gravity: GravityTable) -> float:
+    """g cos θ in m/s², towards −z."""
+    # That of 90° would be 6e-17.
+    return gravity.acceleration * float(cosdg(gravity.angle))
 
 
 def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:

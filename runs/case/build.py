@@ -116,7 +116,7 @@ def _joint(case: Case, index: int) -> Joint:
 
 def _segment(case: Case, index: int, section: Section | None) -> Segment:
     table = case.segments[index]
-    material = Material(**case.material.model_dump())
+    material = material_of(case, index)
     mass, second_moment = _beam_numbers(case, index)
     rotary = table.rotary_inertia
     return Segment(
@@ -136,6 +136,18 @@ def _segment(case: Case, index: int, section: Section | None) -> Segment:
         collars=tuple(Collar(*collar.span, collar.thickness) for collar in table.collars),
         diaphragms=tuple(Diaphragm(**plate.model_dump()) for plate in table.diaphragms),
     )
+
+
+def material_of(case: Case, index: int) -> Material:
+    """A segment's own material, or the case's."""
+    table = case.segments[index].material or case.material
+    if table is None:
+        raise BoomError(
+            "material",
+            f"missing, and {case.segments[index].name!r} has none of its own; it is "
+            f"{Case.model_fields['material'].description}",
+        )
+    return Material(**table.model_dump())
 
 
 def _masses(case: Case, index: int) -> tuple[PointMass, ...]:
@@ -190,7 +202,7 @@ def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
     if section is not None:
         _check_plates(case, index, section)
-        mass = mass or section.mass_per_length(case.material.density)
+        mass = mass or section.mass_per_length(material_of(case, index).density)
         second_moment = second_moment or section.second_moment_of_area
     if mass is None:
         raise _missing(index, "mass_per_length")
@@ -207,8 +219,9 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
         raise BoomError(f"{where}.height_to_width", "the section is given; leave one of them out")
     if not any(model.meshed for model in case.models):
         return
+    density = material_of(case, index).density
     for key, given, own in (
-        ("mass_per_length", table.mass_per_length, section.mass_per_length(case.material.density)),
+        ("mass_per_length", table.mass_per_length, section.mass_per_length(density)),
         ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
     ):
         if given is not None and abs(given / own - 1.0) > SAME_SECTION:
@@ -254,7 +267,7 @@ def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Secti
     None where there is none and no model needs it.
     """
     mass, second_moment = _beam_numbers(case, index)
-    area = mass / case.material.density
+    area = mass / material_of(case, index).density
     try:
         if isinstance(hint, tuple):
             return infer_inner_section(area, second_moment, *hint)

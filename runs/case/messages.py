@@ -32,6 +32,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "stop": schema.StopTable,
     "load": schema.LoadTable,
     "payload": schema.PayloadTable,
+    "gravity": schema.GravityTable,
     "base": schema.BaseTable,
     "start": schema.StartTable,
     "damping": schema.DampingTable,

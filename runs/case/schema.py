@@ -65,13 +65,16 @@ class EnsembleTable(Table):
 
 
 class MaterialTable(Table):
-    """Isotropic linear elasticity, the same for all segments."""
+    """Isotropic linear elasticity: the case's for all segments, or a segment's own."""
 
     youngs_modulus: Positive = Field(description="Young's modulus E in Pa")
     poissons_ratio: Annotated[float, Field(strict=True, gt=-1.0, lt=0.5)] = Field(
         description="Poisson's ratio"
     )
     density: Positive = Field(description="the density in kg/m^3")
+    yield_strength: Positive | None = Field(
+        None, description="the yield strength in Pa, beside which a run shows stresses"
+    )
 
 
 class SupportTable(Table):
@@ -123,6 +126,9 @@ class SegmentTable(Table):
 
     name: Name = Field(description="what the joints and the results call the segment")
     span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    material: MaterialTable | None = Field(
+        None, description="the table of the segment's own material; the case's unless given"
+    )
     supports: Annotated[tuple[Support, ...], Few] = Field(
         (), description="the places that the ground holds: an x in m each, or a table"
     )
@@ -247,9 +253,19 @@ class PayloadTable(Table):
     """A mass at the tip."""
 
     mass: Positive = Field(description="the mass in kg")
-    gravity: NotNegative = Field(
-        9.80665,
-        description="the acceleration in m/s^2 by which it weighs down from t = 0; 0 for none",
+    gravity: NotNegative | None = Field(
+        None,
+        description="the acceleration in m/s^2 by which it alone weighs down from t = 0, 0 for "
+        "none; 9.80665 unless given, or that of the table gravity",
+    )
+
+
+class GravityTable(Table):
+    """By what everything weighs."""
+
+    acceleration: NotNegative = Field(9.80665, description="the acceleration in m/s^2")
+    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0)] = Field(
+        0.0, description="the luffing angle of the boom in degrees, positive where the tip is up"
     )
 
 
@@ -301,7 +317,11 @@ class Case(Table):
     ensemble: EnsembleTable | None = Field(
         None, description="the table of the ensembles; none are run unless given"
     )
-    material: MaterialTable = Field(description="the table of the elastic constants and density")
+    material: MaterialTable | None = Field(
+        None,
+        description="the table of the elastic constants and density of all segments that have "
+        "none of their own",
+    )
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
         Field(
             alias="segment",
@@ -318,6 +338,11 @@ class Case(Table):
         (), alias="load", description="the loads that are not uniform or not constant"
     )
     payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
+    gravity: GravityTable | None = Field(
+        None,
+        description="the table of the weight of all masses, across and along the boom; nothing "
+        "weighs but the payload unless given",
+    )
     base: Annotated[tuple[BaseTable, ...], Few] = Field(
         (), description="the accelerations of the ground"
     )

@@ -3,11 +3,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from runs.case.build import material_of
+from runs.case.schema import Case
 from runs.pipeline.results import Results
 from runs.report.tables import Column, Table
 from runs.report.theme import number
 
-PER_KILO, PER_MEGA = 1.0e-3, 1.0e-6
+if TYPE_CHECKING:
+    from shell_model.stress.summary import StressSummary
+
+PER_KILO, PER_MEGA, PERCENT = 1.0e-3, 1.0e-6, 100.0
 
 
 def wall_tables(results: Results) -> list[Table]:
@@ -32,8 +39,9 @@ def wall_tables(results: Results) -> list[Table]:
     )
     largest = [
         f"{name}, at {stress.time:.3f} s: the largest von Mises stress of the run, "
-        f"{number(PER_MEGA * stress.von_mises, 3)} MPa, at x = {stress.x:.2f} m in "
-        f"{stress.segment!r}, {stress.face} face of the wall {stress.wall!r}."
+        f"{number(PER_MEGA * stress.von_mises, 3)} MPa{_of_yield(results.case, stress)}, at "
+        f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
+        f"{stress.wall!r}."
         for name, stress in shells.items()
     ]
     means = (
@@ -43,3 +51,12 @@ def wall_tables(results: Results) -> list[Table]:
     )
     title = "What the walls carry at the instant of the largest stress"
     return [Table(title, columns, (*largest, means), "walls")]
+
+
+def _of_yield(case: Case, stress: StressSummary) -> str:
+    """What part of the yield strength it is, where the case tells that."""
+    names = [segment.name for segment in case.segments]
+    strength = material_of(case, names.index(stress.segment)).yield_strength
+    if strength is None:
+        return ""
+    return f" ({number(PERCENT * stress.von_mises / strength, 3)} % of the yield strength)"

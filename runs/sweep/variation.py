@@ -59,7 +59,7 @@ class Place:
     def shapes_sections(self) -> bool:
         """As :attr:`Variation.shapes_sections`."""
         if self.steps[0] == "segment":
-            return self.steps[2] in {
+            return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
             }  # fmt: skip
         return self.steps == ("material", "density")

@@ -79,7 +79,7 @@ def test_check_prints_the_ratios_that_modes_get(protractile: Protractile) -> Non
 def test_schema_is_the_case_s_json_schema(protractile: Protractile) -> None:
     answer = protractile("schema")
     assert (answer.status, answer.err) == (0, "")
-    assert {"time", "material", "segment", "model"} <= set(json.loads(answer.out)["required"])
+    assert {"time", "segment", "model"} <= set(json.loads(answer.out)["required"])
 
 
 @pytest.mark.parametrize("command", ["run", "check"])

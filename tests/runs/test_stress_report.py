@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -78,3 +79,15 @@ def test_the_table_says_what_each_wall_carries() -> None:
 def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
     assert wall_tables(results(None)) == []
     assert stress_history(Pen(results(None), tmp_path)) == []
+
+
+def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known() -> None:
+    """Reference: 91.6 MPa of 355 MPa."""
+    plain = results(STRESS)
+    material = plain.case.material
+    assert material is not None
+    steel = material.model_copy(update={"yield_strength": 355e6})
+    known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
+    said = [table.notes[0] for found in (plain, known) for table in wall_tables(found)]
+    assert "91.6 MPa, at x" in said[0]
+    assert "91.6 MPa (25.8 % of the yield strength), at x" in said[1]

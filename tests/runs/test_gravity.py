@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a boom weighs, and what its segments are made of, from the case file on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.section import BoxSection
+from protractile.cases import run_case
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+
+STEEL = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\nyield_strength = 690e6\n"
+ALUMINIUM = "{ youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0 }"
+ARM = """
+title = "Arm"
+[time]
+duration = 0.1
+{material}
+[[segment]]
+name = "arm"
+span = [0.0, 10.0]
+supports = [{{ x = 0.0, kind = "clamped" }}]
+section = {{ height = 0.4, width = 0.3, flange = 0.01, web = 0.008 }}
+{segment}
+[[model]]
+name = "beam"
+kind = "finite-element"
+element_length = 2.5
+rotary_inertia = false
+{rest}
+"""
+BOX = BoxSection(height=0.4, width=0.3, flange=0.01, web=0.008)
+AREA, SECOND_MOMENT = BOX.area, BOX.second_moment_of_area
+LIFTED = """
+masses = [{ x = 4.0, mass = 120.0 }]
+[payload]
+mass = 500.0
+[start]
+state = "equilibrium"
+"""
+
+
+def written(folder: Path, rest: str = "", material: str = "", segment: str = "") -> Path:
+    path = folder / "case.toml"
+    material = material or f"[material]\n{STEEL}"
+    text = ARM.format(material=material, segment=segment, rest=rest)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def read(folder: Path, rest: str = "", material: str = "", segment: str = "") -> Case:
+    return case_file.load(str(written(folder, rest, material, segment)))
+
+
+def tip(case: Case) -> np.ndarray:
+    return np.asarray(run_case(case).trajectories["tip"].values[0])
+
+
+@pytest.mark.parametrize("angle", [0.0, 60.0, -30.0])
+def test_everything_weighs_across_the_boom(tmp_path: Path, angle: float) -> None:
+    """Reference: analytic. q L⁴/8 + F L³/3 + m a² (3L − a)/6 over E J, at rest under all of it."""
+    gravity = f"[gravity]\nangle = {angle}\n"
+    moved = tip(read(tmp_path, gravity, segment=LIFTED))
+    across = 9.80665 * np.cos(np.radians(angle))
+    of_all = (7850.0 * AREA * 10.0**4 / 8.0) + 500.0 * 10.0**3 / 3.0 + 120.0 * 16.0 * 26.0 / 6.0
+    expected = -across * of_all / (2.1e11 * SECOND_MOMENT)
+    np.testing.assert_allclose(moved, expected, rtol=1e-6)
+
+
+def test_from_rest_the_boom_swings_about_where_its_weight_holds_it(tmp_path: Path) -> None:
+    """Reference: analytic. It starts straight, falls at the acceleration of the weight, and its
+    tip goes about twice as far as at rest, less what the higher modes do.
+    """
+    falling = read(tmp_path, "[gravity]\n").model_copy(
+        update={"time": read(tmp_path).time.model_copy(update={"duration": 1.0})}
+    )
+    moved = tip(falling)
+    static = tip(read(tmp_path, '[gravity]\n[start]\nstate = "equilibrium"\n'))[0]
+    assert moved[0] == 0.0
+    assert moved.min() == pytest.approx(2.0 * static, rel=0.06)
+
+
+def test_a_payload_weighs_by_itself_alone_without_gravity(tmp_path: Path) -> None:
+    """Reference: analytic, F L³/3 E J of the payload, by the standard acceleration or its own."""
+    rest = '[payload]\nmass = 500.0\n{}\n[start]\nstate = "equilibrium"\n'
+    for line, acceleration in (("", 9.80665), ("gravity = 4.0", 4.0)):
+        moved = tip(read(tmp_path, rest.format(line)))
+        expected = -500.0 * acceleration * 10.0**3 / 3.0 / (2.1e11 * SECOND_MOMENT)
+        np.testing.assert_allclose(moved, expected, rtol=1e-6)
+
+
+def test_a_segment_has_its_own_material(tmp_path: Path) -> None:
+    """Reference: analytic. ρ A and E of each; the case's where a segment says nothing."""
+    (arm,) = build_boom(read(tmp_path, segment=f"material = {ALUMINIUM}")).segments
+    assert arm.mass_per_length == pytest.approx(2700.0 * AREA, rel=1e-12)
+    assert arm.bending_stiffness == pytest.approx(7e10 * SECOND_MOMENT, rel=1e-12)
+    assert arm.rotary_inertia == pytest.approx(2700.0 * SECOND_MOMENT, rel=1e-12)
+    (arm,) = build_boom(read(tmp_path)).segments
+    assert (arm.material.density, arm.material.yield_strength) == (7850.0, 690e6)
+
+
+def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Path) -> None:
+    case = read(tmp_path, material="# none\n", segment=f"material = {ALUMINIUM}")
+    (arm,) = build_boom(case).segments
+    assert arm.material.youngs_modulus == 7e10
+    again = tmp_path / "again.toml"
+    again.write_text(toml.dumps(case), encoding="utf-8")
+    assert case_file.load(str(again)) == case
+
+
+@pytest.mark.parametrize(
+    ("rest", "material", "line"),
+    [
+        (
+            "",
+            "# none\n",
+            "material: missing, and 'arm' has none of its own; it is the table of the elastic "
+            "constants and density of all segments that have none of their own",
+        ),
+        (
+            "[payload]\nmass = 5.0\ngravity = 4.9\n[gravity]\nangle = 60.0",
+            "",
+            "payload.gravity: the table gravity is given, by which the payload weighs too; leave "
+            "one of them out",
+        ),
+        (
+            "[gravity]\nangle = 100.0",
+            "",
+            "gravity.angle: must be a number not greater than 90, got 100.0",
+        ),
+        (
+            "[gravity]\nacceleration = -9.8",
+            "",
+            "gravity.acceleration: must be a number not less than 0, got -9.8",
+        ),
+        (
+            "[gravity]\nluffing = 60.0",
+            "",
+            "gravity.luffing: unknown key; known ones are acceleration, angle",
+        ),
+    ],
+)
+def test_says_what_cannot_weigh(tmp_path: Path, rest: str, material: str, line: str) -> None:
+    path = written(tmp_path, rest, material)
+    with pytest.raises(BadInput) as caught:
+        case_file.load(str(path))
+    assert str(caught.value) == f"{path}: {line}"
