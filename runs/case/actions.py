@@ -155,6 +155,28 @@ def start(system: GapSystem, case: Case) -> tuple[GapSystem, Array, Array]:
     return system, equilibrium(system, held), system.thrown
 
 
+def series_notes(case: Case) -> list[str]:
+    """What happens where a tabled history and the run do not last alike, a line each."""
+    duration = case.time.duration
+    tabled = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
+    tabled += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
+    notes = []
+    for key, table in tabled:
+        if table is None:
+            continue
+        (first, early), (last, late) = table[0], table[-1]
+        said = [
+            *([f"its first value, {early:g}, is held before"] if first > 0.0 else []),
+            *(["what is before t = 0 is left out"] if first < 0.0 else []),
+            *([f"its last value, {late:g}, is held afterwards"] if last < duration else []),
+            *(["what comes after the run is left out"] if last > duration else []),
+        ]
+        if said:
+            lasts = f"lasts from {first:g} to {last:g} s, the run {duration:g} s"
+            notes.append(f"note: the series of {key} {lasts}: {'; '.join(said)}")
+    return notes
+
+
 def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
     names = [segment.name for segment in segments]
     if name not in names:

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Self
 
-from pydantic import AfterValidator, Field, ValidationError, model_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic import AfterValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from geometry.boom import Direction
 from runs.case.limits import (
@@ -20,6 +20,7 @@ from runs.case.limits import (
     Positive,
     Table,
     Text,
+    fault_at,
 )
 
 if TYPE_CHECKING:
@@ -73,9 +74,7 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
         keys = ["stiffness"] if table.stiffness is None else []
         fault = PydanticCustomError("missing", "missing")
     if keys:
-        # A validator's own error would not be at a key.
-        at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
-        raise ValidationError.from_exception_data(type(table).__name__, at)
+        raise fault_at(table, fault, *keys)
 
 
 Forces = Annotated[
@@ -117,6 +116,11 @@ class JointTable(Table):
     )
     force_file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+    force_columns: tuple[Text, Text] | None = Field(
+        None,
+        description="the names of two columns in the heading of the file, of the penetrations and "
+        "of the forces; its only two unless given",
     )
     stiffness: Positive | None = Field(
         None, description="the contact stiffness in N/m^n where the inner segment presses up"
@@ -192,6 +196,11 @@ class ContactTable(Table):
     )
     force_file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+    force_columns: tuple[Text, Text] | None = Field(
+        None,
+        description="the names of two columns in the heading of the file, of the penetrations and "
+        "of the forces; its only two unless given",
     )
     stiffness: Positive | None = Field(None, description="the contact stiffness in N/m^n")
     stiffness_below: NotNegative | None = Field(

@@ -5,14 +5,20 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 
 class Table(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
+    """What a validator of a whole table raises, since its own error would not be at a key."""
+    at = [InitErrorDetails(type=fault, loc=(k,), input=getattr(table, k)) for k in keys]
+    return ValidationError.from_exception_data(type(table).__name__, at)
 
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]

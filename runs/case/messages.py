@@ -93,7 +93,7 @@ def _explain(
     key = _key(location)
     limits = context or {}
     if fault == "missing" and isinstance(location[-1], int):
-        return _key(location[:-1]), f"must be a list of two numbers, got {_shown(value)}"
+        return _key(location[:-1]), f"must be {_pair(location)}, got {_shown(value)}"
     if fault == "missing":
         return key, f"missing; it is {_field(location).description}"
     if fault == "union_tag_not_found":
@@ -128,7 +128,7 @@ def _explain(
     elif fault == "too_short":
         return key, "empty; give at least one"
     elif fault == "too_long" and limits["max_length"] == 2:
-        what = "must be a list of two numbers"
+        what = f"must be {_pair(location)}"
     elif fault == "too_long":
         return key, f"too many; give {limits['max_length']} at most"
     elif fault == "string_too_long":
@@ -146,6 +146,11 @@ def _explain(
     else:
         raise AssertionError(f"the schema has a rule without a message: {fault}")
     return key, f"{what}, got {_shown(value)}"
+
+
+def _pair(location: Sequence[int | str]) -> str:
+    names = any(str(step).endswith("columns") for step in location)
+    return f"a list of two {'names' if names else 'numbers'}"
 
 
 def _key(location: Sequence[int | str]) -> str:

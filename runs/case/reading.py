@@ -14,9 +14,10 @@ from pydantic import ValidationError
 
 from geometry.boom import Boom, BoomError
 from runs.case.build import build_boom, check_names, joined
+from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS, MOST_TIMES
+from runs.case.limits import MOST_MEMBERS
 from runs.case.messages import BadInput, choices
 from runs.case.schema import (
     Case,
@@ -26,7 +27,6 @@ from runs.case.schema import (
     TimeTable,
 )
 from runs.case.user_files import read_text
-from runs.process.shown import shown
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
 MOST_OUTPUTS = 10_000_000
@@ -37,8 +37,7 @@ Law = TypeVar("Law", JointTable, ContactTable)
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
-# Columns of a CSV file.
-_OF_HISTORY, _OF_LAW = "time in s and factor", "penetration in m and force in N"
+_OF_LAW = Column("penetration", "m"), Column("force", "N")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
@@ -176,23 +175,21 @@ def _read_tables(case: Case, path: str) -> Case:
 
     def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
         return tuple(
-            history
-            if history.file is None
-            else history.model_copy(
-                update={"file": None, "table": _pairs(path, f"{key}[{i}].file", history.file)}
-            )
-            for i, history in enumerate(histories, start=1)
+            _history(path, f"{key}[{i}]", history) for i, history in enumerate(histories, start=1)
         )
 
     def contact(key: str, table: Law) -> Law:
+        _check_columns(path, f"{key}.force_columns", table.force_columns, table.force_file)
         if table.force_file is None:
             return table
-        points = _pairs(path, f"{key}.force_file", table.force_file, _OF_LAW)
+        key = f"{key}.force_file"
+        points = read_pairs(path, key, table.force_file, table.force_columns, _OF_LAW).values
         try:
             table_law(points)
         except ValueError as error:
-            raise BadInput(path, f"{key}.force_file", str(error)) from None
-        return table.model_copy(update={"force_file": None, "force_table": points})
+            raise BadInput(path, key, str(error)) from None
+        read = {"force_file": None, "force_columns": None, "force_table": points}
+        return table.model_copy(update=read)
 
     joints = [contact(f"joint[{i}]", joint) for i, joint in enumerate(case.joints, start=1)]
     models = [
@@ -211,29 +208,22 @@ def _read_tables(case: Case, path: str) -> Case:
     )
 
 
-def _pairs(
-    path: str, key: str, file: str, columns: str = _OF_HISTORY
-) -> tuple[tuple[float, float], ...]:
-    remedy = f"give a CSV file of two columns without a heading, {columns}"
-    place = Path(path).parent / file
-    name = f"'{shown(file)}'"
-    try:
-        lines = [line for line in read_text(place).splitlines() if line.partition("#")[0].strip()]
-        if len(lines) > MOST_TIMES:
-            what = f"{name} has {len(lines)} lines; give {MOST_TIMES} at most"
-            raise BadInput(path, key, what)
-        pairs = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.empty((0, 2))
-    except OSError as error:
-        what = f"'{shown(str(place))}' cannot be read ({error.strerror}); {remedy}"
-        raise BadInput(path, key, what) from None
-    except ValueError:
-        raise BadInput(path, key, f"{name} holds other than numbers; {remedy}") from None
-    if len(pairs) < 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise BadInput(path, key, f"{name} has other columns, or one line alone; {remedy}")
-    if (np.diff(pairs[:, 0]) <= 0.0).any():
-        first, _, _ = columns.partition(" ")
-        raise BadInput(path, key, f"the {first}s in {name} must rise")
-    return tuple((float(x), float(y)) for x, y in pairs)
+def _history(path: str, key: str, table: History) -> History:
+    """A table with the pairs of its file, if it has one, in place."""
+    _check_columns(path, f"{key}.columns", table.columns, table.file)
+    if table.file is None:
+        return table
+    wanted = Column("time", "s"), Column("factor", table.unit, factor=True)
+    read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
+    if not read.measured and table.amount not in table.model_fields_set:
+        what = type(table).model_fields[table.amount].description
+        raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
+    return table.model_copy(update={"file": None, "columns": None, "table": read.values})
+
+
+def _check_columns(path: str, key: str, names: object, file: str | None) -> None:
+    if names is not None and file is None:
+        raise BadInput(path, key, "there is no file whose columns these are; leave it out")
 
 
 def _unreadable(error: Exception) -> tuple[str, str]:

@@ -6,11 +6,12 @@ The descriptions are what the JSON Schema shows, and what the message for a miss
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from functools import reduce
 from operator import or_
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 from pydantic.json_schema import GenerateJsonSchema
 
 from runs.case.contact import JointTable
@@ -33,6 +34,7 @@ from runs.case.limits import (
     StatementId,
     Table,
     Text,
+    fault_at,
 )
 from runs.case.sections import AnySection
 
@@ -220,6 +222,26 @@ class HistoryTable(Table):
     file: Text | None = Field(
         None, description="a CSV file of such pairs, its path seen from the case file"
     )
+    columns: tuple[Text, Text] | None = Field(
+        None,
+        description="the names of two columns in the heading of the file, of the times and of the "
+        "factors; its only two unless given",
+    )
+
+    # The key of what the history multiplies.
+    amount: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def unit(self) -> str:
+        """Of the amount."""
+
+    @model_validator(mode="after")
+    def _has_an_amount(self) -> Self:
+        # A file that says its unit does without.
+        if self.file is None and self.amount not in self.model_fields_set:
+            raise fault_at(self, "missing", self.amount)
+        return self
 
 
 class LoadTable(HistoryTable):
@@ -239,7 +261,9 @@ class LoadTable(HistoryTable):
         None, alias="to", description="the x in m to which it acts; the segment's end unless given"
     )
     magnitude: Number = Field(
-        description="the load in N at x, or in N/m along the segment; the moment in N m"
+        1.0,
+        description="the load in N at x, or in N/m along the segment; the moment in N m; a factor, "
+        "1 unless given, where the heading of its file says such a unit",
     )
     moment: Flag = Field(
         False, description="whether it is a moment at x, towards a larger slope of the segment"
@@ -247,6 +271,14 @@ class LoadTable(HistoryTable):
     released: Flag = Field(
         False, description="whether it has acted for ever, and is let go at t = 0"
     )
+
+    amount: ClassVar[str] = "magnitude"
+
+    @property
+    def unit(self) -> str:
+        if self.moment:
+            return "N m"
+        return "N/m" if self.x is None else "N"
 
 
 class PayloadTable(Table):
@@ -273,7 +305,17 @@ class BaseTable(HistoryTable):
     """An acceleration of the ground, which is felt as a load on all masses."""
 
     direction: Literal["z", "y"] = Field("z", description="up, or to the side")
-    acceleration: Number = Field(description="the acceleration in m/s^2")
+    acceleration: Number = Field(
+        1.0,
+        description="the acceleration in m/s^2; a factor, 1 unless given, where the heading of its "
+        "file says such a unit",
+    )
+
+    amount: ClassVar[str] = "acceleration"
+
+    @property
+    def unit(self) -> str:
+        return "m/s^2"
 
 
 class StartTable(Table):

@@ -36,6 +36,8 @@ def print_inferred(case: Case, console: Console) -> None:
     ratios = _damping_ratios(case, boom)
     if ratios.rows:
         console.print(ratios)
+    for note in actions.series_notes(case):
+        console.print(note, highlight=False, markup=False)
     console.print(f"A run may take {of_run(case)}.", highlight=False)
 
 

@@ -17,6 +17,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case import reading as case_file
 from runs.case import toml
+from runs.case.actions import series_notes
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.pipeline.summary import Summary
@@ -128,7 +129,7 @@ class Results:
             for name, model in models
             if (refused := model.refused_steps)
         ]
-        return failed + far + poor + coarse + halved
+        return failed + far + poor + coarse + halved + series_notes(self.case)
 
 
 def read_fields(path: Path) -> xr.Dataset:

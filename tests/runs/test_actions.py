@@ -244,17 +244,17 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         (
             '[[base]]\nacceleration = 1.0\nfile = "none.csv"',
             "base[1].file: '{folder}/none.csv' cannot be read (No such file or directory); give a "
-            "CSV file of two columns without a heading, time in s and factor",
+            "CSV file of two columns, time in s and factor; a heading may say other units",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "words.csv"',
-            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns "
-            "without a heading, time in s and factor",
+            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns, "
+            "time in s and factor; a heading may say other units",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "three.csv"',
             "base[1].file: 'three.csv' has other columns, or one line alone; give a CSV file of "
-            "two columns without a heading, time in s and factor",
+            "two columns, time in s and factor; a heading may say other units",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "back.csv"',
@@ -293,7 +293,7 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
     ],
 )
 def test_says_what_cannot_act(tmp_path: Path, text: str, line: str) -> None:
-    (tmp_path / "words.csv").write_text("time, factor\n", encoding="utf-8")
+    (tmp_path / "words.csv").write_text("time, factor\n0, one\n", encoding="utf-8")
     (tmp_path / "three.csv").write_text("0, 1, 2\n", encoding="utf-8")
     (tmp_path / "back.csv").write_text("0, 1\n0.2, 2\n0.1, 3\n", encoding="utf-8")
     path = tmp_path / "case.toml"

@@ -111,7 +111,8 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
         ("force_table = [[1e-3]]",
          "joint[1].force_table[1]: must be a list of two numbers, got [0.001]"),
         ('force_file = "words.csv"', "joint[1].force_file: 'words.csv' holds other than numbers; "
-         "give a CSV file of two columns without a heading, penetration in m and force in N"),
+         "give a CSV file of two columns, penetration in m and force in N; a heading may say other "
+         "units"),
         ('force_file = "back.csv"',
          "joint[1].force_file: the penetrations in 'back.csv' must rise"),
         ('force_file = "pulls.csv"',
@@ -122,7 +123,7 @@ def test_what_is_no_law_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, law: str, message: str
 ) -> None:
     for name, text in (
-        ("words", "p, F\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
+        ("words", "p, F\n1, a\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
     ):  # fmt: skip
         (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)

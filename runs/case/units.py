@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Units by their names: how much of the SI unit each is, and of what dimension."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+# Length, mass, time, as exponents.
+Dimension = tuple[float, float, float]
+
+_NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_ACCELERATION, _FORCE, _PRESSURE = (1.0, 0.0, -2.0), (1.0, 1.0, -2.0), (-1.0, 1.0, -2.0)
+_MOMENT = (2.0, 1.0, -2.0)
+
+_SYMBOLS: dict[str, tuple[str, Dimension]] = {
+    "1": ("1.0", _NONE),
+    "-": ("1.0", _NONE),
+    "%": ("0.01", _NONE),
+    "rad": ("1.0", _NONE),
+    "m": ("1.0", _LENGTH),
+    "km": ("1.0e3", _LENGTH),
+    "cm": ("1.0e-2", _LENGTH),
+    "mm": ("1.0e-3", _LENGTH),
+    "µm": ("1.0e-6", _LENGTH),
+    "kg": ("1.0", _MASS),
+    "t": ("1.0e3", _MASS),
+    "s": ("1.0", _TIME),
+    "ms": ("1.0e-3", _TIME),
+    "µs": ("1.0e-6", _TIME),
+    "min": ("60.0", _TIME),
+    "Hz": ("1.0", (0.0, 0.0, -1.0)),
+    "g": ("9.80665", _ACCELERATION),
+    "N": ("1.0", _FORCE),
+    "daN": ("10.0", _FORCE),
+    "kN": ("1.0e3", _FORCE),
+    "MN": ("1.0e6", _FORCE),
+    "Nm": ("1.0", _MOMENT),
+    "kNm": ("1.0e3", _MOMENT),
+    "Nmm": ("1.0e-3", _MOMENT),
+    "Pa": ("1.0", _PRESSURE),
+    "kPa": ("1.0e3", _PRESSURE),
+    "MPa": ("1.0e6", _PRESSURE),
+    "GPa": ("1.0e9", _PRESSURE),
+}
+
+# m^2, m2, N/m^1.5.
+_POWER = re.compile(r"([^\^0-9]+|1)(?:\^(-?[0-9](?:\.[0-9]{1,9})?)|([0-9]))?")
+_PLAIN = str.maketrans("²³⁴μ·*", "234µ  ")
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit.
+
+    Args:
+        factor: what one of it is in the SI unit.
+        dimension: of both.
+    """
+
+    factor: float
+    dimension: Dimension
+
+    @classmethod
+    def of(cls, text: str) -> Unit:
+        """Of a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``; ``g`` is standard gravity.
+
+        Raises:
+            ValueError: no such unit is known.
+        """
+        above, *below = text.translate(_PLAIN).split("/")
+        # Decimal sizes are exact fractions: a density in t/mm³ is to be exactly 1e12 kg/m³.
+        size: Fraction | float = Fraction(1)
+        exponents = [0.0, 0.0, 0.0]
+        for part, sign in [(above, 1.0), *((part, -1.0) for part in below)]:
+            if not part.strip():
+                raise ValueError("no unit")
+            for name in part.split():
+                power = _POWER.fullmatch(name)
+                if power is None or power[1] not in _SYMBOLS:
+                    raise ValueError("no unit that is known")
+                one, dimension = _SYMBOLS[power[1]]
+                exponent = sign * float(power[2] or power[3] or 1.0)
+                size *= Fraction(one) ** Fraction(exponent)
+                for base, power_of in enumerate(dimension):
+                    exponents[base] += exponent * power_of
+        return cls(float(size), (exponents[0], exponents[1], exponents[2]))

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""CSV files as programs write them are read as what they say, or refused in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from runs.case import reading
+from runs.case.actions import series_notes
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.case.units import Unit
+from tests.runs.coarse_case import COARSE
+
+LOAD = '[[load]]\nsegment = "inner"\n{keys}\nfile = "gust.csv"\n\n[[model]]'
+TABLE = ((0.0, 0.5), (0.25, -1500.0))
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def case_of(csv: str, keys: str, key: str = "load") -> Case:
+    Path("gust.csv").write_text(csv, encoding="utf-8")
+    table = LOAD.replace("load", key)
+    text = COARSE.replace("[[model]]", table.format(keys=keys), 1)
+    if key == "base":
+        text = text.replace('[[base]]\nsegment = "inner"\n', "[[base]]\n")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    return reading.load("case.toml")
+
+
+@pytest.mark.parametrize(
+    ("csv", "keys"),
+    [
+        ("0, 0.5\n0.25, -1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("0;0,5\n0,25;-1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("sep=;\n0;0,5;\n0,25;-1.5e3;\n", "x = 19.0\nmagnitude = 1.0"),
+        ('# of a sensor\n"time","factor"\n"0","0,5"\n"0,25","-1500"\n', "magnitude = 1.0"),
+        ("t [ms]\tF [kN]\n0\t0.0005\n250\t-1.5\n", "x = 19.0"),
+        ("Zeit (ms);Kraft (kN)\n0;0,0005\n250;-1,5\n", "x = 19.0"),
+        ("t / s;F / kN\n0;0,0005\n0,25;-1,5\n", "x = 19.0"),
+        ("time in s;wind load in N/mm\n0;0,0005\n0,25;-1,5\n", ""),
+        ("t;M\nms;kNm\n0;0,0005\n250;-1,5\n", "x = 19.0\nmoment = true"),
+        ("t [s],gust [%]\n0,50\n0.25,-150000\n", "magnitude = 1.0"),
+        (
+            "no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
+            'x = 19.0\ncolumns = ["t", "F (N)"]',
+        ),
+    ],
+)
+def test_a_file_s_columns_are_what_they_say(csv: str, keys: str) -> None:
+    """Reference: analytic, the same pairs in SI units."""
+    (load,) = case_of(csv, keys).loads
+    assert (load.file, load.columns, load.magnitude) == (None, None, 1.0)
+    assert load.table is not None
+    for pair, expected in zip(load.table, TABLE, strict=True):
+        assert pair == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("g", 9.80665), ("cm/s2", 0.01), ("mm/s²", 0.001), ("m/s^2", 1.0)]
+)
+def test_a_measured_quake_needs_no_acceleration(unit: str, factor: float) -> None:
+    """Reference: analytic, the standard gravity 9.80665 m/s²; a factor given multiplies it."""
+    csv = f"t (s),a ({unit})\n0,0\n0.5,0.3\n"
+    for keys, times in (("", 1.0), ("acceleration = -2.0", -2.0)):
+        (base,) = case_of(csv, keys, "base").base
+        assert base.table is not None
+        assert base.acceleration * base.table[1][1] == pytest.approx(times * 0.3 * factor)
+
+
+def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
+    """Reference: analytic, the same pairs in SI units."""
+    Path("pad.csv").write_text("F [kN];depth [mm]\n1,5;0,1\n4;0,2\n", encoding="utf-8")
+    law = 'force_file = "pad.csv"\nforce_columns = ["depth", "F"]\n'
+    text = COARSE.replace("stiffness = 1e13\nexponent = 2.0\n", law, 1)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    (joint,) = reading.load("case.toml").joints
+    assert joint.force_table == ((1.0e-4, 1500.0), (2.0e-4, 4000.0))
+    assert joint.force_columns is None
+
+
+@pytest.mark.parametrize(
+    ("csv", "keys", "line"),
+    [
+        (
+            "t;F;v\n0;1;2\n1;1;2\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' has 3 columns; name two of them, of 't', 'F' or 'v'",
+        ),
+        (
+            "t;F;v\n0;1;2\n1;1;2\n",
+            'magnitude = 1.0\ncolumns = ["t", "G"]',
+            "file: 'gust.csv' has not one column 'G'; give 't', 'F' or 'v'",
+        ),
+        (
+            "t;F;F\n0;1;2\n1;1;2\n",
+            'magnitude = 1.0\ncolumns = ["t", "F"]',
+            "file: 'gust.csv' has not one column 'F'; give 't', 'F' or 'F'",
+        ),
+        (
+            "0;1\n1;1\n",
+            'magnitude = 1.0\ncolumns = ["t", "F"]',
+            "file: 'gust.csv' has no heading; leave the names of columns out",
+        ),
+        (
+            "t (s);F (V)\n0;1\n1;1\n",
+            "",
+            "file: 'gust.csv' has 'F' in V, which is no unit that is known; give it in N/m or "
+            "another unit of the kind",
+        ),
+        (
+            "t (s);F (kN)\n0;1\n1;1\n",
+            "",
+            "file: 'gust.csv' has 'F' in kN, which is another quantity; give it in N/m or another "
+            "unit of the kind",
+        ),
+        (
+            "t (m);F (kN/m)\n0;1\n1;1\n",
+            "",
+            "file: 'gust.csv' has 't' in m, which is another quantity; give it in s or another "
+            "unit of the kind",
+        ),
+        (
+            "t (s);F\n0;1\n1;1\n",
+            "",
+            "magnitude: missing; it is the load in N at x, or in N/m along the segment; the moment "
+            "in N m; a factor, 1 unless given, where the heading of its file says such a unit",
+        ),
+        (
+            "t (s);F\n0;1,5\n1;1.234,5\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' holds other than numbers; give a CSV file of two columns, time in s "
+            "and factor; a heading may say other units",
+        ),
+        (
+            "t (s);F\n0;1,5\n1\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "columns, time in s and factor; a heading may say other units",
+        ),
+        (
+            "0,5,1,2\n0,6,1,3\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "columns, time in s and factor; a heading may say other units",
+        ),
+        (
+            "t,F\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "columns, time in s and factor; a heading may say other units",
+        ),
+        (
+            "0;1\n1;1\n",
+            'magnitude = 1.0\ncolumns = ["t"]',
+            "columns: must be a list of two names, got ['t']",
+        ),
+    ],
+)
+def test_what_is_no_pair_of_columns_is_refused(csv: str, keys: str, line: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        case_of(csv, keys)
+    assert str(refused.value) == f"case.toml: load[1].{line}"
+
+
+def test_columns_of_no_file_are_refused() -> None:
+    text = '[[load]]\nsegment = "inner"\nmagnitude = 1.0\ncolumns = ["t", "F"]\n\n[[model]]'
+    Path("case.toml").write_text(COARSE.replace("[[model]]", text, 1), encoding="utf-8")
+    with pytest.raises(BadInput) as refused:
+        reading.load("case.toml")
+    assert str(refused.value) == (
+        "case.toml: load[1].columns: there is no file whose columns these are; leave it out"
+    )
+
+
+@pytest.mark.parametrize(
+    ("times", "note"),
+    [
+        ((0.0, 0.6), None),
+        (
+            (0.1, 0.5),
+            "lasts from 0.1 to 0.5 s, the run 0.6 s: its first value, 1, is held before; its last "
+            "value, 2, is held afterwards",
+        ),
+        (
+            (-1.0, 60.0),
+            "lasts from -1 to 60 s, the run 0.6 s: what is before t = 0 is left out; what comes "
+            "after the run is left out",
+        ),
+    ],
+)
+def test_what_happens_beyond_a_series_is_said(times: tuple[float, float], note: str | None) -> None:
+    """The coarse case lasts 0.6 s."""
+    case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
+    assert case.time.duration == 0.6
+    expected = [] if note is None else [f"note: the series of load[1] {note}"]
+    assert series_notes(case) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "factor", "dimension"),
+    [
+        ("N/m^1.5", 1.0, (-0.5, 1.0, -2.0)),
+        ("N/mm^2", 1.0e6, (-1.0, 1.0, -2.0)),
+        ("t/mm^3", 1.0e12, (-3.0, 1.0, 0.0)),
+        ("N s/m²", 1.0, (-1.0, 1.0, -1.0)),
+        ("kN·m", 1.0e3, (2.0, 1.0, -2.0)),
+        ("1/s", 1.0, (0.0, 0.0, -1.0)),
+        ("μm", 1.0e-6, (1.0, 0.0, 0.0)),
+    ],
+)
+def test_units_are_products_of_powers(
+    text: str, factor: float, dimension: tuple[float, float, float]
+) -> None:
+    """Reference: analytic, the definitions of the SI."""
+    assert Unit.of(text) == Unit(factor, dimension)
+
+
+@pytest.mark.parametrize("text", ["", "V", "kN/", "m/s^", "m^^2", "2m", "m^-", "N//m", "m^12345"])
+def test_what_is_no_unit_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="no unit"):
+        Unit.of(text)
