@@ -40,7 +40,9 @@ def gap_system(
     for pad in pads(boom):
         law = laws_along[pad.direction][pad.number]
         approach, slide = (_relative(modes, pad, along) for along in (pad.direction, pad.rubs))
-        pressing = rows.press(pad.station, law, [(pad.side, pad.weight, approach)])
+        points = [(pad.side, pad.weight, approach)]
+        pressing = rows.press(pad.station, law, points)
+        rows.drag(pad.station, pad.joint.dashpot, points)
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
         rows.stop(station, stop, [(0, 1.0, modes.displacement(stop.segment, stop.x, "z"))])
@@ -51,13 +53,16 @@ def gap_system(
         boom.stations,
         _observed(boom, modes),
         [(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads],
-        modes.damping,
+        damping=modes.damping,
     )
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     """The play-free boom: every joint's segments move alike at its stations."""
-    tied = tuple(replace(joint, tied=True, pad=None, contact_length=None) for joint in boom.joints)
+    tied = tuple(
+        replace(joint, tied=True, pad=None, contact_length=None, dashpot=0.0)
+        for joint in boom.joints
+    )
     return gap_system(replace(boom, joints=tied), models, ())
 
 

@@ -37,6 +37,13 @@ class Friction(NamedTuple, Generic[R]):
     law: DryFriction
 
 
+class Dashpot(NamedTuple, Generic[R]):
+    """A dashpot across a station: its coefficient in N·s/m, and weights of what it reads."""
+
+    coefficient: float
+    parts: list[tuple[float, R]]
+
+
 class Stop(Protocol):
     """What of a stop on the ground makes its law, a :class:`dynamics.contact.PowerContact`."""
 
@@ -52,15 +59,17 @@ class Stop(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class GapBuilder(Generic[R]):
-    """Contact and friction rows in the order in which they come.
+    """Contact and friction rows in the order in which they come, and dashpots.
 
     Args:
         contacts, frictions: the rows, as something of type R that can be read.
+        dashpots: by their stations.
         grounded: stations of those that the ground stops.
     """
 
     contacts: list[Contact[R]] = field(default_factory=list)
     frictions: list[Friction[R]] = field(default_factory=list)
+    dashpots: dict[int, Dashpot[R]] = field(default_factory=dict)
     grounded: list[int] = field(default_factory=list)
 
     def press(
@@ -110,6 +119,27 @@ class GapBuilder(Generic[R]):
             law = DryFriction(coefficient, station, normal_force or 0.0, pressed_by)
             self.frictions.append(Friction(slide, law))
 
+    def drag(
+        self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
+    ) -> None:
+        """A dashpot resists the mean speed of all points of a station, given as to :meth:`press`.
+
+        Args:
+            station: its place.
+            coefficient: c in N·s/m; no row without it.
+            points: some of the station's.
+        """
+        if coefficient > 0.0:
+            dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, []))
+            # The weights of each of two sides sum to one.
+            parts = ((0.5 * part if side else part, reading) for side, part, reading in points)
+            dashpot.parts.extend(parts)
+
+    @property
+    def dragged(self) -> list[R]:
+        """All that dashpots read."""
+        return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
+
     def system(
         self,
         read: Callable[[R], Array],
@@ -118,6 +148,7 @@ class GapBuilder(Generic[R]):
         places: Sequence[tuple[float, str]],
         observed: Mapping[str, tuple[R, str]],
         loads: Sequence[tuple[Array, History | Released | Thrown]],
+        grounded_dashpots: Sequence[tuple[float, Array]] = (),
         damping: Array | None = None,
     ) -> GapSystem:
         """The gap system in modal coordinates.
@@ -128,6 +159,8 @@ class GapBuilder(Generic[R]):
             places: x in m and direction of each station.
             observed: what a trajectory records, and its unit, by its name.
             loads: (num_modes,) what pushes beside ``load``, and when.
+            grounded_dashpots: coefficients in N·s/m of those between the ground and what a row
+                (num_modes,) reads.
             damping: (num_modes,) in 1/s; none unless given.
         """
 
@@ -138,6 +171,12 @@ class GapBuilder(Generic[R]):
             pushes = (push for push, when in loads if isinstance(when, kind))
             return sum(pushes, np.zeros(omega2.size))
 
+        across = [
+            (dashpot.coefficient, sum(part * read(reading) for part, reading in dashpot.parts))
+            for dashpot in self.dashpots.values()
+        ]
+        dashpots = [np.sqrt(c) * row for c, row in (*across, *grounded_dashpots)]
+
         return GapSystem(
             omega2=omega2,
             load=load,
@@ -147,6 +186,7 @@ class GapBuilder(Generic[R]):
             stations=[x for x, _ in places],
             observers={name: Observer(read(row), unit) for name, (row, unit) in observed.items()},
             damping=np.zeros(0) if damping is None else damping,
+            dashpots=np.array(dashpots).reshape(-1, omega2.size),
             friction_rows=rows([friction.reading for friction in self.frictions]),
             frictions=[friction.law for friction in self.frictions],
             excitations=[

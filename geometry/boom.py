@@ -318,6 +318,12 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
                 f"{x:g} m lies outside the overlap of {outer.name!r} and {inner.name!r}; it must "
                 f"be between {start:g} and {end:g} m",
             )
+    if joint.tied and joint.dashpot > 0.0:
+        raise BoomError(f"{where}.dashpot", "the joint is tied, and nothing moves; leave it out")
+    if not 0.0 <= joint.dashpot < float("inf"):
+        raise BoomError(
+            f"{where}.dashpot", f"must be a number of N s/m from 0 on, got {joint.dashpot:g}"
+        )
     near = SAME_PLACE * outer.length
     if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")

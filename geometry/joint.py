@@ -38,6 +38,7 @@ class Joint:
         tied: the segments deflect (and in space twist) alike at the stations, without play.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
         contact_length: of these in m; a tenth of the overlap unless given.
+        dashpot: of each station along each direction in N·s/m, across the play.
     """
 
     outer: int
@@ -50,6 +51,7 @@ class Joint:
     tied: bool = False
     pad: PadSize | None = None
     contact_length: float | None = None
+    dashpot: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

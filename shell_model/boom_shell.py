@@ -101,7 +101,7 @@ class BoomShell:
         comm: the ranks that share it.
         shells: of its segments.
         stations: x in m and direction of each.
-        rows: that press and rub.
+        rows: that press, rub and drag.
         ties: what stays at zero.
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
         loads: those that follow a history, and (num_owned,) what they push.
@@ -131,8 +131,8 @@ class BoomShell:
     def forces(self, number: int) -> Array:
         """(num_owned, num_forces) all that acts on a segment, contacts first."""
         own = [push for load, push in self.loads if load.segment == number]
-        joined = self.joined(number)
-        return np.column_stack([joined, self.own_loads[number], *own])
+        dragged = self.columns(number, self.rows.dragged)
+        return np.column_stack([self.joined(number), dragged, self.own_loads[number], *own])
 
     def joined(self, number: int) -> Array:
         """(num_owned, num_rows) what contacts, friction and ties read of a segment."""

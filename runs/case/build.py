@@ -111,6 +111,7 @@ def _joint(case: Case, index: int) -> Joint:
         tied=table.tied,
         pad=None if table.pad is None else PadSize(table.pad.length, table.pad.width),
         contact_length=table.contact_length,
+        dashpot=table.dashpot,
     )
 
 

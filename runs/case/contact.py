@@ -166,6 +166,11 @@ class JointTable(Table):
         description="the length along x in m on which stations press the corners, as long as a "
         "slide pad, which shells alone heed; a tenth of the overlap unless given",
     )
+    dashpot: NotNegative = Field(
+        0.0,
+        description="the linear dashpot across the play at each station in N s/m, to the sides "
+        "too where the boom moves in space",
+    )
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:

@@ -126,6 +126,7 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
     table = Table("damping, joints pressed", *shapes)
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
+    given += [joint.dashpot for joint in boom.joints]
     for model in case.models if any(given) else ():
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.meshed else model

@@ -39,7 +39,7 @@ def gap_rows(
     line: ContactLine,
     surface: SurfaceOptions,
 ) -> GapBuilder[Reading]:
-    """Rows of every pad, surface and stop. Collective.
+    """Rows of every pad, surface, stop and dashpot. Collective.
 
     Args:
         boom: its joints and stops.
@@ -66,6 +66,7 @@ def gap_rows(
         else:
             law = laws[pad.direction][pad.number]
             pressing = rows.press(pad.station, law, touch.points)
+        rows.drag(pad.station, pad.joint.dashpot, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
     for rest, meeting in zip(resting, stopped, strict=True):
         rows.stop(rest.station, rest.stop, meeting)

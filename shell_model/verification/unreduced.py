@@ -112,6 +112,8 @@ def _check(full: BoomShell) -> None:
         )
     if any(contact.law.damping > 0.0 for contact in full.rows.contacts):
         raise BoomError("joint", "the unreduced shell takes contacts without damping")
+    if full.rows.dashpots:
+        raise BoomError("joint", "the unreduced shell takes joints without dashpots")
     if any(friction.law.pressed_by for friction in full.rows.frictions):
         raise BoomError("joint", "the unreduced shell takes friction under normal_forces alone")
 

@@ -74,6 +74,16 @@ CONTACTS = {
         "exponent = 2.0\ntied = true\ncontact_length = 0.1\n",
         "joint[1].contact_length: the joint is tied, and nothing touches; leave it out",
     ),
+    "dashpots of a tied joint": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ntied = true\ndashpot = 1e3\n",
+        "joint[1].dashpot: the joint is tied, and nothing moves; leave it out",
+    ),
+    "a dashpot that drives": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ndashpot = -1e3\n",
+        "joint[1].dashpot: must be a number not less than 0, got -1000.0",
+    ),
     "pads across the flanges": (
         FROM_EXPONENT,
         FROM_EXPONENT.replace(

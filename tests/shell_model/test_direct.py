@@ -241,6 +241,11 @@ def test_two_ranks_give_the_serial_motion(
             replace(LAW, damping=0.5),
             "the unreduced shell takes contacts without damping",
         ),
+        (
+            replace(flat_boom(), joints=(replace(flat_boom().joints[0], dashpot=1.0),)),
+            LAW,
+            "the unreduced shell takes joints without dashpots",
+        ),
     ],
 )
 def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message: str) -> None:

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Linear dashpots at joints, across the play."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.boom_modes import BoomModes
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.rigid import rigid_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
+from dynamics.splitting import integrate
+from geometry.arrays import Array
+from geometry.boom import Boom, BoomError, Joint, Segment, Support
+
+Models = Callable[..., list[SegmentModel]]
+
+SPRING, DASHPOT = 2.0e6, 900.0
+# A spring both ways, since no play is between its sides.
+BOTH_WAYS = PowerContact(SPRING, exponent=1.0, clearance=0.0)
+
+
+def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
+    """Logarithms of the ratios of successive maxima of an observer, which swings about zero."""
+    run = integrate(Motion(system, duration, 1e-4, position), energy_bound=1e-4)
+    swing = run.data[name].values
+    inside = swing[1:-1]
+    (peaks,) = np.nonzero((inside > swing[:-2]) & (inside >= swing[2:]))
+    # The parabola through three points finds the maximum between two outputs.
+    before, at, after = (swing[peaks + shift] for shift in (0, 1, 2))
+    heights = at + 0.125 * (after - before) ** 2 / (2.0 * at - before - after)
+    return -np.diff(np.log(heights))
+
+
+def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Segment]) -> None:
+    """Reference: analytic. On two springs and two dashpots ζ = c/√(2km), δ = 2πζ/√(1 − ζ²)."""
+    outer = beam(name="outer", start=0.0, end=4.0, supports=(Support(0.0, "clamped"),))
+    inner = beam(name="inner", start=3.0, end=4.0, section=None)
+    joint = Joint(0, 1, stations=(3.25, 3.75), clearance=0.0, dashpot=DASHPOT)
+    boom = Boom((outer, inner), (joint,))
+    system = gap_system(boom, [rigid_segment(one) for one in boom.segments], [BOTH_WAYS])
+    mass = inner.mass_per_length * inner.length
+    ratio = DASHPOT / np.sqrt(2.0 * SPRING * mass)
+    assert 0.01 < ratio < 0.1
+    raised = np.linalg.lstsq(system.rows, np.full(2, 1e-3), rcond=None)[0]
+    expected = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
+    found = decrements(system, raised, 0.5, "tip")
+    assert found.size > 5
+    assert found == pytest.approx(expected, rel=2e-4)
+
+
+@pytest.mark.parametrize("spatial", [False, True], ids=["flat", "in space"])
+def test_a_dashpot_reads_the_axis(
+    paper_boom: Boom, spatial_boom: Boom, paper_law: PowerContact, spatial: bool
+) -> None:
+    """Reference: analytic, √c (u − w) at each station along each direction."""
+    boom = spatial_boom if spatial else paper_boom
+    (joint,) = boom.joints
+    boom = replace(boom, joints=(replace(joint, dashpot=DASHPOT),))
+    models = finite_element_segments(boom, 2.0, "euler-bernoulli", rotary_inertia=False)
+    system = gap_system(boom, models, [paper_law], [paper_law])
+    modes = BoomModes(boom, models)
+    expected = [
+        np.sqrt(DASHPOT) * (modes.displacement(1, x, along) - modes.displacement(0, x, along))
+        for along in boom.directions
+        for x in joint.stations
+    ]
+    np.testing.assert_allclose(system.dashpots, expected, atol=1e-12)
+
+
+def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
+    """Reference: analytic, conservation of energy, while the play is crossed again and again."""
+    (joint,) = paper_boom.joints
+    boom = replace(paper_boom, joints=(replace(joint, dashpot=2.0e4),))
+    law = PowerContact(1.0e9, exponent=1.0, clearance=joint.clearance)
+    run = integrate(Motion(gap_system(boom, elements(1.0), [law]), 1.0), energy_bound=1e-4)
+    loss = np.diff(run.data["damping_loss"].values)
+    assert loss.min() >= 0.0
+    assert loss.sum() > 0.1 * np.ptp(run.data["kinetic_energy"].values)
+    assert run.energy_residual < 1e-4
+
+
+def test_a_dashpot_takes_no_part_in_a_tied_boom(paper_boom: Boom, elements: Models) -> None:
+    """Reference: the same boom without, equal bits; a joint that is tied by itself has none."""
+    (joint,) = paper_boom.joints
+    dragged = replace(paper_boom, joints=(replace(joint, dashpot=DASHPOT),))
+    models = elements(1.0)
+    bare, tied = (tied_system(boom, models) for boom in (paper_boom, dragged))
+    np.testing.assert_array_equal(tied.frequencies, bare.frequencies)
+    assert not tied.damped
+    for changes, what in (
+        ({"tied": True, "dashpot": 1.0}, "the joint is tied, and nothing moves; leave it out"),
+        ({"dashpot": -1.0}, "must be a number of N s/m from 0 on, got -1"),
+    ):
+        with pytest.raises(BoomError, match=rf"^joint\[1\]\.dashpot: {re.escape(what)}$"):
+            replace(paper_boom, joints=(replace(joint, **changes),))
