@@ -163,7 +163,8 @@ class PowerContact(ContactLaw):
     Args:
         stiffness: k₂ in N/mⁿ.
         exponent: n, at least 1. Below 1 the force has an infinite slope at touch.
-        clearance: Δ in m on each side (half the play), not negative.
+        clearance: Δ in m on each side (half the play); negative where what touches is pressed in
+            by so much from either side, and then n is 1.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
         damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
             never adhesive; not negative.
@@ -186,8 +187,12 @@ class PowerContact(ContactLaw):
             raise ValueError("stiffness must be positive on one side at least, got 0.0 on both")
         if not 1.0 <= self.exponent < np.inf:
             raise ValueError(f"exponent must be at least 1, got {self.exponent}")
-        if not 0.0 <= self.clearance < np.inf:
-            raise ValueError(f"clearance must be finite and not negative, got {self.clearance} m")
+        if not np.isfinite(self.clearance):
+            raise ValueError(f"clearance must be a finite number of m, got {self.clearance}")
+        if self.clearance < 0.0 and self.exponent != 1.0:
+            raise ValueError(
+                f"exponent must be 1 where the clearance is negative, got {self.exponent}"
+            )
         if not 0.0 <= self.damping < np.inf:
             raise ValueError(f"damping must be finite and not negative, got {self.damping} s/m")
 

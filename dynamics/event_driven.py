@@ -216,6 +216,8 @@ def what_hinders(system: GapSystem) -> str | None:
         return f"a force of the exponent {broken[0]:g} is not analytic where a press begins"
     if any(len({t.side for t in law.terms}) < len(law.terms) for law in system.laws):
         return "a force of several terms is not analytic where one begins"
+    if any(law.clearance < 0.0 and len(law.terms) > 1 for law in system.laws):
+        return "a contact that is pressed from both sides has no free flight"
     return None
 
 

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from dynamics.motion import Motion as Motion
     from dynamics.predictability.ensemble import integrate_ensemble as integrate_ensemble
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
+    from dynamics.sided_contact import SidedContact as SidedContact
     from dynamics.trajectory import Trajectory as Trajectory
     from geometry.boom import Boom as Boom
     from geometry.boom import BoomError as BoomError
@@ -75,6 +76,7 @@ _HOMES = {
         "beam_model.systems": "finite_element_system kantorovich_system",
         "dynamics.contact": "ContactLaw PowerContact Term restitution_damping",
         "dynamics.contact_table": "TableContact",
+        "dynamics.sided_contact": "SidedContact",
         "dynamics.damping": "with_ratio",
         "dynamics.energy": "ENERGIES",
         "dynamics.equilibrium": "equilibrium",
