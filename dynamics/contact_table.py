@@ -43,6 +43,8 @@ class TableContact(ContactLaw):
             raise ValueError("a table needs one force for each depth, and one at least")
         if not (np.isfinite(self._slopes()).all() and (np.diff([0.0, *self.depths]) > 0.0).all()):
             raise ValueError("depths must be finite and rise from above 0")
+        if not 0.0 <= self.clearance < np.inf:
+            raise ValueError(f"clearance must be finite and not negative, got {self.clearance} m")
         if min(self.forces) <= 0.0 or self._slopes()[-1] < 0.0:
             raise ValueError("forces must be positive, and must not fall at the end")
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from dynamics.contact import ContactLaw, Term
 
@@ -19,12 +19,18 @@ class SidedContact(ContactLaw):
     Args:
         above, below: each counts on its own side alone, behind its own clearance.
 
+    Attributes:
+        clearance: the smaller one in m.
+        damping: of both in s/m.
+
     Raises:
         ValueError: one of them never touches there, or their dampings differ.
     """
 
     above: ContactLaw
     below: ContactLaw
+    clearance: float = field(init=False)
+    damping: float = field(init=False)
 
     def __post_init__(self) -> None:
         if self.above.one_sided(1) is None or self.below.one_sided(-1) is None:
@@ -34,16 +40,8 @@ class SidedContact(ContactLaw):
                 f"both laws must have the same damping, got {self.above.damping} and "
                 f"{self.below.damping} s/m"
             )
-
-    @property
-    def clearance(self) -> float:
-        """The smaller one in m."""
-        return min(self.above.clearance, self.below.clearance)
-
-    @property
-    def damping(self) -> float:
-        """Of both in s/m."""
-        return self.above.damping
+        object.__setattr__(self, "clearance", min(self.above.clearance, self.below.clearance))
+        object.__setattr__(self, "damping", self.above.damping)
 
     @property
     def terms(self) -> tuple[Term, ...]:

@@ -360,11 +360,12 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
     if section is None:
         return
     room = 0.5 * min(face.width for face in section.faces if face.direction in boom.directions)
-    if not 0.0 < pad.width <= room:
+    if not 0.0 < pad.width <= room - pad.offset:
+        beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
         raise BoomError(
             f"{where}.pad.width",
-            f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m, got "
-            f"{pad.width:g} m",
+            f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m"
+            f"{beside}, got {pad.width:g} m",
         )
 
 

@@ -4,7 +4,7 @@
 In a flat boom a joint touches on the axis of its segments, above and below in one place. In
 space it touches in the corners of its sections, where slide pads sit because plates that meet are
 stiff there: at both ends of each face. Pads of a given size are
-patches that reach from the corners inwards.
+patches beside the corners.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Patch:
 
     Args:
         start, end: x in m.
-        near, far: distances in m from the middle of the wall, of its edge and of the wall's.
+        near, far: distances in m from the middle of the wall, of its edges.
     """
 
     start: float
@@ -206,13 +206,13 @@ def _points(
 def _patch(boom: Boom, joint: Joint, x: float, direction: Direction, side: Side) -> Patch | None:
     """The wall that a pad covers; None where pads are points, or plates not known.
 
-    It is centred at its station, but moved inwards where the overlap ends, and reaches from the
-    corner of the inner box inwards.
+    It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
+    its offset from the corner of the inner box.
     """
     size, section = joint.pad, boom.segments[joint.inner].section
     if size is None or section is None:
         return None
     first, last = boom.overlap(joint)
     start = min(max(x - 0.5 * size.length, first), last - size.length)
-    half = 0.5 * section.face(direction, side or 1).width
-    return Patch(start, start + size.length, half - size.width, half)
+    far = 0.5 * section.face(direction, side or 1).width - size.offset
+    return Patch(start, start + size.length, far - size.width, far)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class PadSize:
-    """A slide pad: its length along x and its width from a corner inwards, in m.
+    """A slide pad: its length along x, its width from a corner inwards, how far from that, in m.
 
     >>> padded = replace(boom.joints[0], pad=pt.PadSize(length=0.2, width=0.06))
     >>> replace(boom, joints=(padded,)).joints[0].pad.length
@@ -17,6 +17,7 @@ class PadSize:
 
     length: float
     width: float
+    offset: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

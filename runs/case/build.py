@@ -15,7 +15,6 @@ from geometry.boom import (
     Joint,
     Lateral,
     Material,
-    PadSize,
     PointMass,
     Segment,
     Support,
@@ -27,6 +26,7 @@ from geometry.section import (
     infer_outer_section,
 )
 from runs.case import actions
+from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
 from runs.case.schema import Case, Model, SegmentTable
@@ -56,11 +56,22 @@ def joined(case: Case, boom: Boom, model: Model) -> Joined:
 
 
 def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[ContactLaw]:
-    """The contact law of each joint along one direction, as a model sees it."""
-    own = model.contact
-    return [
-        joint.law(direction) if own is None else own.law(joint, direction) for joint in case.joints
-    ]
+    """The contact law of each joint along one direction, as a model sees it.
+
+    Raises:
+        BoomError: what shims press follows no such law.
+    """
+    own, laws = model.contact, []
+    for number, joint in enumerate(case.joints, start=1):
+        try:
+            laws.append(joint.law(direction) if own is None else own.law(joint, direction))
+        except ValueError:
+            raise BoomError(
+                f"joint[{number}].interference",
+                f"what presses from both sides of a joint needs a law of the exponent 1, and model "
+                f"{model.name!r} has another; give it one, or leave interference out",
+            ) from None
+    return laws
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
@@ -100,6 +111,7 @@ def _joint(case: Case, index: int) -> Joint:
         raise BoomError(
             f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
         )
+    _check_plays(f"joint[{index + 1}]", table)
     return Joint(
         outer=names.index(table.outer),
         inner=names.index(table.inner),
@@ -109,10 +121,23 @@ def _joint(case: Case, index: int) -> Joint:
         friction=table.friction,
         normal_forces=table.normal_forces,
         tied=table.tied,
-        pad=None if table.pad is None else PadSize(table.pad.length, table.pad.width),
+        pad=None if table.pad is None else table.pad.size,
         contact_length=table.contact_length,
         dashpot=table.dashpot,
     )
+
+
+def _check_plays(where: str, table: JointTable) -> None:
+    """A part of a play is not more than it, and shims leave none."""
+    for key, of, pressed in (
+        ("play_above", "play", "interference"),
+        ("lateral_play_left", "lateral_play", "lateral_interference"),
+    ):
+        part, play = getattr(table, key), getattr(table, of)
+        if part is not None and not part <= (play or 0.0):
+            raise BoomError(f"{where}.{key}", f"must be a part of {of}, got {part:g} m")
+        if getattr(table, pressed) > 0.0 and play != 0.0:
+            raise BoomError(f"{where}.{pressed}", f"shims leave no play; give {of} = 0")
 
 
 def _segment(case: Case, index: int, section: Section | None) -> Segment:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.boom import Direction
+from geometry.boom import Direction, PadSize
 from runs.case.limits import (
     MOST_STATIONS,
     Exponent,
@@ -26,6 +26,13 @@ from runs.case.limits import (
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.contact_table import TableContact
+
+# Modulus in Pa of cast polyamide 6 with the 2.5 % of water that it takes from air, by the data
+# sheet of PolyJARID; dry it has 3.2e9.
+POLYAMIDE = 1.9e9
+
+# Pads that press together on one side of a station, one beside each web.
+PADS_OF_SIDE = 2
 
 # Each is a term of every row in every step of the time loop.
 MOST_POINTS = 1000
@@ -56,7 +63,7 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
 
 
 def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> None:
-    """A power law has a stiffness, and a table has neither that nor an exponent.
+    """A power law has a stiffness; tables, and pads with a thickness, have no such numbers.
 
     Args:
         table: with all its keys, in whatever order these are declared.
@@ -65,9 +72,12 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
     Raises:
         ValidationError: at the key that is missing, or given in vain.
     """
-    given = next((key for key in ("force_table", "force_file") if getattr(table, key)), None)
+    tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
+    pad = isinstance(table, JointTable) and table.pad is not None and table.pad.thickness
+    given = "pad.thickness" if pad else next(iter(tables), None)
     if given is not None:
-        keys = [key for key in of_power if getattr(table, key) is not None]
+        others = tables if pad else []
+        keys = others + [key for key in of_power if getattr(table, key) is not None]
         what = f"{given} is given; leave one of them out"
         fault = PydanticCustomError("unsuitable", "{what}", {"what": what})
     else:
@@ -94,10 +104,37 @@ class RestitutionTable(Table):
 
 
 class PadTable(Table):
-    """A slide pad in a corner: a patch of the inner segment's wall."""
+    """A slide pad beside a corner: a patch of the inner segment's wall."""
 
     length: Positive = Field(description="the length along x in m")
     width: Positive = Field(description="the width from the corner inwards in m")
+    offset: NotNegative = Field(0.0, description="the distance in m between the pad and the corner")
+    thickness: Positive | None = Field(
+        None,
+        description="the thickness in m, from which the joint's stiffness follows unless given",
+    )
+    modulus: Positive = Field(
+        POLYAMIDE,
+        description="the modulus of compression in Pa; that of moist cast polyamide unless given",
+    )
+    allowable_pressure: Positive | None = Field(
+        None, description="the pressure in Pa that it may bear; not judged unless given"
+    )
+
+    @property
+    def size(self) -> PadSize:
+        """What it covers."""
+        return PadSize(self.length, self.width, self.offset)
+
+    @property
+    def area(self) -> float:
+        """In m²."""
+        return self.length * self.width
+
+    @property
+    def stiffness(self) -> float | None:
+        """k = E A/t in N/m."""
+        return None if self.thickness is None else self.modulus * self.area / self.thickness
 
 
 class JointTable(Table):
@@ -109,6 +146,14 @@ class JointTable(Table):
         description="the x in m at which the two may touch, rising"
     )
     play: NotNegative = Field(description="the play in m, the clearance above and below together")
+    play_above: NotNegative | None = Field(
+        None, description="the part of the play in m that is above; half of it unless given"
+    )
+    interference: NotNegative = Field(
+        0.0,
+        description="the amount in m by which shims press the inner segment from above and below "
+        "together, where there is no play",
+    )
     force_table: Forces | None = Field(
         None,
         description="pairs of a penetration in m and a force in N, straight lines between them "
@@ -147,6 +192,13 @@ class JointTable(Table):
         description="the play to the sides in m, left and right together; with it the boom moves "
         "in space",
     )
+    lateral_play_left: NotNegative | None = Field(
+        None,
+        description="the part of the lateral play in m towards larger y; half of it unless given",
+    )
+    lateral_interference: NotNegative = Field(
+        0.0, description="the amount in m by which shims press from the sides, without lateral play"
+    )
     lateral_stiffness: Positive | None = Field(
         None, description="the contact stiffness to the sides in N/m^n; the same unless given"
     )
@@ -179,18 +231,35 @@ class JointTable(Table):
         _check_law(self, (*_OF_POWER, *lateral))
         return self
 
-    def law(self, direction: Direction) -> ContactLaw:
-        """The contact law of each station along z, or in space along y."""
+    def clearances(self, direction: Direction) -> tuple[float, float]:
+        """Above and below in m, along y left and right; negative where shims press."""
         if direction == "z":
-            return _law(self, 0.5 * self.play, self.stiffness, self.stiffness_below, self.exponent)
-        assert self.lateral_play is not None
-        return _law(
-            self,
-            0.5 * self.lateral_play,
-            self.lateral_stiffness or self.stiffness,
-            None,
-            self.lateral_exponent or self.exponent,
-        )
+            play, first, pressed = self.play, self.play_above, self.interference
+        else:
+            assert self.lateral_play is not None
+            play, first = self.lateral_play, self.lateral_play_left
+            pressed = self.lateral_interference
+        first = 0.5 * play if first is None else first
+        return first - 0.5 * pressed, play - first - 0.5 * pressed
+
+    def law(self, direction: Direction) -> ContactLaw:
+        """The contact law of each station along z, or in space along y.
+
+        Raises:
+            ValueError: no law can press from both sides like that.
+        """
+        of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None
+        exponent = self.exponent if of_pads is None or self.stiffness else 1.0
+        if direction == "z":
+            law = _law(self, self.stiffness or of_pads, self.stiffness_below, exponent)
+        else:
+            law = _law(
+                self,
+                self.lateral_stiffness or self.stiffness or of_pads,
+                None,
+                self.lateral_exponent or exponent,
+            )
+        return _behind(law, self.clearances(direction))
 
 
 class ContactTable(Table):
@@ -226,22 +295,30 @@ class ContactTable(Table):
     def law(self, joint: JointTable, direction: Direction) -> ContactLaw:
         """As that of a joint, with its play."""
         below = self.stiffness_below if direction == "z" else None
-        clearance = joint.law(direction).clearance
-        return _law(self, clearance, self.stiffness, below, self.exponent)
+        law = _law(self, self.stiffness, below, self.exponent)
+        return _behind(law, joint.clearances(direction))
 
 
 def _law(
     table: JointTable | ContactTable,
-    clearance: float,
     stiffness: float | None,
     below: float | None,
     exponent: float | None,
 ) -> ContactLaw:
+    """Without clearance."""
     from dynamics.contact import PowerContact, restitution_damping
 
     blow = table.restitution
     damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
-    if stiffness is None:
-        assert table.force_table is not None
-        return table_law(table.force_table, clearance, damping)
-    return PowerContact(stiffness, exponent or 2.0, clearance, below, damping)
+    if table.force_table is not None and stiffness is None:
+        return table_law(table.force_table, damping=damping)
+    assert stiffness is not None
+    return PowerContact(stiffness, exponent or 2.0, 0.0, below, damping)
+
+
+def _behind(law: ContactLaw, clearances: tuple[float, float]) -> ContactLaw:
+    """A law behind a clearance in m above, and one below."""
+    from dynamics.sided_contact import SidedContact
+
+    above, below = (law.behind(clearance) for clearance in clearances)
+    return above if above == below else SidedContact(above, below)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from itertools import islice
 
 import numpy as np
@@ -11,9 +12,10 @@ from rich.table import Table
 
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NumericsError
-from geometry.boom import Boom, Joint
+from geometry.boom import Boom, Direction, Joint
 from runs.case import actions
 from runs.case.build import build_boom, contact_laws
+from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
@@ -31,7 +33,7 @@ def print_inferred(case: Case, console: Console) -> None:
     if stiffeners.rows:
         console.print(stiffeners)
     if boom.joints:
-        console.print(_joints(boom))
+        console.print(_joints(case, boom))
     console.print(_models(case))
     ratios = _damping_ratios(case, boom)
     if ratios.rows:
@@ -78,9 +80,9 @@ def _plate(thickness: float, mass_per_thickness: float) -> tuple[str, str]:
     return f"{1e3 * thickness:g}", f"{mass_per_thickness * thickness:.3g}"
 
 
-def _joints(boom: Boom) -> Table:
+def _joints(case: Case, boom: Boom) -> Table:
     table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)", "friction")
-    for joint in boom.joints:
+    for given, joint in zip(case.joints, boom.joints, strict=True):
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         room = "unknown"
         if outer.section is not None and inner.section is not None:
@@ -91,18 +93,23 @@ def _joints(boom: Boom) -> Table:
             f"{inner.name} in {outer.name}",
             f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",
             ", ".join(f"{x:g}" for x in joint.stations),
-            "tied" if joint.tied else _clearance(joint),
+            "tied" if joint.tied else ", ".join(_clearances(given)),
             room,
             _friction(joint),
         )
     return table
 
 
-def _clearance(joint: Joint) -> str:
-    vertical = f"± {1e3 * joint.clearance:g}"
-    if joint.lateral_clearance is None:
-        return vertical
-    return f"{vertical}, ± {1e3 * joint.lateral_clearance:g} to the sides"
+def _clearances(given: JointTable) -> Iterator[str]:
+    """In mm, along z, and in space along y."""
+    sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("left", "right")}
+    for direction, names in sides.items():
+        if direction == "y" and given.lateral_play is None:
+            return
+        both = [1e3 * clearance for clearance in given.clearances(direction)]
+        parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
+        alike = f"± {both[0]:g}" + (" to the sides" if direction == "y" else "")
+        yield alike if both[0] == both[1] else ", ".join(parts)
 
 
 def _friction(joint: Joint) -> str:

@@ -12,6 +12,7 @@ from runs.report import theme
 from runs.report.figure_context import Figure
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
+from runs.report.pad_tables import pad_tables
 from runs.report.pages import MARKS, page
 from runs.report.stress_tables import wall_tables
 from runs.report.tables import Table, TextTable
@@ -35,7 +36,7 @@ def render(
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
     """
-    models = _texts([*model_tables(results), *wall_tables(results)])
+    models = _texts([*model_tables(results), *pad_tables(results), *wall_tables(results)])
     known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
     motion, knowledge = (
         [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")

@@ -125,7 +125,13 @@ def law_table(results: Results) -> Table | None:
         Column("law\nk in N/mⁿ", [str(law) for _, _, law in found]),
         Column("first tip peak\nmm", peaks, ".1f", MILLI),
     )
-    notes = ("Force = k · penetrationⁿ, beyond the clearance each way.",)
+    notes = ["Force = k · penetrationⁿ, beyond the clearance each way."]
+    if not all(joint.pad for _, joint, _ in found):
+        notes.append(
+            "Without slide pads the segments press in the corners of their boxes. Pads beside "
+            "them, on walls that give way, move the paper's first peak by a quarter and more: give "
+            "the pads their place (joint.pad)."
+        )
     return Table("Contact laws", columns, notes, "laws", ("S9",))
 
 

@@ -22,7 +22,7 @@ from runs.studies.study import Proof
 
 def with_pads(case: Case, length: float, width: float) -> Case:
     """The case with pads of a size, in m, at all its joints."""
-    pad = PadTable(length=length, width=width)
+    pad = PadTable.model_validate({"length": length, "width": width})
     joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 

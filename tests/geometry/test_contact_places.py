@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.boom import Boom, Stop
-from geometry.contact_places import Pad, Stretch, pads
+from geometry.boom import Boom, PadSize, Stop
+from geometry.contact_places import Pad, Patch, Stretch, pads
 
 
 def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
@@ -24,6 +24,17 @@ def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
         Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0, tail, None),
         Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0, head, None),
     ]
+
+
+def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
+    """Reference: by hand, 30 mm inwards from half the width, then 60 mm wide."""
+    (joint,) = paper_boom.joints
+    section = paper_boom.segments[1].section
+    assert section is not None
+    half = 0.5 * section.face("z", 1).width
+    padded = replace(joint, pad=PadSize(length=0.1, width=0.06, offset=0.03))
+    tail, _ = pads(replace(paper_boom, joints=(padded,)))
+    assert tail.patch == Patch(9.0, 9.1, half - 0.09, half - 0.03)
 
 
 def test_a_tied_joint_has_none(paper_boom: Boom) -> None:

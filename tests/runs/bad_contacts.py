@@ -49,6 +49,38 @@ CONTACTS = {
         "joint[1].pad.width: must be above 0 and not above half a wall of the inner segment, "
         "0.135298 m, got 0.2 m",
     ),
+    "pads wider than their offset leaves": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\npad = { length = 0.1, width = 0.1, offset = 0.05 }\n",
+        "joint[1].pad.width: must be above 0 and not above half a wall of the inner segment, "
+        "0.135298 m less the offset of 0.05 m, got 0.1 m",
+    ),
+    "a stiffness beside that of pads": (
+        "exponent = 2.0\n",
+        "pad = { length = 0.1, width = 0.06, thickness = 0.02 }\n",
+        "joint[1].stiffness: pad.thickness is given; leave one of them out",
+    ),
+    "a play above beyond the play": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nplay_above = 0.02\n",
+        "joint[1].play_above: must be a part of play, got 0.02 m",
+    ),
+    "shims in a play": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\ninterference = 0.001\n",
+        "joint[1].interference: shims leave no play; give play = 0",
+    ),
+    "a part of a lateral play that is none": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nlateral_play_left = 0.002\n",
+        "joint[1].lateral_play_left: must be a part of lateral_play, got 0.002 m",
+    ),
+    "shims under a square law": (
+        "play = 0.014\nstiffness = 1e13\n",
+        "play = 0.0\ninterference = 0.001\nstiffness = 1e13\n",
+        "joint[1].interference: what presses from both sides of a joint needs a law of the "
+        "exponent 1, and model 'kantorovich-4' has another; give it one, or leave interference out",
+    ),
     "pads without a width": (
         "exponent = 2.0\n",
         "exponent = 2.0\npad = { length = 0.1 }\n",

@@ -262,11 +262,12 @@ def test_larger_pads_are_softer() -> None:
     """Reference: none but sense: further from the stiff corners the flanges give way more."""
     slow = (2.0 * np.pi * 10.0) ** 2
 
-    def give(width: float) -> float:
-        system = _system(_with_pads(flat_boom(), PadSize(0.1, width)), "near webs")
+    def give(width: float, offset: float = 0.0) -> float:
+        system = _system(_with_pads(flat_boom(), PadSize(0.1, width, offset)), "near webs")
         return float((system.rows[0] ** 2 / (system.omega2 + slow)).sum())
 
     assert give(0.02) < give(0.06) < give(0.12)
+    assert give(0.06) < give(0.06, 0.03) < give(0.06, 0.06)
 
 
 @pytest.mark.parametrize("line", ["across", "surface"])

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slide pads as a case gives them: their stiffness, their plays, how hard they are pressed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from dynamics.contact import PowerContact
+from protractile.cases import run_case
+from runs.case import reading as case_file
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case
+from runs.pipeline.inferred import print_inferred
+from runs.pipeline.models import build
+from runs.pipeline.motion import Plan
+from runs.pipeline.results import Results
+from runs.report.pad_tables import pad_tables
+from tests.runs.coarse_case import COARSE
+
+LAW = "stiffness = 1e13\nexponent = 2.0\n"
+PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure = 2e7 }\n"
+
+
+def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
+    """The coarse case with Timoshenko's beam alone, on the joint's own contacts."""
+    path = folder / "case.toml"
+    beam = '[[model]]\nname = "beam"\nkind = "finite-element"\nelement_length = 0.5\n'
+    text = COARSE[: COARSE.index("[[model]]")] + beam
+    text = text.replace(COARSE[COARSE.index("statements") :].splitlines()[0] + "\n", "")
+    text = text.replace("play = 0.014", f"play = {play}").replace(LAW, joint)
+    path.write_text(text, encoding="utf-8")
+    return case_file.load(str(path))
+
+
+def test_pads_are_as_stiff_as_they_are_thick(tmp_path: Path) -> None:
+    """Reference: analytic, two pads of E A/t = 1.9e9 · 0.01/0.02 on a side."""
+    case = case_with(tmp_path, PAD)
+    (law,) = contact_laws(case, case.models[0])
+    assert isinstance(law, PowerContact)
+    assert (law.stiffness, law.exponent, law.clearance) == pytest.approx((1.9e9, 1.0, 7.0e-3))
+
+
+def test_pads_of_another_modulus(tmp_path: Path) -> None:
+    """Reference: analytic."""
+    stiff = PAD.replace("thickness = 0.02", "thickness = 0.02, modulus = 3.8e9")
+    case = case_with(tmp_path, stiff)
+    (law,) = contact_laws(case, case.models[0])
+    assert law.slope(np.array(0.008)) == pytest.approx(3.8e9)
+
+
+def test_a_play_may_be_more_above_than_below(tmp_path: Path) -> None:
+    """Reference: analytic, 4 mm of 14 mm above."""
+    case = case_with(tmp_path, "stiffness = 1e9\nexponent = 1.0\nplay_above = 0.004\n")
+    (law,) = contact_laws(case, case.models[0])
+    y = np.array([-0.011, -0.0099, 0.0039, 0.005])
+    assert law.force(y) == pytest.approx([-1.0e6, 0.0, 0.0, 1.0e6])
+
+
+def test_check_tells_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    print_inferred(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n"), Console(width=200))
+    assert "4 above, 10 below" in capsys.readouterr().out
+
+
+def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:
+    """Reference: mirror. A load turned over, and the play with it, turn the motion over."""
+    tips = []
+    for part, sign in ((0.004, 1.0), (0.010, -1.0)):
+        case = case_with(tmp_path, f"stiffness = 1e9\nexponent = 1.0\nplay_above = {part}\n")
+        segments = tuple(s.model_copy(update={"load": sign * s.load}) for s in case.segments)
+        case = case.model_copy(update={"segments": segments})
+        model = case.models[0]
+        plan = Plan.of(build(case, build_boom(case), model).system, case, model)
+        tips.append(sign * plan.trajectory(lambda part: None).data["tip"].values)
+    np.testing.assert_allclose(tips[0], tips[1], atol=1e-9)
+    assert np.ptp(tips[0]) > 0.05
+
+
+def test_shims_hold_the_boom_as_springs_do(tmp_path: Path) -> None:
+    """Reference: analytic. Pressed from both sides, a station is a spring of 2 k."""
+    case = case_with(tmp_path, "stiffness = 1e7\nexponent = 1.0\ninterference = 0.02\n", play=0.0)
+    model, boom = case.models[0], build_boom(case)
+    system = build(case, boom, model).system
+    motion = Plan.of(system, case, model).trajectory(lambda part: None)
+    springs = 2.0e7 * system.rows.T @ system.rows
+    omega2, shapes = np.linalg.eigh(np.diag(system.omega2) + springs)
+    load, tip = shapes.T @ system.load, system.observers["tip"].row @ shapes
+    time = motion.data["time"].values[:, None]
+    exact = (1.0 - np.cos(np.sqrt(omega2) * time)) / omega2 @ (load * tip)
+    assert np.abs(motion.data["gap"].values).max() < 0.01
+    np.testing.assert_allclose(motion.data["tip"].values, exact, atol=1e-4 * np.abs(exact).max())
+    assert motion.energy_residual < 1e-5
+
+
+def results(folder: Path, joint: str) -> Results:
+    return run_case(case_with(folder, joint))
+
+
+def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
+    """Reference: by hand, half of the station's largest force over 0.01 m², against 20 MPa."""
+    found = results(tmp_path, PAD)
+    (table,) = pad_tables(found)
+    peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
+    assert peaks.min() > 0.0
+    assert [row[0:4] for row in table.text.rows] == [
+        ("beam", "inner in outer", "9", "z"), ("beam", "inner in outer", "10", "z"),
+    ]  # fmt: skip
+    told = {column.heading: column.cells for column in table.columns}
+    assert told["pressure\nMPa"] == pytest.approx((0.5 * peaks / 0.01).tolist())
+    assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 2.0e7).tolist())
+
+
+def test_corners_bear_no_pressure(tmp_path: Path) -> None:
+    assert pad_tables(results(tmp_path, LAW)) == []
