@@ -58,6 +58,10 @@ class Load:
         """x in m of mesh lines that it needs, by the keys that give them."""
         return {} if self.x is None else {"x": self.x}
 
+    def resultant(self, length: float) -> float:
+        """In N along its direction at the value 1 of its history, on a segment so long in m."""
+        return self.magnitude * (length if self.x is None else 1.0)
+
     def push(self, member: Member) -> Array:
         """(num_dofs,) what it does at the value 1 of its history."""
         if self.x is not None:
@@ -77,6 +81,10 @@ class PartialLoad(Load):
     def places(self) -> Mapping[str, float]:
         return dict(zip(("from", "to"), self.span, strict=True))
 
+    def resultant(self, length: float) -> float:
+        start, end = self.span
+        return self.magnitude * (end - start)
+
     def push(self, member: Member) -> Array:
         return self.magnitude * member.uniform(self.direction, self.span)
 
@@ -84,6 +92,9 @@ class PartialLoad(Load):
 @dataclass(frozen=True, slots=True)
 class Moment(Load):
     """A moment in N·m at one place, which bends the segment towards a larger slope."""
+
+    def resultant(self, length: float) -> float:
+        return 0.0
 
     def push(self, member: Member) -> Array:
         assert self.x is not None

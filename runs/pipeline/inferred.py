@@ -19,6 +19,7 @@ from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
+from runs.pipeline.plausibility import slips
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
@@ -40,6 +41,8 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(ratios)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
+    for slip in slips(case, boom):
+        console.print(slip, markup=False, highlight=False)
     console.print(f"A run may take {of_run(case)}.", highlight=False)
 
 

@@ -18,8 +18,10 @@ from geometry.boom import Boom
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.actions import series_notes
+from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
+from runs.pipeline.plausibility import slips
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -129,7 +131,15 @@ class Results:
             for name, model in models
             if (refused := model.refused_steps)
         ]
-        return failed + far + poor + coarse + halved + series_notes(self.case)
+        return (
+            slips(self.case, build_boom(self.case))
+            + failed
+            + far
+            + poor
+            + coarse
+            + halved
+            + series_notes(self.case)
+        )
 
 
 def read_fields(path: Path) -> xr.Dataset:

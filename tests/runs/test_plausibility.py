@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slips of the unit or of the sign are told, and cases that come with the project have none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.pipeline.plausibility import slips
+
+CASE = """
+title = "An arm"
+
+[time]
+duration = 1.0
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[payload]
+mass = 500.0
+
+[[segment]]
+name = "arm"
+span = [0.0, 8.0]
+supports = [{ x = 0.0, kind = "clamped" }]
+section = { height = 0.4, width = 0.3, flange = 0.008, web = 0.006 }
+load = -670.0
+
+[[segment]]
+name = "fly"
+span = [7.0, 14.0]
+section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }
+load = -470.0
+
+[[joint]]
+outer = "arm"
+inner = "fly"
+stations = [7.0, 8.0]
+play = 0.004
+stiffness = 1e8
+exponent = 1.0
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+element_length = 0.5
+
+[[model]]
+name = "shell"
+kind = "shell"
+mesh_size = 0.1
+"""
+
+
+def slips_of(folder: Path, old: str, new: str) -> list[str]:
+    """Of the case with something else in place of what it says."""
+    assert CASE.count(old) == 1 or old == ""
+    path = folder / "case.toml"
+    path.write_text(CASE.replace(old, new) if old else CASE, encoding="utf-8")
+    case = case_file.load(str(path))
+    return slips(case, build_boom(case))
+
+
+def test_an_arm_has_none(tmp_path: Path) -> None:
+    assert slips_of(tmp_path, "", "") == []
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_cases_that_come_along_have_none(path: Path) -> None:
+    case = case_file.load(str(path))
+    assert slips(case, build_boom(case)) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "slip"),
+    [
+        (
+            "youngs_modulus = 2.1e11",
+            "youngs_modulus = 2.1e5",
+            "the Young's modulus of 'arm', 210000 Pa, is outside what solids have, 1e+09 to 1e+12 "
+            "Pa; check the units",
+        ),
+        (
+            "density = 7850.0",
+            "density = 7.85",
+            "the density of 'arm', 7.85 kg/m^3, is outside what solids have, 500 to 25000 kg/m^3; "
+            "check the units",
+        ),
+        (
+            "height = 0.4, width = 0.3",
+            "height = 4.0, width = 0.3",
+            "the section of 'arm' is 4 m high, more than a fifth of its length of 8 m: no "
+            "beam, or another unit",
+        ),
+        (
+            "mass = 500.0",
+            "mass = 0.5",
+            "the payload of 0.5 kg is less than a thousandth of the boom's 972.6 kg; check the "
+            "units",
+        ),
+        (
+            "load = -470.0",
+            "load = -4.7e6",
+            "a load of 3.29e+07 N is more than a hundred times the boom's weight of 1.444e+04 N; "
+            "check the units",
+        ),
+        (
+            "stiffness = 1e8",
+            "stiffness = 1e4",
+            "the contacts of 'fly' in 'beam' give way by 0.0001 m/N, more than the segment itself "
+            "as a cantilever, 3.89e-06 m/N; check their stiffness",
+        ),
+        (
+            "mesh_size = 0.1",
+            "mesh_size = 0.5",
+            "the mesh size of 'shell', 0.5 m, is larger than a wall of 0.26 m",
+        ),
+    ],
+    ids=["modulus", "density", "height", "payload", "load", "contact", "mesh"],
+)
+def test_each_slip_is_told(tmp_path: Path, old: str, new: str, slip: str) -> None:
+    assert f"caution: {slip}" in slips_of(tmp_path, old, new)
+
+
+def test_weights_of_the_wrong_sign_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    text = CASE.replace("load = -", "load = ").replace("[payload]\nmass = 500.0\n", "")
+    path.write_text(text, encoding="utf-8")
+    case = case_file.load(str(path))
+    assert slips(case, build_boom(case)) == [
+        "caution: all loads pull upwards, by 8650 N; those that pull down, as weights do, are "
+        "negative"
+    ]
