@@ -75,9 +75,12 @@ class BoomModes:
         # A small turn θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
         if arm != 0.0:
-            twist = self._component(segment, "twist").at(x)
-            row += arm * self._expand(segment, "twist", twist)
+            row += arm * self.twist(segment, x)
         return row
+
+    def twist(self, segment: int, x: float) -> Array:
+        """(num_modes,) row that reads the turn of a segment's cross-section about x in rad."""
+        return self._expand(segment, "twist", self._component(segment, "twist").at(x))
 
     def unit_load(self, segment: int, direction: Direction) -> Array:
         """(num_modes,) modal load of one N/m along a segment, in 1/(N/m) of N/√kg."""
@@ -88,6 +91,10 @@ class BoomModes:
         rotation = self._component(segment, direction).rotation
         assert rotation is not None
         return self._expand(segment, direction, rotation(x))
+
+    def turning(self, segment: int, direction: Direction) -> Array:
+        """(num_modes,) modal momentum of a segment that turns about x = 0 by 1 rad/s."""
+        return self._expand(segment, direction, self._component(segment, direction).turning)
 
     def load_between(self, segment: int, direction: Direction, start: float, end: float) -> Array:
         """(num_modes,) modal load of one N/m between two x in m of a segment."""

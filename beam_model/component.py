@@ -32,6 +32,8 @@ class Component:
         at: x in m → (num_dofs,) row that reads the deflection or twist there.
         rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
             slope of a beam that is rigid in shear; none of a twist.
+        turning: (num_dofs,) the momentum that turning about x = 0 by 1 rad/s gives the mass per
+            length and the rotary inertia, in N·s; none of a twist.
         breaks: x in m between which rows are polynomials.
         rigid_modes: how many motions the supports leave free of strain.
     """
@@ -44,6 +46,7 @@ class Component:
     at: Callable[[float], Array]
     rigid_modes: int
     rotation: Callable[[float], Array] | None = None
+    turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
 
     def uniform_load(self, start: float, end: float) -> Array:

@@ -80,7 +80,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     """The deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
-    unit_load = np.zeros(num_dofs)
+    unit_load, turning = np.zeros((2, num_dofs))
     points, weights = _GAUSS
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(2 * k, 2 * k + 4)
@@ -93,8 +93,10 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             shear_stiffness = 12.0 * segment.bending_stiffness / (phi * h**2)
             stiffness[dofs, dofs] += shear_stiffness * products(slope - theta, weight)
         mass[dofs, dofs] += segment.mass_per_length * products(w, weight)
+        turning[dofs] += segment.mass_per_length * w @ (weight * (nodes[k] + h * xi))
         if rotary_inertia:
             mass[dofs, dofs] += segment.rotary_inertia * products(theta, weight)
+            turning[dofs] += segment.rotary_inertia * theta @ weight
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
         unit_load[dofs] += w @ weight
 
@@ -126,6 +128,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         unit_load=unit_load[free],
         at=partial(read, _deflection),
         rotation=partial(read, _rotation),
+        turning=turning[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
     )

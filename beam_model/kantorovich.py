@@ -65,8 +65,10 @@ def kantorovich_bending(
     printed = int(bool(segment.supports) and base == "as printed")
     stiffness = segment.bending_stiffness * products(basis.curvature, basis.weights)
     mass = segment.mass_per_length * products(basis.value, basis.weights)
+    turning = segment.mass_per_length * basis.value @ (basis.x * basis.weights)
     if rotary_inertia:
         mass += segment.rotary_inertia * products(basis.slope, basis.weights)
+        turning += segment.rotary_inertia * basis.slope @ basis.weights
     for support in segment.supports:
         if support.stiffness is not None:
             row = basis.at(support.x)
@@ -82,6 +84,7 @@ def kantorovich_bending(
         unit_load=basis.integral,
         at=basis.at,
         rotation=basis.slope_at,
+        turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
     )
 
@@ -193,6 +196,7 @@ class _Basis:
     """Functions on a segment, at the points of a rule that is exact for products of two.
 
     Attributes:
+        x: (num_points,) in m.
         value, slope, curvature: (num_functions, num_points).
         weights: (num_points,) in m.
         integral: (num_functions,) ∫ φ_i dx.
@@ -203,10 +207,10 @@ class _Basis:
         # Gauss's rule with as many points as the highest degree and one is exact.
         degree = max(function.degree() for function in functions)
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
-        x = segment.start + 0.5 * segment.length * (nodes + 1.0)
+        self.x = segment.start + 0.5 * segment.length * (nodes + 1.0)
         self.weights = 0.5 * segment.length * weights
         self.value, self.slope, self.curvature = (
-            np.array([(f.deriv(order) if order else f)(x) for f in functions])
+            np.array([(f.deriv(order) if order else f)(self.x) for f in functions])
             for order in (0, 1, 2)
         )
         self.integral = self.value @ self.weights

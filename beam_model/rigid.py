@@ -44,4 +44,4 @@ def _moving(segment: Segment, motions: int) -> Component:
 
 def _held() -> Component:
     none, empty = np.zeros(0), np.zeros((0, 0))
-    return Component(empty, empty, empty, none, none, lambda x: none, 0, lambda x: none)
+    return Component(empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, none)

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from dynamics.contact import ContactLaw
-from dynamics.gap_builder import GapBuilder
+from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
+from geometry.observation import Observation, Quantity
 
 
 def gap_system(
@@ -72,14 +73,28 @@ def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:
     return inner - modes.displacement(pad.joint.outer, pad.x, direction, pad.outer)
 
 
-def _observed(boom: Boom, modes: BoomModes) -> dict[str, tuple[Array, str]]:
-    """Deflections of the boom's ends, with their unit."""
-    observed = {}
-    for name, (segment, x) in boom.observed.items():
-        observed[name] = modes.displacement(segment, x, "z"), "m"
-        if boom.spatial:
-            observed[f"{name}_lateral"] = modes.displacement(segment, x, "y"), "m"
-    return observed
+def _observed(boom: Boom, modes: BoomModes) -> dict[str, Observed[Array]]:
+    """Deflections of the boom's ends, and what is observed besides."""
+    ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)
+    return {
+        place.name: Observed(_row(place, modes), place.kind.unit, place.kind.derivative)
+        for place in boom.recorded(ends)
+    }
+
+
+def _row(place: Observation, modes: BoomModes) -> Array:
+    """(num_modes,) that reads a quantity, or what it is the derivative of."""
+    match place.quantity:
+        case "rotation":
+            return modes.rotation(place.segment, place.x, "z")
+        case "twist":
+            return modes.twist(place.segment, place.x)
+        case "lateral":
+            return modes.displacement(place.segment, place.x, "y")
+        case "distortion":
+            raise ValueError("the cross-section of a beam keeps its shape")
+        case _:
+            return modes.displacement(place.segment, place.x, "z")
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,3 +117,6 @@ class _Member:
 
     def inertia(self, direction: Direction, force: float) -> Array:
         return force * self.uniform(direction, None)
+
+    def turning(self, direction: Direction) -> Array:
+        return self.modes.turning(self.segment, direction)

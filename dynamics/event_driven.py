@@ -291,6 +291,7 @@ def integrate_events(motion: Motion, tolerance: float = TOLERANCE) -> Trajectory
         system,
         time=output_step * np.arange(outputs + 1),
         states=states,
+        velocities=velocities,
         energies=energies,
         row_gaps=row_gaps,
         row_forces=impulses / output_step,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -55,6 +55,14 @@ class Stop(Protocol):
     def clearance(self) -> float: ...
     @property
     def stiffness_below(self) -> float: ...
+
+
+class Observed(NamedTuple, Generic[R]):
+    """One output, as :class:`dynamics.gap_system.Observer`, of what it reads."""
+
+    reading: R
+    unit: str = "m"
+    derivative: Literal[0, 1, 2] = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +154,7 @@ class GapBuilder(Generic[R]):
         omega2: Array,
         load: Array,
         places: Sequence[tuple[float, str]],
-        observed: Mapping[str, tuple[R, str]],
+        observed: Mapping[str, Observed[R]],
         loads: Sequence[tuple[Array, History | Released | Thrown]],
         grounded_dashpots: Sequence[tuple[float, Array]] = (),
         damping: Array | None = None,
@@ -157,7 +165,7 @@ class GapBuilder(Generic[R]):
             read: (num_modes,) the row of what is read.
             omega2, load: (num_modes,) of the modes.
             places: x in m and direction of each station.
-            observed: what a trajectory records, and its unit, by its name.
+            observed: what a trajectory records, by its name.
             loads: (num_modes,) what pushes beside ``load``, and when.
             grounded_dashpots: coefficients in N·s/m of those between the ground and what a row
                 (num_modes,) reads.
@@ -184,7 +192,10 @@ class GapBuilder(Generic[R]):
             laws=[contact.law for contact in self.contacts],
             station_of_row=np.array([contact.station for contact in self.contacts], dtype=np.int64),
             stations=[x for x, _ in places],
-            observers={name: Observer(read(row), unit) for name, (row, unit) in observed.items()},
+            observers={
+                name: Observer(read(seen.reading), seen.unit, seen.derivative)
+                for name, seen in observed.items()
+            },
             damping=np.zeros(0) if damping is None else damping,
             dashpots=np.array(dashpots).reshape(-1, omega2.size),
             friction_rows=rows([friction.reading for friction in self.frictions]),

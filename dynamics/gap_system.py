@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -28,10 +28,17 @@ class Observer(NamedTuple):
 
     >>> pt.Observer(np.ones(1)).unit
     'm'
+
+    Args:
+        row: over the modal coordinates,
+        unit: of what it reads of them, or
+        derivative: of their velocities where it is 1, and of their mean accelerations over the
+            output interval that ends then where it is 2.
     """
 
     row: Array
     unit: str = "m"
+    derivative: Literal[0, 1, 2] = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +119,7 @@ class GapSystem:
             "station_of_row": (self.station_of_row, (m,)),
             "friction_rows": (self.friction_rows, (len(self.frictions), n)),
             **{f"excitation {e}": (x.load, (n,)) for e, x in enumerate(self.excitations)},
-            **{f"observer {name!r}": (row, (n,)) for name, (row, _) in self.observers.items()},
+            **{f"observer {name!r}": (seen.row, (n,)) for name, seen in self.observers.items()},
         }
         for name, (array, shape) in expected.items():
             if array.shape != shape:
@@ -144,6 +151,11 @@ class GapSystem:
     def damped(self) -> bool:
         """Whether anything but contacts and friction takes energy."""
         return bool(self.damping.any() or self.dashpots.any())
+
+    @property
+    def observes_rates(self) -> bool:
+        """Whether velocities are read, and not coordinates alone."""
+        return any(seen.derivative for seen in self.observers.values())
 
     @property
     def damping_matrix(self) -> Array:

@@ -125,9 +125,9 @@ def _march(
 ) -> None:
     """Advance by ``len(out[0])`` output intervals and record each.
 
-    ``out`` = (states, energies, gaps, mean forces, peak forces, friction forces), one row an
-    interval. ``flows`` has one (9, num_modes) for each of the ``STRIDES`` that may be made, with
-    the rates of damping.
+    ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces), one
+    row an interval; velocities may have no columns. ``flows`` has one (9, num_modes) for each of
+    the ``STRIDES`` that may be made, with the rates of damping.
     """
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
     omega2, load, rows, terms, limits = system
@@ -135,7 +135,7 @@ def _march(
     friction_rows, given, _, _ = dry
     loads, _, spans, parts, straight, pushes = excitations
     now, _, then = pushes
-    states, energies, gaps, means, peaks, frictions = out
+    states, velocities, energies, gaps, means, peaks, frictions = out
     bounds = np.zeros(y.size)
     piece, undamped = np.zeros((2, *flows[0].shape))
     faded, none = np.zeros(rates.size), np.zeros(a.size)
@@ -217,6 +217,7 @@ def _march(
                 look(a, v, friction_rows, grip)
         tally[WORK] += np.dot(load, a - start)
         states[interval] = a
+        velocities[interval] = v[: velocities.shape[1]]
         gaps[interval] = y
         means[interval] = mean
         peaks[interval] = peak
@@ -260,13 +261,15 @@ def integrate(
 
     f = len(system.frictions)
     states, frictions = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, f))
+    velocities = np.zeros((outputs + 1, n if system.observes_rates else 0))
     gaps, means, peaks = np.zeros((3, outputs + 1, m))
     energies = np.zeros((outputs + 1, len(ENERGIES)))
     states[0], gaps[0] = a, y
+    velocities[0] = v[: velocities.shape[1]]
     means[0] = peaks[0] = [w.force(gap) for w, gap in zip(system.laws, y, strict=True)]
     energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
     energies[0, 2] = sum(float(w.energy(y)) for w, y in zip(system.laws, gaps[0], strict=True))
-    recorded = (states, energies, gaps, means, peaks, frictions)
+    recorded = (states, velocities, energies, gaps, means, peaks, frictions)
 
     # What the loads give within one step.
     least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
@@ -284,6 +287,7 @@ def integrate(
         system,
         time=output_step * np.arange(outputs + 1),
         states=states,
+        velocities=velocities,
         energies=energies,
         row_gaps=gaps,
         row_forces=means,

@@ -8,6 +8,7 @@ what there was.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.energy import ENERGIES, energy_residual
-from dynamics.gap_system import GapSystem
+from dynamics.gap_system import GapSystem, Observer
 
 # Imported where data are made or read: what only plans a motion spares a second of imports.
 if TYPE_CHECKING:
@@ -23,6 +24,23 @@ if TYPE_CHECKING:
 
 
 Dims = str | tuple[str, str]
+
+# What is known of each station.
+OF_STATIONS: Mapping[str, Mapping[str, str]] = {
+    "contact_force": {
+        "units": "N",
+        "long_name": "contact force, mean of the output interval that ends then",
+    },
+    "contact_force_peak": {
+        "units": "N",
+        "long_name": "largest contact force of the output interval that ends then",
+    },
+    "friction_force": {
+        "units": "N",
+        "long_name": "friction force, mean of the output interval that ends then",
+    },
+    "gap": {"units": "m", "long_name": "deflection of the inner segment less that of the outer"},
+}
 
 # A peak below this part of the deflection is the round-off of something at rest.
 STILL = 1.0e-6
@@ -60,6 +78,7 @@ class Trajectory:
         *,
         time: Array,
         states: Array,
+        velocities: Array,
         energies: Array,
         row_gaps: Array,
         row_forces: Array,
@@ -75,7 +94,8 @@ class Trajectory:
 
         Args:
             time: (num_times,) in s.
-            states: (num_times, num_modes).
+            states, velocities: (num_times, num_modes) a and ȧ; the latter may be empty where no
+                observer reads rates.
             energies: (num_times, 7), the columns of ``ENERGIES`` in J.
             row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
             row_frictions: (num_times, num_frictions) in N.
@@ -89,19 +109,27 @@ class Trajectory:
         belongs = np.equal.outer(system.station_of_row, stations)
         rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
+
+        def read(seen: Observer) -> Array:
+            values = (velocities if seen.derivative else states) @ seen.row
+            return _mean_rate(time, values) if seen.derivative == 2 else values
+
         variables: dict[str, tuple[Dims, Array, dict[str, str]]] = {
-            name: ("time", states @ row, {"units": unit})
-            for name, (row, unit) in system.observers.items()
+            name: ("time", read(seen), {"units": seen.unit})
+            for name, seen in system.observers.items()
         }
-        by_station = ("time", "station")
-        variables |= {
-            "contact_force": (by_station, row_forces @ belongs, {"units": "N"}),
-            "contact_force_peak": (by_station, row_peaks @ belongs, {"units": "N"}),
-            "friction_force": (by_station, row_frictions @ rubs, {"units": "N"}),
-            "gap": (by_station, row_gaps @ belongs / rows_at, {"units": "m"}),
+        by_station = {
+            "contact_force": row_forces @ belongs,
+            "contact_force_peak": row_peaks @ belongs,
+            "friction_force": row_frictions @ rubs,
+            "gap": row_gaps @ belongs / rows_at,
         }
         variables |= {
-            name: ("time", column, {"units": "J"})
+            name: (("time", "station"), values, {**OF_STATIONS[name]})
+            for name, values in by_station.items()
+        }
+        variables |= {
+            name: ("time", column, {"units": "J", "long_name": name.replace("_", " ")})
             for name, column in zip(ENERGIES, energies.T, strict=True)
         }
         import xarray as xr
@@ -109,8 +137,12 @@ class Trajectory:
         data = xr.Dataset(
             variables,
             coords={
-                "time": ("time", time, {"units": "s"}),
-                "station": ("station", np.array(system.stations, dtype=float), {"units": "m"}),
+                "time": ("time", time, {"units": "s", "long_name": "time"}),
+                "station": (
+                    "station",
+                    np.array(system.stations, dtype=float),
+                    {"units": "m", "long_name": "x of the station"},
+                ),
                 "direction": ("station", np.array(system.station_directions, dtype=str)),
             },
             attrs={
@@ -151,6 +183,7 @@ class Trajectory:
             system,
             time=time,
             states=states,
+            velocities=velocities,
             energies=energies,
             row_gaps=gaps,
             row_forces=forces,
@@ -196,3 +229,8 @@ class Trajectory:
         if peaks.size == 0:
             return float("nan"), float("nan")
         return float(self.time[peaks[0]]), float(deflection[peaks[0]])
+
+
+def _mean_rate(time: Array, values: Array) -> Array:
+    """(num_times,) of the interval that ends at each time, 0 at the start."""
+    return np.concatenate([[0.0], np.diff(values) / np.diff(time)])

@@ -6,12 +6,13 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from geometry.joint import Joint, PadSize, Stop
 from geometry.load import Load
+from geometry.observation import KINDS, Observation, Quantity
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
@@ -36,6 +37,7 @@ __all__ = [
     "Lateral",
     "Load",
     "Material",
+    "Observation",
     "PadSize",
     "PointMass",
     "Segment",
@@ -69,13 +71,15 @@ class Boom:
     Raises:
         BoomError: supports, stations, loads or stops outside the segments, an inner box that does
             not fit its outer one, a section that does not mirror itself, a segment that nothing
-            holds, friction without what presses, a boom in space that lacks lateral numbers.
+            holds, friction without what presses, a boom in space that lacks lateral numbers, an
+            observation of what is not there.
     """
 
     segments: tuple[Segment, ...]
     joints: tuple[Joint, ...]
     loads: tuple[Load, ...] = ()
     stops: tuple[Stop, ...] = ()
+    observations: tuple[Observation, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.segments:
@@ -98,6 +102,7 @@ class Boom:
             self._check_contact_length(f"joint[{number}]", joint)
         self._check_loads()
         self._check_stops()
+        self._check_observations()
 
     @property
     def tip(self) -> float:
@@ -170,6 +175,20 @@ class Boom:
             places[f"head{suffix}"] = (joint.outer, self.segments[joint.outer].end)
             places[f"tail{suffix}"] = (joint.inner, self.segments[joint.inner].start)
         return places
+
+    def recorded(self, of_ends: Sequence[Quantity]) -> list[Observation]:
+        """What a model records: several quantities of every end, then what is observed besides.
+
+        Behind an end's name stands the quantity, ``tip_rotation``, unless it is the deflection.
+        """
+        return [*self._at_ends(of_ends), *self.observations]
+
+    def _at_ends(self, quantities: Iterable[Quantity]) -> list[Observation]:
+        return [
+            Observation(f"{name}_{what}".removesuffix("_deflection"), segment, x, what)
+            for name, (segment, x) in self.observed.items()
+            for what in quantities
+        ]
 
     def _check_order(self) -> None:
         for number, (before, after) in enumerate(pairwise(self.segments), start=2):
@@ -295,6 +314,24 @@ class Boom:
                         f"a support holds {segment.name!r} at {stop.x:g} m already; move one of "
                         "them",
                     )
+
+    def _check_observations(self) -> None:
+        own = {place.name for place in self._at_ends(KINDS)}
+        for number, place in enumerate(self.observations, start=1):
+            where = f"observe[{number}]"
+            if place.name in own:
+                raise BoomError(
+                    f"{where}.name",
+                    f"{place.name!r} is the name of another output already; give it its own",
+                )
+            own.add(place.name)
+            _check_place(f"{where}.x", place.x, self.segments[place.segment])
+            if place.quantity in ("lateral", "twist") and not self.spatial:
+                raise BoomError(
+                    f"{where}.quantity",
+                    "the boom is flat, and nothing moves along 'y' or twists; give another "
+                    "quantity, or the joints lateral_play",
+                )
 
 
 def _overlap(joint: Joint, segments: tuple[Segment, ...]) -> tuple[float, float]:

@@ -26,6 +26,11 @@ class Member(Protocol):
     def inertia(self, direction: Direction, force: float) -> Array:
         """An acceleration of all masses per length which the plain segment feels as so many N/m."""
 
+    def turning(self, direction: Direction) -> Array:
+        """The inertia of all but point masses against 1 rad/s² about x = 0, towards a larger slope
+        in the direction's plane.
+        """
+
 
 @dataclass(frozen=True, slots=True)
 class Load:
@@ -99,3 +104,14 @@ class Moment(Load):
     def push(self, member: Member) -> Array:
         assert self.x is not None
         return self.magnitude * member.moment(self.x, self.direction)
+
+
+@dataclass(frozen=True, slots=True)
+class Turn(Load):
+    """What mass per length and rotary inertia feel of turning about x = 0; magnitude in rad/s².
+
+    With a history that gives its impulse, what makes them turn by so many rad/s.
+    """
+
+    def push(self, member: Member) -> Array:
+        return self.magnitude * member.turning(self.direction)

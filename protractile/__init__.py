@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from geometry.boom import Load as Load
     from geometry.boom import PadSize as PadSize
     from geometry.boom import Stop as Stop
+    from geometry.observation import Observation as Observation
     from geometry.section import BoxSection as BoxSection
     from geometry.section import Section as Section
     from geometry.segment import Collar as Collar
@@ -90,6 +91,7 @@ _HOMES = {
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.trajectory": "Trajectory",
         "geometry.boom": "Boom BoomError Joint Load PadSize Stop",
+        "geometry.observation": "Observation",
         "geometry.section": "BoxSection Section",
         "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment Support",
         "geometry.unequal_box": "UnequalBox",

@@ -14,13 +14,14 @@ import numpy as np
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
-from dynamics.gap_builder import GapBuilder
+from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.observation import Quantity
 from geometry.spots import spots
 from shell_model.contact.local_compliance import full_compliance, local_compliance
 from shell_model.contact.rows import gap_rows, ties
@@ -105,7 +106,7 @@ class BoomShell:
         ties: what stays at zero.
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
         loads: those that follow a history, and (num_owned,) what they push.
-        observed: what a motion records, with its unit.
+        observed: what a motion records.
     """
 
     comm: MPI.Comm
@@ -115,7 +116,7 @@ class BoomShell:
     ties: Sequence[Reading]
     own_loads: Sequence[Array]
     loads: Sequence[tuple[Load, Array]]
-    observed: Mapping[str, tuple[Reading, str]]
+    observed: Mapping[str, Observed[Reading]]
 
     @property
     def num_dofs(self) -> int:
@@ -219,6 +220,8 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     supports = sorted(support.x for support in segment.supports)
     breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
+    seen = (place.x for place in boom.observations if place.segment == number)
+    breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.section, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))
@@ -232,26 +235,27 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     return mesh
 
 
-def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, tuple[Reading, str]]:
-    """What is reported of the boom's ends, with its unit. Collective."""
-    readings = _IN_SPACE if boom.spatial else _IN_PLANE
-    observed: dict[str, tuple[Reading, str]] = {}
-    for name, (number, x) in boom.observed.items():
-        outline = shells[number].outline(x)
-        for suffix, (row, unit) in readings.items():
-            observed[name + suffix] = (Reading({number: row(outline)}), unit)
+def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
+    """What is reported of the boom's ends, and what is observed besides. Collective."""
+    ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
+    if boom.spatial:
+        ends += ("lateral", "twist")
+    outlines: dict[tuple[int, float], Outline] = {}
+    observed = {}
+    for place in boom.recorded(ends):
+        at = place.segment, place.x
+        if at not in outlines:
+            outlines[at] = shells[place.segment].outline(place.x)
+        row = _READ.get(place.quantity, Outline.mean_deflection)(outlines[at])
+        kind = place.kind
+        observed[place.name] = Observed(Reading({place.segment: row}), kind.unit, kind.derivative)
     return observed
 
 
-_SectionReadings = Mapping[str, tuple[Callable[[Outline], Row], str]]
-
-_IN_PLANE: _SectionReadings = {
-    "": (Outline.mean_deflection, "m"),
-    "_rotation": (Outline.rotation, "rad"),
-    "_distortion": (Outline.distortion, "m"),
-}
-_IN_SPACE: _SectionReadings = {
-    **_IN_PLANE,
-    "_lateral": (partial(Outline.mean_deflection, direction="y"), "m"),
-    "_twist": (Outline.twist, "rad"),
+# Other quantities are read as the deflection, of which they may be derivatives.
+_READ: Mapping[Quantity, Callable[[Outline], Row]] = {
+    "rotation": Outline.rotation,
+    "distortion": Outline.distortion,
+    "lateral": partial(Outline.mean_deflection, direction="y"),
+    "twist": Outline.twist,
 }

@@ -112,7 +112,7 @@ def _reduced(full: BoomShell, number: int, options: ShellOptions, stages: Stages
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
-    observed = full.columns(number, [reading for reading, _ in full.observed.values()])
+    observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as tell:
         own = reduce_segment(shell, full.forces(number), krylov, tell, readings=observed)
         if at_surface and joined.size:

@@ -22,6 +22,7 @@ from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
 from shell_model.forms import ShellForms
+from shell_model.reduction.products import times
 
 # Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
 ON_LINE = 1.0e-7
@@ -140,15 +141,21 @@ class Shell:
         motions = np.zeros((self.free.size, 6))
         ends = self.comm.allgather((self.nodes[:, 0].min(), self.nodes[:, 0].max()))
         middle = 0.5 * (min(low for low, _ in ends) + max(high for _, high in ends))
-        arms = self.nodes - [middle, 0.0, 0.0]
         for i, axis in enumerate(np.eye(3)):
             motions[self.node_dofs - first, i] = axis
-            motions[self.node_dofs - first, 3 + i] = np.cross(axis, arms)
-            motions[self.rotation_dofs - first, 3 + i] = axis
+            motions[:, 3 + i] = self.turn(axis, middle)
         held = np.concatenate(self.comm.allgather(motions[~self.free]))
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
         # One rank decides on the basis of what is left, for all.
         return np.asarray(motions @ self.comm.bcast(_unheld(held)))
+
+    def turn(self, axis: Array, x: float) -> Array:
+        """(num_owned,) motion of turning by 1 rad about an axis (3,) through x in m."""
+        first, _ = self.owned
+        motion = np.zeros(self.free.size)
+        motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
+        motion[self.rotation_dofs - first] = axis
+        return motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,6 +224,15 @@ class SegmentShell(Shell):
         acceleration = force / self.segment.mass_per_length
         whole = force * self.unit_loads[direction]
         return whole + acceleration * self.stiffener_loads[direction]
+
+    def turning(self, direction: Direction) -> Array:
+        """(num_owned,) the inertia of all plates against 1 rad/s² about x = 0. Collective."""
+        axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
+        # What is held takes part in the motion of what is not.
+        mass = compat.assemble_matrix(self.matrices.plates.forms.mass, [], 0.0)
+        inertia = times(mass, self.turn(axis, 0.0)[:, None])[:, 0] * self.free
+        mass.destroy()
+        return np.asarray(inertia)
 
     def row(self, weights: Row) -> Array:
         """(num_owned,) this rank's part of a row given as global dof → weight."""

@@ -13,9 +13,9 @@ from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thro
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import BoomError, Direction, Segment, Stop
-from geometry.load import Load, Moment, PartialLoad
+from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
-from runs.case.schema import Case, GravityTable, HistoryTable, LoadTable
+from runs.case.schema import Case, GravityTable, HistoryTable, LoadTable, VelocityTable
 
 STANDARD_GRAVITY = 9.80665
 
@@ -49,15 +49,31 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     for number, base in enumerate(case.base, start=1):
         history = _history(f"base[{number}]", base)
         given += _felt(-base.acceleration, base.direction, history, segments)
-    for name, speed in case.start.velocity.items():
-        index = _segment("start.velocity", name, segments)
-        momentum = speed * segments[index].mass_per_length
-        given.append(Load(index, "z", momentum, None, Thrown(), inertial=True))
-        given += [
-            Load(index, "z", speed * point.mass, point.x, Thrown())
-            for point in segments[index].masses
-        ]
+    for name, velocity in case.start.velocity.items():
+        given += _thrown(_segment("start.velocity", name, segments), velocity, segments)
     return tuple(given)
+
+
+def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) -> list[Load]:
+    """The momentum of a segment that moves as a rigid body."""
+    segment = segments[index]
+    at = segment.start if velocity.x is None else velocity.x
+    planes: tuple[tuple[Direction, float, float], ...] = (
+        ("z", velocity.z, velocity.turn),
+        ("y", velocity.y, velocity.lateral_turn),
+    )
+    given: list[Load] = []
+    for direction, speed, turn in planes:
+        if speed or turn:
+            there = (speed - turn * at) * segment.mass_per_length
+            given.append(Load(index, direction, there, None, Thrown(), inertial=True))
+            given += [
+                Load(index, direction, (speed + turn * (p.x - at)) * p.mass, p.x, Thrown())
+                for p in segment.masses
+            ]
+        if turn:
+            given.append(Turn(index, direction, turn, None, Thrown()))
+    return given
 
 
 def _felt(

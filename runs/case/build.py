@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.contact import ContactLaw
+from dynamics.energy import ENERGIES
+from dynamics.trajectory import OF_STATIONS
 from geometry.boom import (
     Boom,
     BoomError,
@@ -19,6 +21,7 @@ from geometry.boom import (
     Segment,
     Support,
 )
+from geometry.observation import Observation
 from geometry.section import (
     Section,
     SectionError,
@@ -30,6 +33,9 @@ from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
 from runs.case.schema import Case, Model, SegmentTable
+
+# What trajectories hold of every boom.
+_TAKEN = {*OF_STATIONS, *ENERGIES, "time", "station", "direction", "place", "model"}
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -46,7 +52,33 @@ def build_boom(case: Case) -> Boom:
     joints = tuple(_joint(case, number) for number in range(len(case.joints)))
     sections = _sections(case, joints)
     segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
-    return Boom(segments, joints, actions.loads(case, segments), actions.stops(case, segments))
+    return Boom(
+        segments,
+        joints,
+        actions.loads(case, segments),
+        actions.stops(case, segments),
+        _observations(case),
+    )
+
+
+def _observations(case: Case) -> tuple[Observation, ...]:
+    check_names("observe", [table.name for table in case.observe])
+    names = [segment.name for segment in case.segments]
+    for number, table in enumerate(case.observe, start=1):
+        if table.segment not in names:
+            raise BoomError(
+                f"observe[{number}].segment",
+                f"{table.segment!r} is no segment; give {choices(names)}",
+            )
+        if table.name in _TAKEN:
+            raise BoomError(
+                f"observe[{number}].name",
+                f"{table.name!r} is the name of another output already; give it its own",
+            )
+    return tuple(
+        Observation(table.name, names.index(table.segment), table.x, table.quantity)
+        for table in case.observe
+    )
 
 
 def joined(case: Case, boom: Boom, model: Model) -> Joined:
@@ -195,6 +227,10 @@ def _check_flat(case: Case) -> None:
     for number, base in enumerate(case.base, start=1):
         if base.direction == "y":
             raise BoomError(f"base[{number}].direction", remedy)
+    for name, velocity in case.start.velocity.items():
+        for key in ("y", "lateral_turn"):
+            if getattr(velocity, key) != 0.0:
+                raise BoomError(f"start.velocity.{name}.{key}", remedy)
 
 
 def _in_space(case: Case) -> bool:

@@ -34,11 +34,16 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "payload": schema.PayloadTable,
     "gravity": schema.GravityTable,
     "base": schema.BaseTable,
+    "observe": schema.ObserveTable,
     "start": schema.StartTable,
+    "velocity": schema.VelocityTable,
     "damping": schema.DampingTable,
     **SHAPES,
     **KINDS,
 }
+
+# Keys of the case that are arrays of tables.
+_ARRAYS = ("segment", "joint", "stop", "load", "base", "observe", "model")
 
 # Names that a message lists of those that would be right.
 MOST_CHOICES = 12
@@ -137,7 +142,7 @@ def _explain(
         what = "must be made of letters, digits, blanks and . _ + -, starting with one of the first"
     elif fault == "string_pattern_mismatch":
         what = "must be a line of printable characters"
-    elif fault == "tuple_type" and key in ("segment", "joint", "stop", "load", "base", "model"):
+    elif fault == "tuple_type" and key in _ARRAYS:
         what = f"must be an array of tables, each headed [[{key}]]"
     elif fault == "tuple_type":
         what = "must be a list"
@@ -173,6 +178,9 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
 def _table(location: Sequence[int | str]) -> type[BaseModel]:
     """The table that holds the last step of a path."""
     names = [step for step in location[:-1] if isinstance(step, str)]
+    if names[:2] == ["start", "velocity"]:
+        # Behind it stands a segment's name.
+        del names[2:]
     return _TABLES[names[-1]] if names else schema.Case
 
 

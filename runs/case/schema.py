@@ -318,14 +318,58 @@ class BaseTable(HistoryTable):
         return "m/s^2"
 
 
+class VelocityTable(Table):
+    """How a segment moves at t = 0, as a rigid body would."""
+
+    z: Number = Field(0.0, description="the velocity along z in m/s")
+    y: Number = Field(0.0, description="the velocity along y in m/s")
+    turn: Number = Field(
+        0.0, description="the rate of rotation in rad/s by which the velocity along z grows with x"
+    )
+    lateral_turn: Number = Field(
+        0.0, description="the rate of rotation in rad/s by which the velocity along y grows with x"
+    )
+    x: Number | None = Field(
+        None, description="the x in m that has these velocities; the segment's start unless given"
+    )
+
+
+def _velocity(given: Any) -> Any:
+    """A number alone is the velocity along z."""
+    number = isinstance(given, int | float) and not isinstance(given, bool)
+    return {"z": float(given)} if number else given
+
+
+Velocity = Annotated[
+    VelocityTable, BeforeValidator(_velocity, json_schema_input_type=Number | VelocityTable)
+]
+
+
 class StartTable(Table):
     """The state at t = 0."""
 
     state: Literal["rest", "equilibrium"] = Field(
         "rest", description="straight and unloaded, or at rest under the loads of t = 0"
     )
-    velocity: dict[str, Number] = Field(
-        default_factory=dict, description="segment = velocity along z in m/s"
+    velocity: dict[str, Velocity] = Field(
+        default_factory=dict,
+        description="segment = velocity along z in m/s, or a table with a turn besides",
+    )
+
+
+class ObserveTable(Table):
+    """What is recorded of every model besides the ends of the segments."""
+
+    name: Name = Field(description="what the results call it")
+    segment: str = Field(description="the name of the segment")
+    x: Number = Field(description="the x in m")
+    quantity: Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"] = (
+        Field(
+            "deflection",
+            description="the deflection along z, its velocity, its acceleration as the mean of "
+            "each output interval, the rotation of the cross-section; in space the lateral "
+            "deflection and the twist",
+        )
     )
 
 
@@ -387,6 +431,9 @@ class Case(Table):
     )
     base: Annotated[tuple[BaseTable, ...], Few] = Field(
         (), description="the accelerations of the ground"
+    )
+    observe: Annotated[tuple[ObserveTable, ...], Few] = Field(
+        (), description="the places and quantities that are recorded besides, one [[observe]] each"
     )
     start: StartTable = Field(
         StartTable.model_validate({}), description="the table of the state at t = 0"

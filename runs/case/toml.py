@@ -5,10 +5,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from runs.case.schema import Case
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def dumps(case: Case) -> str:
@@ -27,13 +30,18 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
     nested = {key: value for key, value in table.items() if _is_nested(value)}
     for key, value in table.items():
         if key not in nested:
-            yield f"{key} = {_value(value)}"
+            yield f"{_key(key)} = {_value(value)}"
     for key, value in nested.items():
-        inner = f"{path}{key}"
+        inner = f"{path}{_key(key)}"
         heading = f"[{inner}]" if isinstance(value, Mapping) else f"[[{inner}]]"
         for entry in [value] if isinstance(value, Mapping) else value:
             yield f"\n{heading}"
             yield from _table(entry, f"{inner}.")
+
+
+def _key(name: str) -> str:
+    """A segment's name, which is a key of velocities, may have blanks and points."""
+    return name if _BARE.fullmatch(name) else _value(name)
 
 
 def _is_nested(value: Any) -> bool:

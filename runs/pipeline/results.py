@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from geometry.observation import KINDS
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.actions import series_notes
@@ -29,6 +30,9 @@ SUMMARY = "summary.json"
 CASE = "case.toml"
 FIELDS = "fields.nc"
 ENSEMBLES = "ensembles.nc"
+
+# Of climate and forecast data (CF), as far as a boom's motion can follow it.
+CONVENTIONS = "CF-1.8"
 
 # Relative error of a reduction, or of a mesh, beyond which a run says so.
 POOR = 0.01
@@ -46,10 +50,10 @@ class Results:
     Args:
         case: the effective one, with every default filled in.
         trajectories: dims ``model`` (names, in the case's order), ``time`` in s, ``station`` in
-            m, with the ``direction`` in which it touches; deflections ``tip``, ``head``, ``tail``
-            in m (from the second joint on ``head-2`` and so forth), ``contact_force``,
-            ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m, energies in J; NaN
-            where a model has none.
+            m, with the ``direction`` in which it touches, and its name ``place``; deflections
+            ``tip``, ``head``, ``tail`` in m (from the second joint on ``head-2`` and so forth),
+            ``contact_force``, ``contact_force_peak`` and ``friction_force`` in N, ``gap`` in m,
+            energies in J; NaN where a model has none.
         summary: what ``summary.json`` holds.
         ensembles: dims ``model`` (those with play), ``member`` (the first one unchanged),
             ``time``; ``tip``, ``head`` in m; None where the case asks for none.
@@ -172,6 +176,13 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
         for data in everything
         for name, variable in data.data_vars.items()
     }
+    titles = {
+        place.name: {
+            "long_name": f"{place.kind.title} of {boom.segments[place.segment].name!r} "
+            f"at x = {place.x:g} m"
+        }
+        for place in boom.recorded(list(KINDS))
+    }
     lengths = {"time": time.size, "station": len(stations)}
     variables = {}
     for name, (dims, attributes) in units.items():
@@ -180,16 +191,42 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
             # A tied model has no stations.
             if name in data and data[name].shape == values.shape[1:]:
                 values[i] = data[name].values
-        variables[name] = (("model", *dims), values, attributes)
+        variables[name] = (("model", *dims), values, titles.get(name, {}) | attributes)
     return xr.Dataset(
         variables,
         coords={
-            "model": list(trajectories),
+            "model": ("model", list(trajectories), {"long_name": "name of the model"}),
             "time": time,
-            "station": ("station", np.array(stations, dtype=float), {"units": "m"}),
-            "direction": ("station", np.array([along for _, along in boom.stations], dtype="U1")),
+            "station": (
+                "station",
+                np.array(stations, dtype=float),
+                {"units": "m", "long_name": "x of the station"},
+            ),
+            "direction": (
+                "station",
+                np.array([along for _, along in boom.stations], dtype="U1"),
+                {"long_name": "direction in which the station touches"},
+            ),
+            "place": (
+                "station",
+                np.array(place_names(boom.stations), dtype=str),
+                {"long_name": "name of the station, each its own"},
+            ),
         },
+        attrs={"Conventions": CONVENTIONS},
     )
+
+
+def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
+    """A name for each station: its x in m, behind it ``y`` where it works to the sides.
+
+    ``#2`` and so forth stands behind the name where others are at the same place.
+    """
+    names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
+    before = [names[:i].count(name) for i, name in enumerate(names)]
+    return [
+        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
+    ]
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:

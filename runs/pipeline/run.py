@@ -30,7 +30,7 @@ from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
-from runs.pipeline.results import Results, label
+from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
 
@@ -138,7 +138,7 @@ def run_case(
     )
     if ensembles is not None and case.ensemble is not None:
         summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
-        ensembles = ensembles.assign_attrs(case_hash=summary.case_hash)
+        ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
     trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)

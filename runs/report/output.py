@@ -150,32 +150,16 @@ def _json(data: Any) -> str:
 def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
     """One line for each model and time; a station's columns are headed ``NAME@X``.
 
-    Behind the X stands ``y`` where the station works to the sides, and ``#2`` and so forth where
-    others are at the same place.
+    X is the station's ``place``.
     """
     columns = {}
-    places = _places(trajectories)
+    places = trajectories["place"].values if "place" in trajectories.coords else ()
     for name, variable in trajectories.data_vars.items():
         if "station" in variable.dims:
-            of_stations = variable.drop_vars(["station", "direction"], errors="ignore")
+            of_stations = variable.drop_vars(["station", "direction", "place"])
             for place, values in zip(places, of_stations.transpose("station", ...), strict=True):
                 columns[f"{name}@{place}"] = values
         else:
             columns[str(name)] = variable
     table = xr.Dataset(columns).to_dataframe(["model", "time"])
     table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
-
-
-def _places(trajectories: xr.Dataset) -> list[str]:
-    """What each station is called in a heading."""
-    stations = trajectories["station"]
-    names = [f"{x:g}" for x in stations.values]
-    if "direction" in stations.coords:
-        sides = stations["direction"].values
-        names = [
-            name + ("y" if side == "y" else "") for name, side in zip(names, sides, strict=True)
-        ]
-    before = [names[:i].count(name) for i, name in enumerate(names)]
-    return [
-        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
-    ]

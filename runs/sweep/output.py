@@ -12,6 +12,7 @@ import xarray as xr
 from rich.console import Console
 
 from runs.folder.files import alone, changed_folder, whole, whole_folder
+from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, number
 from runs.sweep.figures import draw
@@ -58,7 +59,7 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
             for variation, unit in zip(plan.variations, plan.units, strict=True)
         }
         | {"model": models},
-        attrs={"title": plan.title},
+        attrs={"Conventions": CONVENTIONS, "title": plan.title},
     )
 
 

@@ -133,7 +133,7 @@ def _march(
         np.sum([stepper.compliance for stepper in steppers], axis=0),
         1.0 / (1.0 - alpha.force_shift),
     )
-    readings = [reading for reading, _ in full.observed.values()]
+    readings = [seen.reading for seen in full.observed.values()]
     observers = [_rows(readings, number, shell) for number, shell in enumerate(full.shells)]
     contacts = len(full.rows.contacts)
     observed = np.zeros((outputs + 1, len(readings)))

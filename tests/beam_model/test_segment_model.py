@@ -26,7 +26,7 @@ Models = Callable[..., list[SegmentModel]]
 def rest(system: GapSystem) -> dict[str, float]:
     """Observed deflections at rest under the load in m."""
     position = system.static_response(system.load)
-    return {name: float(row @ position) for name, (row, _) in system.observers.items()}
+    return {name: float(seen.row @ position) for name, seen in system.observers.items()}
 
 
 def test_tied_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:

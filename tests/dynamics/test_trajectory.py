@@ -15,6 +15,7 @@ from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators import Events, Splitting
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
@@ -167,3 +168,22 @@ def test_a_motion_downwards_peaks_as_its_mirror_image() -> None:
 
 def test_no_peak_in_a_steady_rise() -> None:
     assert np.isnan(deflections(np.linspace(0.0, 1.0, 100), 1.0).first_peak()).all()
+
+
+@pytest.mark.parametrize("integrator", [Splitting(1.0e-4), Events()], ids=["splitting", "events"])
+def test_rates_are_those_of_the_motion(
+    one_mass: Callable[..., GapSystem], integrator: Splitting | Events
+) -> None:
+    """Reference: analytic. a cos ω t has the velocity −a ω sin ω t, and between two outputs the
+    mean acceleration that the difference of their velocities is.
+    """
+    system = one_mass(2.0, spring=800.0)
+    row = system.observers["tip"].row
+    system = replace(
+        system, observers={"rate": Observer(row, "m/s", 1), "push": Observer(row, "m/s2", 2)}
+    )
+    data = integrator(Motion(system, 1.0, 1.0e-2, position=np.array([0.1 / row[0]]))).data
+    rate = -0.1 * 20.0 * np.sin(20.0 * data["time"].values)
+    np.testing.assert_allclose(data["rate"], rate, atol=1e-9)
+    np.testing.assert_allclose(data["push"][1:], np.diff(rate) / 1.0e-2, atol=1e-7)
+    assert float(data["push"][0]) == 0.0

@@ -284,7 +284,7 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
         (
             "[start]\nvelocity = { beam = true }",
-            "start.velocity.beam: must be a number, got true",
+            "start.velocity.beam: must be a table, got true",
         ),
         (
             "[payload]\nmass = -1.0",

@@ -17,7 +17,7 @@ from runs.case.messages import BadInput
 from runs.paper import readings
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
 from runs.paper.rules import judge
-from runs.pipeline.results import Results
+from runs.pipeline.results import Results, place_names
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
 
@@ -76,8 +76,10 @@ def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
     """Two stations in each of two directions, and a rest at the place of one of them."""
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
+    names = place_names([(float(x), direction) for x, direction in places])
+    assert names == ["9", "10", "9y", "10y", "9#2"]
     data = plain.isel(station=[0, 1, 0, 1, 0]).assign_coords(
-        direction=("station", [direction for _, direction in places])
+        direction=("station", [direction for _, direction in places]), place=("station", names)
     )
     in_space = replace(run, results=replace(run.results, trajectories=data))
     out = tmp_path / "out"

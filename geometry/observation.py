@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What is recorded of a boom's motion, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+Quantity = Literal[
+    "deflection", "rotation", "distortion", "lateral", "twist", "velocity", "acceleration"
+]
+
+
+class Kind(NamedTuple):
+    """A quantity's unit, how often it is derived by time, and what it is in words."""
+
+    unit: str
+    derivative: Literal[0, 1, 2]
+    title: str
+
+
+KINDS: Mapping[Quantity, Kind] = {
+    "deflection": Kind("m", 0, "deflection along z"),
+    "rotation": Kind("rad", 0, "rotation of the cross-section, the slope along z"),
+    "distortion": Kind("m", 0, "how much taller the cross-section has become"),
+    "lateral": Kind("m", 0, "deflection along y"),
+    "twist": Kind("rad", 0, "turn about x"),
+    "velocity": Kind("m/s", 1, "velocity along z"),
+    "acceleration": Kind(
+        "m/s2", 2, "acceleration along z, mean of the output interval that ends then"
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """Something that every model records.
+
+    >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
+    >>> system = pt.finite_element_system(replace(boom, observations=(seat,)), laws)
+    >>> system.observers["seat"].unit
+    'm/s'
+
+    Args:
+        name: of the output.
+        segment: position in ``Boom.segments``.
+        x: m.
+        quantity: of its cross-section there; the lateral deflection and the twist in space alone.
+    """
+
+    name: str
+    segment: int
+    x: float
+    quantity: Quantity = "deflection"
+
+    @property
+    def kind(self) -> Kind:
+        """Of its quantity."""
+        return KINDS[self.quantity]
