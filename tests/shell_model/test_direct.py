@@ -18,7 +18,7 @@ from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
-from dynamics.gap_builder import GapBuilder
+from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
@@ -74,7 +74,7 @@ class _Loaded:
         self._omega, self._gains = np.sqrt(omega2[few]), gains[few]
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
-        observed = {"tip": (Reading({0: tip}), "m")}
+        observed = {"tip": Observed(Reading({0: tip}))}
         self.few, self.all = (
             BoomShell(MPI.COMM_WORLD, [shell], [], GapBuilder(), [], [push], [], observed)
             for push in (narrow, load)
