@@ -60,10 +60,7 @@ def gap_system(
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     """The play-free boom: every joint's segments move alike at its stations."""
-    tied = tuple(
-        replace(joint, tied=True, pad=None, contact_length=None, dashpot=0.0)
-        for joint in boom.joints
-    )
+    tied = tuple(joint.without_play for joint in boom.joints)
     return gap_system(replace(boom, joints=tied), models, ())
 
 

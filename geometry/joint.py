@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +53,11 @@ class Joint:
     pad: PadSize | None = None
     contact_length: float | None = None
     dashpot: float = 0.0
+
+    @property
+    def without_play(self) -> Joint:
+        """The same with the segments tied at its stations."""
+        return replace(self, tied=True, pad=None, contact_length=None, dashpot=0.0)
 
 
 @dataclass(frozen=True, slots=True)

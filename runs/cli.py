@@ -244,6 +244,50 @@ def sweep(
 
 
 @app.command()
+def frequencies(
+    case: CaseFile,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEY=VALUES",
+            help="What takes which values: joint.extension=1:8:15 (start, stop, count). May be "
+            "repeated.",
+        ),
+    ],
+    out: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
+    ] = None,
+    models: ModelNames = None,
+    mesh_size: MeshSize = None,
+    no_cache: NoCache = False,
+) -> int:
+    """Chart the first frequencies over values of a case's numbers, joints pressed and tied."""
+    from runs.folder.cache import Cache
+    from runs.folder.files import beside
+    from runs.sweep import frequencies as charts
+    from runs.sweep import points
+    from runs.sweep import run as sweep_runs
+
+    plan = points.plan(case, vary, _names(models), mesh_size)
+    comm = _enter_mpi(plan.points[0].case, case)
+    cache = None if no_cache else Cache.of_user()
+    with _all_ranks_end_together(comm):
+        if (ranks.launched_rank() if comm is None else comm.rank) != 0:
+            if comm is not None:
+                charts.chart(plan, comm, Path(), _silence, cache)
+            return 0
+        folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
+        sweep_runs.prepare(folder, case)
+        with beside(folder) as scratch, _progress_bars() as tell:
+            data = charts.chart(plan, comm, scratch, tell, cache)
+        charts.write(data, folder)
+        print(printable(str(folder / f"{charts.NAME}.csv")))
+        charts.table(data).text.show(Terminal())
+    return 0
+
+
+@app.command()
 def check(case: CaseFile) -> int:
     """Check a case file, and print what follows from it."""
     from runs.case.reading import load

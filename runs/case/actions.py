@@ -15,6 +15,7 @@ from geometry.arrays import Array
 from geometry.boom import BoomError, Direction, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
+from runs.case.places import at
 from runs.case.schema import Case, GravityTable, HistoryTable, LoadTable, VelocityTable
 
 STANDARD_GRAVITY = 9.80665
@@ -57,7 +58,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
 def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) -> list[Load]:
     """The momentum of a segment that moves as a rigid body."""
     segment = segments[index]
-    at = segment.start if velocity.x is None else velocity.x
+    x0 = segment.start if velocity.x is None else at(velocity.x, segment.start, segment.end)
     planes: tuple[tuple[Direction, float, float], ...] = (
         ("z", velocity.z, velocity.turn),
         ("y", velocity.y, velocity.lateral_turn),
@@ -65,10 +66,10 @@ def _thrown(index: int, velocity: VelocityTable, segments: Sequence[Segment]) ->
     given: list[Load] = []
     for direction, speed, turn in planes:
         if speed or turn:
-            there = (speed - turn * at) * segment.mass_per_length
+            there = (speed - turn * x0) * segment.mass_per_length
             given.append(Load(index, direction, there, None, Thrown(), inertial=True))
             given += [
-                Load(index, direction, (speed + turn * (p.x - at)) * p.mass, p.x, Thrown())
+                Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, Thrown())
                 for p in segment.masses
             ]
         if turn:
@@ -108,7 +109,9 @@ def across(gravity: GravityTable) -> float:
 
 def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
     index = _segment(f"{where}.segment", table.segment, segments)
-    acts = index, table.direction, table.magnitude, table.x, _load_history(where, table)
+    ends = segments[index].start, segments[index].end
+    x = None if table.x is None else at(table.x, *ends)
+    acts = index, table.direction, table.magnitude, x, _load_history(where, table)
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
     for key, given in (("from", table.start), ("to", table.end)):
@@ -118,8 +121,8 @@ def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
         return Moment(*acts)
     if table.start is None and table.end is None:
         return Load(*acts)
-    start = segments[index].start if table.start is None else table.start
-    end = segments[index].end if table.end is None else table.end
+    start = ends[0] if table.start is None else at(table.start, *ends)
+    end = ends[1] if table.end is None else at(table.end, *ends)
     if not start < end:
         raise BoomError(f"{where}.to", f"must be beyond from, {start:g} m, got {end:g} m")
     return PartialLoad(*acts, span=(start, end))
@@ -138,8 +141,8 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
             )
     return tuple(
         Stop(
-            segment=_segment(f"stop[{number}].segment", table.segment, segments),
-            x=table.x,
+            segment=index,
+            x=at(table.x, segments[index].start, segments[index].end),
             clearance=0.5 * table.play,
             stiffness=table.stiffness,
             stiffness_below=(
@@ -149,6 +152,7 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
             contact_length=table.contact_length,
         )
         for number, table in enumerate(case.stops, start=1)
+        for index in [_segment(f"stop[{number}].segment", table.segment, segments)]
     )
 
 

@@ -32,6 +32,7 @@ from runs.case import actions
 from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
+from runs.case.places import at, spans
 from runs.case.schema import Case, Model, SegmentTable
 
 # What trajectories hold of every boom.
@@ -49,21 +50,25 @@ def build_boom(case: Case) -> Boom:
     """
     check_names("segment", [segment.name for segment in case.segments])
     _check_flat(case)
-    joints = tuple(_joint(case, number) for number in range(len(case.joints)))
+    _check_joined(case)
+    ends = spans(case.segments, case.joints)
+    joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = _sections(case, joints)
-    segments = tuple(_segment(case, number, section) for number, section in enumerate(sections))
+    segments = tuple(
+        _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
+    )
     return Boom(
         segments,
         joints,
         actions.loads(case, segments),
         actions.stops(case, segments),
-        _observations(case),
+        _observations(case, segments),
     )
 
 
-def _observations(case: Case) -> tuple[Observation, ...]:
+def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:
     check_names("observe", [table.name for table in case.observe])
-    names = [segment.name for segment in case.segments]
+    names = [segment.name for segment in segments]
     for number, table in enumerate(case.observe, start=1):
         if table.segment not in names:
             raise BoomError(
@@ -76,8 +81,14 @@ def _observations(case: Case) -> tuple[Observation, ...]:
                 f"{table.name!r} is the name of another output already; give it its own",
             )
     return tuple(
-        Observation(table.name, names.index(table.segment), table.x, table.quantity)
+        Observation(
+            table.name,
+            index,
+            at(table.x, segments[index].start, segments[index].end),
+            table.quantity,
+        )
         for table in case.observe
+        for index in [names.index(table.segment)]
     )
 
 
@@ -121,33 +132,40 @@ def check_names(where: str, names: Sequence[str]) -> None:
             )
 
 
-def _joint(case: Case, index: int) -> Joint:
+def _check_joined(case: Case) -> None:
+    """Joints connect two segments each, and no two twice."""
+    names = [segment.name for segment in case.segments]
+    for index, table in enumerate(case.joints):
+        where = f"joint[{index + 1}]"
+        for end in ("outer", "inner"):
+            name = getattr(table, end)
+            if name not in names:
+                raise BoomError(f"{where}.{end}", f"{name!r} is no segment; give {choices(names)}")
+        if table.outer == table.inner:
+            raise BoomError(f"{where}.inner", "must be another segment than the outer one")
+        for number, other in enumerate(case.joints[:index], start=1):
+            if {other.outer, other.inner} == {table.outer, table.inner}:
+                raise BoomError(
+                    where,
+                    f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; "
+                    "give all their stations there",
+                )
+
+
+def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint:
     table = case.joints[index]
     names = [segment.name for segment in case.segments]
-    for end in ("outer", "inner"):
-        name = getattr(table, end)
-        if name not in names:
-            raise BoomError(
-                f"joint[{index + 1}].{end}", f"{name!r} is no segment; give {choices(names)}"
-            )
-    if table.outer == table.inner:
-        raise BoomError(f"joint[{index + 1}].inner", "must be another segment than the outer one")
-    for number, other in enumerate(case.joints[:index], start=1):
-        if {other.outer, other.inner} == {table.outer, table.inner}:
-            raise BoomError(
-                f"joint[{index + 1}]",
-                f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; give "
-                "all their stations there",
-            )
+    outer, inner = names.index(table.outer), names.index(table.inner)
+    (_, head), (tail, _) = ends[outer], ends[inner]
     if table.tied and table.friction > 0.0:
         raise BoomError(
             f"joint[{index + 1}].friction", "the joint is tied, and nothing slides; leave it out"
         )
     _check_plays(f"joint[{index + 1}]", table)
     return Joint(
-        outer=names.index(table.outer),
-        inner=names.index(table.inner),
-        stations=table.stations,
+        outer=outer,
+        inner=inner,
+        stations=tuple(at(place, tail, head) for place in table.stations),
         clearance=0.5 * table.play,
         lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
         friction=table.friction,
@@ -172,27 +190,35 @@ def _check_plays(where: str, table: JointTable) -> None:
             raise BoomError(f"{where}.{pressed}", f"shims leave no play; give {of} = 0")
 
 
-def _segment(case: Case, index: int, section: Section | None) -> Segment:
+def _segment(case: Case, index: int, section: Section | None, ends: tuple[float, float]) -> Segment:
     table = case.segments[index]
     material = material_of(case, index)
     mass, second_moment = _beam_numbers(case, index)
     rotary = table.rotary_inertia
     return Segment(
         name=table.name,
-        start=table.span[0],
-        end=table.span[1],
+        start=ends[0],
+        end=ends[1],
         material=material,
         mass_per_length=mass,
         second_moment_of_area=second_moment,
         rotary_inertia=material.density * second_moment if rotary is None else rotary,
         section=section,
         load=table.load,
-        supports=tuple(Support(**support.model_dump()) for support in table.supports),
+        supports=tuple(
+            Support(at(support.x, *ends), **support.model_dump(exclude={"x"}))
+            for support in table.supports
+        ),
         viscous_damping=table.viscous_damping,
-        masses=_masses(case, index),
+        masses=_masses(case, index, ends),
         lateral=_lateral(table, material, section) if _in_space(case) else None,
-        collars=tuple(Collar(*collar.span, collar.thickness) for collar in table.collars),
-        diaphragms=tuple(Diaphragm(**plate.model_dump()) for plate in table.diaphragms),
+        collars=tuple(
+            Collar(at(collar.span[0], *ends), at(collar.span[1], *ends), collar.thickness)
+            for collar in table.collars
+        ),
+        diaphragms=tuple(
+            Diaphragm(at(plate.x, *ends), plate.thickness) for plate in table.diaphragms
+        ),
     )
 
 
@@ -208,11 +234,11 @@ def material_of(case: Case, index: int) -> Material:
     return Material(**table.model_dump())
 
 
-def _masses(case: Case, index: int) -> tuple[PointMass, ...]:
+def _masses(case: Case, index: int, ends: tuple[float, float]) -> tuple[PointMass, ...]:
     table = case.segments[index]
-    masses = [PointMass(mass.x, mass.mass) for mass in table.masses]
+    masses = [PointMass(at(mass.x, *ends), mass.mass) for mass in table.masses]
     if case.payload is not None and index == len(case.segments) - 1:
-        masses.append(PointMass(table.span[1], case.payload.mass))
+        masses.append(PointMass(ends[1], case.payload.mass))
     return tuple(masses)
 
 

@@ -22,6 +22,7 @@ from runs.case.limits import (
     Text,
     fault_at,
 )
+from runs.case.places import Place
 
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
@@ -142,8 +143,14 @@ class JointTable(Table):
 
     outer: str = Field(description="the name of the outer segment")
     inner: str = Field(description="the name of the inner segment")
-    stations: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
-        description="the x in m at which the two may touch, rising"
+    extension: NotNegative | None = Field(
+        None,
+        description="the length in m of the inner segment that is out of the outer one, where the "
+        "inner one is given by its length",
+    )
+    stations: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
+        description="the x in m at which the two may touch, rising; 'tail' is the inner segment's "
+        "start, 'head' the outer one's end, { head = 0.2 } lies 0.2 m before that"
     )
     play: NotNegative = Field(description="the play in m, the clearance above and below together")
     play_above: NotNegative | None = Field(

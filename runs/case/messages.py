@@ -126,6 +126,11 @@ def _explain(
         what = "must be a whole number above 0, or 'auto'"
     elif fault == "contact_tolerance":
         what = f"must be a number from {limits['least']} to below 1, or 'any'"
+    elif fault == "place":
+        what = (
+            "must be a number of m, 'tail', 'head' or a distance in m from one of them such as "
+            "{ tail = 0.2 }"
+        )
     elif fault == "literal_error":
         what = f"must be {limits['expected']}"
     elif fault == "unsuitable":

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import PydanticCustomError
 
 from runs.case.contact import JointTable
 from runs.case.kinds import KINDS
@@ -36,6 +37,7 @@ from runs.case.limits import (
     Text,
     fault_at,
 )
+from runs.case.places import End, Place
 from runs.case.sections import AnySection
 
 
@@ -82,7 +84,7 @@ class MaterialTable(Table):
 class SupportTable(Table):
     """A place where the ground holds a segment; in space it holds sideways and in twist too."""
 
-    x: Number = Field(description="the x in m")
+    x: Place = Field(description="the x in m")
     kind: Literal["pinned", "clamped"] = Field(
         "pinned", description="whether the slope is free or held"
     )
@@ -94,32 +96,32 @@ class SupportTable(Table):
 class MassTable(Table):
     """A mass on a segment."""
 
-    x: Number = Field(description="the x in m")
+    x: Place = Field(description="the x in m")
     mass: Positive = Field(description="the mass in kg")
 
 
 class CollarTable(Table):
     """A doubler around a segment; the walls' mid-surfaces stay where they are."""
 
-    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    span: tuple[Place, Place] = Field(description="the x of its two ends in m, rising")
     thickness: Positive = Field(description="the thickness in m that it adds to all walls")
 
 
 class DiaphragmTable(Table):
     """A plate that closes a segment's box, welded to its walls."""
 
-    x: Number = Field(description="the x in m")
+    x: Place = Field(description="the x in m")
     thickness: Positive = Field(description="the thickness in m")
 
 
 def _support(given: Any) -> Any:
     """A place alone is a pinned support."""
-    number = isinstance(given, int | float) and not isinstance(given, bool)
-    return {"x": float(given)} if number else given
+    place = isinstance(given, int | float | str) and not isinstance(given, bool)
+    return {"x": given} if place else given
 
 
 Support = Annotated[
-    SupportTable, BeforeValidator(_support, json_schema_input_type=Number | SupportTable)
+    SupportTable, BeforeValidator(_support, json_schema_input_type=Number | End | SupportTable)
 ]
 
 
@@ -127,7 +129,14 @@ class SegmentTable(Table):
     """One box of the boom."""
 
     name: Name = Field(description="what the joints and the results call the segment")
-    span: tuple[Number, Number] = Field(description="the x of its two ends in m, rising")
+    span: tuple[Number, Number] | None = Field(
+        None, description="the x of its two ends in m, rising; or give length"
+    )
+    length: Positive | None = Field(
+        None,
+        description="the length in m of a segment whose place follows from the extension of the "
+        "joint in which it slides; the first one then starts at 0",
+    )
     material: MaterialTable | None = Field(
         None, description="the table of the segment's own material; the case's unless given"
     )
@@ -186,12 +195,21 @@ class SegmentTable(Table):
         (), description="the plates that close the box, which only shells have, mass and all"
     )
 
+    @model_validator(mode="after")
+    def _has_a_place(self) -> Self:
+        if self.span is None and self.length is None:
+            raise fault_at(self, "missing", "span")
+        if self.span is not None and self.length is not None:
+            what = {"what": "span is given; leave one of them out"}
+            raise fault_at(self, PydanticCustomError("unsuitable", "{what}", what), "length")
+        return self
+
 
 class StopTable(Table):
     """A rest on the ground that a segment may touch across a play."""
 
     segment: str = Field(description="the name of the segment")
-    x: Number = Field(description="the x in m")
+    x: Place = Field(description="the x in m")
     play: NotNegative = Field(description="the play in m, above and below together")
     stiffness: NotNegative = Field(
         description="the contact stiffness in N/m^n where the segment presses up; 0 for none"
@@ -249,15 +267,15 @@ class LoadTable(HistoryTable):
 
     segment: str = Field(description="the name of the segment")
     direction: Literal["z", "y"] = Field("z", description="up, or to the side")
-    x: Number | None = Field(
+    x: Place | None = Field(
         None, description="the x in m of a point load; along the whole segment unless given"
     )
-    start: Number | None = Field(
+    start: Place | None = Field(
         None,
         alias="from",
         description="the x in m from which a load along the segment acts; its start unless given",
     )
-    end: Number | None = Field(
+    end: Place | None = Field(
         None, alias="to", description="the x in m to which it acts; the segment's end unless given"
     )
     magnitude: Number = Field(
@@ -329,7 +347,7 @@ class VelocityTable(Table):
     lateral_turn: Number = Field(
         0.0, description="the rate of rotation in rad/s by which the velocity along y grows with x"
     )
-    x: Number | None = Field(
+    x: Place | None = Field(
         None, description="the x in m that has these velocities; the segment's start unless given"
     )
 
@@ -362,7 +380,7 @@ class ObserveTable(Table):
 
     name: Name = Field(description="what the results call it")
     segment: str = Field(description="the name of the segment")
-    x: Number = Field(description="the x in m")
+    x: Place = Field(description="the x in m")
     quantity: Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"] = (
         Field(
             "deflection",

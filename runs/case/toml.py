@@ -46,16 +46,21 @@ def _key(name: str) -> str:
 
 def _is_nested(value: Any) -> bool:
     return isinstance(value, Mapping) or (
-        isinstance(value, tuple) and bool(value) and isinstance(value[0], Mapping)
+        isinstance(value, tuple)
+        and bool(value)
+        and all(isinstance(item, Mapping) for item in value)
     )
 
 
-def _value(value: bool | int | float | str | tuple[Any, ...]) -> str:
+def _value(value: bool | int | float | str | tuple[Any, ...] | Mapping[str, Any]) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
         # JSON's escapes are TOML's, which also wants DEL escaped.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Mapping):
+        inside = ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items())
+        return f"{{ {inside} }}"
     if isinstance(value, tuple):
         return f"[{', '.join(_value(item) for item in value)}]"
     short = f"{value:g}"

@@ -21,6 +21,7 @@ from runs.case import toml
 from runs.case.actions import series_notes
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
+from runs.case.places import spans
 from runs.case.schema import Case, Model
 from runs.pipeline.plausibility import slips
 from runs.pipeline.summary import Summary
@@ -107,8 +108,8 @@ class Results:
 
     def cautions(self) -> list[str]:
         """What the results are not worth, a line each."""
-        spans = [x for segment in self.case.segments for x in segment.span]
-        length = max(spans) - min(spans)
+        places = [x for span in spans(self.case.segments, self.case.joints) for x in span]
+        length = max(places) - min(places)
         largest = np.abs(self.trajectories["tip"].values).max(axis=1)
         models = self.summary.models.items()
         far = [

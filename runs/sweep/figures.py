@@ -63,6 +63,38 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
                 _lines(part, strokes, title, folder / name)
 
 
+def draw_frequencies(data: xr.Dataset, path: Path) -> None:
+    """Draw frequencies over one key, a panel for each mode.
+
+    Args:
+        data: of :func:`runs.sweep.frequencies.chart`.
+        path: of the PNG file.
+    """
+    (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
+    strokes = theme.strokes([str(name) for name in data["model"].values], ())
+    modes = data["mode"].values
+    with matplotlib.rc_context(theme.RC):
+        sheet, panels = new_sheet(len(modes), 1.2 + 1.8 * len(modes))
+        for axes, mode in zip(panels, modes, strict=True):
+            for name, stroke in strokes.items():
+                for joints, line in (("pressed", "-"), ("tied", "--")):
+                    axes.plot(
+                        data[key].values,
+                        data["frequency"].sel(model=name, joints=joints, mode=mode).values,
+                        color=stroke.color,
+                        linestyle=line,
+                        marker="o",
+                        markersize=4.0,
+                        label=f"{name}, joints {joints}",
+                    )
+            axes.set_title(f"mode {mode} (Hz)")
+            axes.set_ylim(bottom=0.0)
+        _scale(panels[-1], "x", data[key])
+        handles, labels = panels[0].get_legend_handles_labels()
+        sheet.legend(handles, labels, loc="outside lower left", ncols=2)
+        _finish(sheet, f"First frequencies over {key}", path)
+
+
 def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, path: Path) -> None:
     """All quantities over the one key that is left."""
     (key,) = (str(dim) for dim in data["failed"].dims if dim != "model")

@@ -49,7 +49,8 @@ FORMS = {
     "support that is a text": (
         "supports = [0.0, 2.0]",
         'supports = [0.0, "2 m"]',
-        "segment[1].supports[2]: must be a table, got '2 m'",
+        "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
+        "one of them such as { tail = 0.2 }, got '2 m'",
     ),
     "missing key": (
         "density = 7850.0\n",
@@ -59,7 +60,7 @@ FORMS = {
     "missing key of a segment": (
         "span = [9.0, 19.0]\n",
         "",
-        "segment[2].span: missing; it is the x of its two ends in m, rising",
+        "segment[2].span: missing; it is the x of its two ends in m, rising; or give length",
     ),
     "missing key of a law": (
         CONTACT,

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The first frequencies of a boom over numbers of its case, without any motion.
+
+With play a boom has none of its own: what counts are those with its joints pressed as they are at
+rest under its loads (:func:`dynamics.damping.pressed_modes`), and those with its joints tied.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from dynamics.damping import pressed_modes
+from dynamics.failure import NumericsError
+from geometry.arrays import Array
+from runs.case import actions
+from runs.case.build import build_boom, joined
+from runs.case.schema import Case, Model
+from runs.folder.files import alone, changed_folder, whole
+from runs.pipeline.models import workshop
+from runs.pipeline.results import CONVENTIONS
+from runs.report.tables import Column, Table
+from runs.sweep.figures import draw_frequencies
+from runs.sweep.points import Plan
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from runs.folder.cache import Cache
+
+NAME = "frequencies"
+MODES = 3
+JOINTS = ("pressed", "tied")
+
+_NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
+
+
+def first_frequencies(
+    case: Case, model: Model, comm: MPI.Intracomm | None, meshes: Path, cache: Cache | None
+) -> Array:
+    """(2, MODES) in Hz with the joints pressed and tied, NaN where there is none. Collective.
+
+    Args:
+        case: a checked one.
+        model: of the case; one that is tied has no pressed joints.
+        comm: the ranks that share a shell.
+        meshes: where gmsh's files go.
+        cache: of reduced shells.
+    """
+    boom = build_boom(case)
+    with_play = joined(case, boom, model)
+    tied = replace(boom, joints=tuple(joint.without_play for joint in boom.joints))
+    found = np.full((len(JOINTS), MODES), np.nan)
+    for row, booms in enumerate((with_play, replace(with_play, boom=tied))):
+        if row == 0 and model.play_free:
+            continue
+        tools = None if comm is None else workshop(comm, meshes / JOINTS[row], cache=cache)
+        try:
+            with np.errstate(all="ignore"):
+                system, _, _ = actions.start(model.build(booms, tools).system, case)
+                omega = pressed_modes(system)[0][:MODES]
+        except _NUMERICS:
+            continue
+        found[row, : omega.size] = omega / (2.0 * np.pi)
+    return found
+
+
+def chart(
+    plan: Plan,
+    comm: MPI.Intracomm | None,
+    scratch: Path,
+    tell: Callable[[str, str, float], None],
+    cache: Cache | None,
+) -> xr.Dataset:
+    """The first frequencies at all points. Collective.
+
+    Returns:
+        dims: the varied keys, in the unit of the case, ``model``, ``joints`` and ``mode``.
+    """
+    found = []
+    for number, point in enumerate(plan.points, start=1):
+        found.append(
+            [
+                first_frequencies(
+                    point.case, model, comm, scratch / f"{number}" / model.name, cache
+                )
+                for model in point.case.models
+            ]
+        )
+        tell("frequencies", f"{len(plan.points)} points", number / len(plan.points))
+    keys = [variation.key for variation in plan.variations]
+    models = [model.name for model in plan.points[0].case.models]
+    shape = [len(variation.values) for variation in plan.variations]
+    values = np.array(found).reshape(*shape, len(models), len(JOINTS), MODES)
+    attributes = {"units": "Hz", "long_name": "natural frequency"}
+    return xr.Dataset(
+        {"frequency": ([*keys, "model", "joints", "mode"], values, attributes)},
+        coords={
+            variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
+            for variation, unit in zip(plan.variations, plan.units, strict=True)
+        }
+        | {"model": models, "joints": list(JOINTS), "mode": np.arange(1, MODES + 1)},
+        attrs={"Conventions": CONVENTIONS, "title": plan.title},
+    )
+
+
+def table(data: xr.Dataset) -> Table:
+    """The frequencies of each point and model."""
+    stacked = data["frequency"].stack(
+        row=[dim for dim in data.dims if dim not in ("joints", "mode")]
+    )
+    rows = stacked["row"].to_index().to_frame()
+    columns = [Column(str(key), [f"{x:g}" for x in rows[key]]) for key in rows if key != "model"]
+    columns.insert(0, Column("model", [str(name) for name in rows["model"]]))
+    for joints in JOINTS:
+        for mode in data["mode"].values:
+            of_mode = stacked.sel(joints=joints, mode=mode).values
+            cells = [float(f) if np.isfinite(f) else None for f in of_mode]
+            columns.append(Column(f"{joints}\n{mode}, Hz", cells, ".4g"))
+    return Table("First frequencies", columns, name=NAME)
+
+
+def write(data: xr.Dataset, folder: Path) -> None:
+    """Write NAME.nc, NAME.csv and, over one key, NAME.png beside what a sweep has left there."""
+    with (
+        alone(folder),
+        changed_folder(folder) as part,
+        whole(part / f"{NAME}.nc") as netcdf,
+        whole(part / f"{NAME}.csv") as lines,
+    ):
+        data.to_netcdf(netcdf, engine="scipy")
+        frame = data.to_dataframe().reset_index()
+        frame.to_csv(lines, index=False, float_format="%.9g", lineterminator="\r\n")
+        if data["frequency"].ndim == 4:
+            with whole(part / f"{NAME}.png") as picture:
+                draw_frequencies(data, picture)

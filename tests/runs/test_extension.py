@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Segments by length, drawn out by their joints: everything on them goes with them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from protractile.cases import change
+from runs.case import reading, toml
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.cli import main
+from runs.sweep.points import plan
+from tests.beam_model.exact import tied_frequencies
+from tests.runs.coarse_case import COARSE
+
+CRANE = """
+title = "A boom of three"
+
+[time]
+duration = 0.1
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[[segment]]
+name = "base"
+length = 10.0
+supports = ["tail", { x = { tail = 2.0 }, stiffness = 1e8 }]
+section = { height = 0.50, width = 0.32, flange = 0.008, web = 0.006 }
+collars = [{ span = [{ head = 0.5 }, "head"], thickness = 0.01 }]
+
+[[segment]]
+name = "middle"
+length = 9.5
+section = { height = 0.46, width = 0.28, flange = 0.006, web = 0.005 }
+masses = [{ x = { head = 0.25 }, mass = 40.0 }]
+load = -500.0
+
+[[segment]]
+name = "fly"
+length = 9.0
+section = { height = 0.42, width = 0.25, flange = 0.005, web = 0.004 }
+load = -300.0
+
+[[joint]]
+outer = "base"
+inner = "middle"
+extension = 8.0
+stations = ["tail", { head = 0.1 }]
+play = 0.006
+stiffness = 1e9
+exponent = 1.0
+
+[[joint]]
+outer = "middle"
+inner = "fly"
+extension = 7.5
+stations = ["tail", "head"]
+play = 0.006
+stiffness = 1e9
+exponent = 1.0
+
+[[load]]
+segment = "fly"
+x = "head"
+magnitude = -2000.0
+
+[[load]]
+segment = "fly"
+from = { head = 4.0 }
+to = "head"
+magnitude = -100.0
+
+[[stop]]
+segment = "middle"
+x = { tail = 1.0 }
+play = 0.5
+stiffness = 1e7
+
+[[observe]]
+name = "seat"
+segment = "fly"
+x = { head = 1.0 }
+
+[start]
+velocity = { fly = { turn = 0.01, x = "tail" } }
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+"""
+
+PAPER = (
+    COARSE.replace("span = [0.0, 10.0]", "length = 10.0")
+    .replace("span = [9.0, 19.0]", "length = 10.0")
+    .replace("stations = [9.0, 10.0]", 'stations = ["tail", "head"]\nextension = 9.0')
+)
+
+# The same, its numbers worked out by hand: the ends of base, middle and fly are 10, 18 and 25.5 m.
+BY_HAND = (
+    ("length = 10.0", "span = [0.0, 10.0]"),
+    ('["tail", { x = { tail = 2.0 }', "[0.0, { x = 2.0"),
+    ('[{ head = 0.5 }, "head"]', "[9.5, 10.0]"),
+    ("length = 9.5", "span = [8.5, 18.0]"),
+    ("{ head = 0.25 }", "17.75"),
+    ("length = 9.0", "span = [16.5, 25.5]"),
+    ("extension = 8.0\n", ""),
+    ("extension = 7.5\n", ""),
+    ('["tail", { head = 0.1 }]', "[8.5, 9.9]"),
+    ('["tail", "head"]', "[16.5, 18.0]"),
+    ('x = "head"', "x = 25.5"),
+    ("{ head = 4.0 }", "21.5"),
+    ('to = "head"', "to = 25.5"),
+    ("{ tail = 1.0 }", "9.5"),
+    ("{ head = 1.0 }", "24.5"),
+    ('x = "tail"', "x = 16.5"),
+)
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def case_of(text: str) -> Case:
+    Path("crane.toml").write_text(text, encoding="utf-8")
+    return reading.load("crane.toml")
+
+
+def by_hand() -> Case:
+    text = CRANE
+    for relative, absolute in BY_HAND:
+        assert text.count(relative) == 1, relative
+        text = text.replace(relative, absolute)
+    return case_of(text)
+
+
+def test_a_boom_by_lengths_is_the_same_boom() -> None:
+    """Reference: the boom whose numbers are worked out by hand, to the last bit."""
+    assert build_boom(case_of(CRANE)) == build_boom(by_hand())
+
+
+def test_a_drawn_out_case_reads_back_as_itself() -> None:
+    case = case_of(CRANE)
+    assert case_of(toml.dumps(case)) == case
+
+
+@pytest.mark.parametrize(("extension", "tip"), [(1.0, 12.0), (4.0, 18.0), (8.5, 27.0)])
+def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
+    """Reference: analytic. The tip is at the base's length and both extensions; overlaps are what
+    is left of the lengths, and what is on a segment keeps its distance from its ends.
+    """
+    boom = build_boom(change(case_of(CRANE), **{"joint.extension": extension}))
+    base, middle, fly = boom.segments
+    assert boom.tip == pytest.approx(tip, rel=1e-15)
+    assert [boom.overlap(joint) for joint in boom.joints] == [
+        pytest.approx((middle.start, 10.0)), pytest.approx((fly.start, middle.end))
+    ]  # fmt: skip
+    assert 10.0 - middle.start == pytest.approx(9.5 - extension)
+    assert middle.end - fly.start == pytest.approx(9.0 - extension)
+    assert boom.joints[0].stations == pytest.approx((middle.start, 9.9))
+    assert middle.end - middle.masses[0].x == pytest.approx(0.25)
+    assert boom.observations[0].x == pytest.approx(tip - 1.0)
+    assert base.start == 0.0
+
+
+@pytest.mark.parametrize(
+    ("relative", "wrong", "line"),
+    [
+        ("length = 9.5", "length = 9.5\nspan = [8.5, 18.0]",
+         "segment[2].length: span is given; leave one of them out"),
+        ("length = 9.5", "",
+         "segment[2].span: missing; it is the x of its two ends in m, rising; or give length"),
+        ("length = 9.5", "span = [8.5, 18.0]",
+         "joint[1].extension: 'middle' has a span, which says how far it is out; give it by its "
+         "length, or leave extension out"),
+        ("extension = 7.5\n", "",
+         "segment[3].length: nothing says where 'fly' is; give an extension to the joint in which "
+         "it slides, or a span to the segment"),
+        ("extension = 8.0", "extension = 9.5",
+         "joint[1].extension: must be at least 0 m and below 9.5 m, so that 'middle' begins in "
+         "'base', got 9.5 m"),
+        ("length = 9.5", "length = 19.0",
+         "joint[1].extension: must be at least 9 m and below 19 m, so that 'middle' begins in "
+         "'base', got 8 m"),
+        ("extension = 7.5", "extension = -1.0",
+         "joint[2].extension: must be a number not less than 0, got -1.0"),
+        ('inner = "fly"', 'inner = "middle"',
+         "joint[2].inner: must be another segment than the outer one"),
+        ('outer = "middle"\ninner = "fly"', 'outer = "fly"\ninner = "middle"',
+         "joint[2].extension: 'middle' has its place by joint[1].extension; leave one of them out"),
+        ('["tail", { head = 0.1 }]', '["tail", { head = 1.6 }]',
+         "joint[1].stations: 8.4 m lies outside the overlap of 'base' and 'middle'; it must be "
+         "between 8.5 and 10 m"),
+        ('["tail", { head = 0.1 }]', '["tail", { heads = 0.1 }]',
+         "joint[1].stations[2]: must be a number of m, 'tail', 'head' or a distance in m from one "
+         "of them such as { tail = 0.2 }, got {'heads': 0.1}"),
+        ('["tail", { head = 0.1 }]', '["tail", { head = -0.1 }]',
+         "joint[1].stations[2]: must be a number of m, 'tail', 'head' or a distance in m from one "
+         "of them such as { tail = 0.2 }, got {'head': -0.1}"),
+        ('x = "head"', "x = inf", "load[1].x: must be a finite number, got inf"),
+    ],
+)  # fmt: skip
+def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> None:
+    assert CRANE.count(relative) == 1
+    with pytest.raises(BadInput) as refused:
+        case_of(CRANE.replace(relative, wrong))
+    assert str(refused.value) == f"crane.toml: {line}"
+
+
+def test_frequencies_over_the_extension_are_one_command() -> None:
+    """Reference: analytic, the exact frequencies of the play-free boom (its determinant). The first
+    one falls as the boom grows, and play makes no boom stiffer.
+    """
+    case_of(PAPER)
+    command = ["frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"]
+    with pytest.raises(SystemExit) as ended:
+        main([*command, "--models", "beam-fe,beam-fe-tied"])
+    assert ended.value.code == 0
+    assert {path.name for path in Path("out").glob("freq*")} == {
+        "frequencies.csv", "frequencies.nc", "frequencies.png"
+    }  # fmt: skip
+    with xr.open_dataset("out/frequencies.nc", engine="scipy") as data:
+        found = data["frequency"].load()
+    for point in plan("crane.toml", ["joint.extension=5:9:3"], None, None).points:
+        there = found.sel({"joint.extension": point.values[0]})
+        exact = tied_frequencies(build_boom(point.case), 50.0)[:3]
+        for model in ("beam-fe", "beam-fe-tied"):
+            assert there.sel(joints="tied", model=model).values == pytest.approx(exact, rel=1e-4)
+        pressed = there.sel(joints="pressed")
+        assert (pressed.sel(model="beam-fe") < there.sel(joints="tied", model="beam-fe")).all()
+        assert pressed.sel(model="beam-fe-tied").isnull().all()
+    assert (np.diff(found.sel(mode=1, joints="tied").values, axis=0) < 0.0).all()
