@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
@@ -11,6 +12,10 @@ from scipy.linalg import block_diag, null_space
 from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
+from geometry.cylinder import ground_lines
+
+# One component of one segment.
+_Part = tuple[int, Motion]
 
 # A tie that holds less than this part of what the strongest one holds, holds nothing.
 ROUND_OFF = 1.0e-9
@@ -19,7 +24,7 @@ ROUND_OFF = 1.0e-9
 class BoomModes:
     """Modes of the boom without contact: of each component of each segment by itself.
 
-    Segments that a tied joint connects have their modes together.
+    Segments that a tied joint connects have their modes together, as cylinders let them.
 
     Args:
         boom: its joints say what is tied, and whether it is in space.
@@ -34,28 +39,26 @@ class BoomModes:
 
     def __init__(self, boom: Boom, models: Sequence[SegmentModel]) -> None:
         self._models = models
-        self._shapes: dict[tuple[int, Motion], tuple[slice, Array]] = {}
+        self._shapes: dict[_Part, tuple[slice, Array]] = {}
         omega2: list[Array] = []
         load: list[Array] = []
         damping: list[Array] = []
         first = 0
-        motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
-        for motion in motions:
-            for group in _tied_groups(boom):
-                components = [models[i].components[motion] for i in group]
-                modes = _group_modes(components, _ties(boom, group, components))
-                columns = slice(first, first + modes.omega2.size)
-                first = columns.stop
-                sizes = np.cumsum([len(component.load) for component in components])
-                parts = np.split(modes.shapes, sizes[:-1])
-                for i, part in zip(group, parts, strict=True):
-                    self._shapes[i, motion] = columns, part
-                omega2.append(modes.omega2)
-                load.append(np.concatenate([c.load for c in components]) @ modes.shapes)
-                rates = block_diag(*(c.damping for c in components))
-                damping.append(
-                    np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
-                )
+        for group in _groups(boom):
+            components = [models[i].components[motion] for i, motion in group]
+            modes = _group_modes(boom, group, components)
+            columns = slice(first, first + modes.omega2.size)
+            first = columns.stop
+            sizes = np.cumsum([len(component.load) for component in components])
+            parts = np.split(modes.shapes, sizes[:-1])
+            for one, part in zip(group, parts, strict=True):
+                self._shapes[one] = columns, part
+            omega2.append(modes.omega2)
+            load.append(np.concatenate([c.load for c in components]) @ modes.shapes)
+            rates = block_diag(*(c.damping for c in components))
+            damping.append(
+                np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
+            )
         self.omega2 = np.concatenate(omega2)
         self.load = np.concatenate(load)
         self.damping = np.concatenate(damping)
@@ -88,9 +91,8 @@ class BoomModes:
 
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
         """(num_modes,) row that reads the rotation of a segment's cross-section at x in m."""
-        rotation = self._component(segment, direction).rotation
-        assert rotation is not None
-        return self._expand(segment, direction, rotation(x))
+        rotation = self._component(segment, direction).rotation_at(x)
+        return self._expand(segment, direction, rotation)
 
     def turning(self, segment: int, direction: Direction) -> Array:
         """(num_modes,) modal momentum of a segment that turns about x = 0 by 1 rad/s."""
@@ -112,46 +114,88 @@ class BoomModes:
         return whole
 
 
-def _tied_groups(boom: Boom) -> list[list[int]]:
-    """Segments by what tied joints connect, in order; most are by themselves."""
-    group_of = list(range(len(boom.segments)))
-    for joint in boom.joints:
-        if joint.tied:
-            kept, lost = group_of[joint.outer], group_of[joint.inner]
-            group_of = [kept if group == lost else group for group in group_of]
+def _groups(boom: Boom) -> list[list[_Part]]:
+    """What has its modes together: segments that tied joints connect, in each motion.
+
+    Two inclined cylinders side by side hold the twist of a segment by its slope along y.
+    """
+    motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
+    parts: list[_Part] = [(i, motion) for motion in motions for i in range(len(boom.segments))]
+    connected: list[tuple[_Part, _Part]] = [
+        ((joint.outer, motion), (joint.inner, motion))
+        for motion in motions
+        for joint in boom.joints
+        if joint.tied
+    ]
+    connected += [((c.segment, "y"), (c.segment, "twist")) for c in boom.cylinders if c.spread]
+    group_of = {part: number for number, part in enumerate(parts)}
+    for one, other in connected:
+        kept, lost = group_of[one], group_of[other]
+        group_of = {part: kept if at == lost else at for part, at in group_of.items()}
     return [
-        [i for i, group in enumerate(group_of) if group == name] for name in dict.fromkeys(group_of)
+        [part for part in parts if group_of[part] == name]
+        for name in dict.fromkeys(group_of.values())
     ]
 
 
-def _ties(boom: Boom, group: Sequence[int], components: Sequence[Component]) -> Array:
-    """(num_ties, num_dofs) rows over a group that are zero where its joints hold."""
-    rows = []
-    for joint in boom.joints:
-        if joint.tied and joint.outer in group:
-            for x in joint.stations:
-                parts = [np.zeros(len(component.load)) for component in components]
-                for segment, sign in ((joint.inner, 1.0), (joint.outer, -1.0)):
-                    k = group.index(segment)
-                    parts[k] = sign * components[k].at(x)
-                rows.append(np.concatenate(parts))
-    return np.array(rows).reshape(len(rows), sum(len(c.load) for c in components))
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """A segment as single forces push it, on the components of a group, see :class:`Body`."""
+
+    group: Sequence[_Part]
+    components: Sequence[Component]
+    segment: int
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.at(direction, x)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self._spread(direction, [component.rotation_at for component in self.components], x)
+
+    def torque(self, x: float) -> Array:
+        return self.at("twist", x)
+
+    def at(self, motion: Motion, x: float) -> Array:
+        """(num_dofs,) row that reads a deflection or the twist."""
+        return self._spread(motion, [component.at for component in self.components], x)
+
+    def _spread(self, motion: Motion, rows: Sequence[Callable[[float], Array]], x: float) -> Array:
+        """The row of one component, 0 in the others; all 0 where the group has none of it."""
+        parts = zip(self.group, self.components, rows, strict=True)
+        own = (self.segment, motion)
+        return np.concatenate(
+            [row(x) if part == own else np.zeros(len(c.load)) for part, c, row in parts]
+        )
 
 
-def _group_modes(components: Sequence[Component], ties: Array) -> Modes:
-    """Modes of components side by side that keep the ties at zero."""
+def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
+    """Modes of components side by side that keep ties at zero and pull at cylinders."""
     apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
-    if not ties.size:
-        (alone,) = apart
-        return alone
+    bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
+    ties = [
+        bodies[joint.inner].at(motion, x) - bodies[joint.outer].at(motion, x)
+        for joint in boom.joints
+        if joint.tied
+        for motion in dict.fromkeys(motion for _, motion in group)
+        if (joint.outer, motion) in group
+        for x in joint.stations
+    ]
+    pulled = [
+        line for line in ground_lines(boom, bodies) if line.stiffness > 0.0 and line.push.any()
+    ]
+    if not ties and not pulled and len(apart) == 1:
+        return apart[0]
     rigid = block_diag(
         *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, components, strict=True))
     )
-    # What ties leave of the segments' rigid motions is rigid still.
-    bound = np.linalg.svd(ties @ rigid, compute_uv=False) if rigid.size else np.zeros(0)
+    # What these leave of the segments' rigid motions is rigid still.
+    held = np.array([*ties, *(line.push for line in pulled)]).reshape(-1, len(rigid)) @ rigid
+    bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
     rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
-    free = null_space(ties)
     stiffness = block_diag(*(c.stiffness for c in components))
+    for line in pulled:
+        stiffness += line.stiffness * np.outer(line.push, line.push)
     mass = block_diag(*(c.mass for c in components))
+    free = null_space(np.array(ties)) if ties else np.eye(len(mass))
     modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
     return Modes(modes.omega2, free @ modes.shapes)

@@ -49,6 +49,11 @@ class Component:
     turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
 
+    def rotation_at(self, x: float) -> Array:
+        """(num_dofs,) row that reads the rotation of the cross-section at x in m."""
+        assert self.rotation is not None
+        return self.rotation(x)
+
     def uniform_load(self, start: float, end: float) -> Array:
         """(num_dofs,) a uniform load of 1 N/m between two x in m."""
         inside = self.breaks[(self.breaks > start) & (self.breaks < end)]

@@ -106,7 +106,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         if support.stiffness is not None:
             stiffness[dof, dof] += support.stiffness
         else:
-            held += [dof, dof + 1] if support.kind == "clamped" else [dof]
+            held.append(dof)
+        if support.kind == "clamped":
+            held.append(dof + 1)
+        else:
+            stiffness[dof + 1, dof + 1] += support.rotation_stiffness or 0.0
     for point in segment.masses:
         dof = 2 * _nearest(nodes, point.x)
         mass[dof, dof] += point.mass

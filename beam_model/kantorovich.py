@@ -27,10 +27,46 @@ def kantorovich_segments(
     boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
 ) -> list[SegmentModel]:
     """All segments of a boom, each of its own number of terms; arguments as below."""
+    check_base(boom, base)
     return [
         kantorovich_segment(segment, count, base, rotary_inertia)
         for segment, count in zip(boom.segments, terms, strict=True)
     ]
+
+
+def check_base(boom: Boom, base: Base) -> None:
+    """Whether the functions have a form for what holds the boom.
+
+    Raises:
+        BoomError: clamped or elastic supports, or a cylinder, with another base than the complete
+            one.
+    """
+    if base == "complete":
+        return
+    for segment in boom.segments:
+        _check_supports(segment, base)
+        if boom.spatial:
+            _check_supports(segment.turned(), base)
+    for cylinder in boom.cylinders:
+        raise _no_form(boom.segments[cylinder.segment], "a cylinder", base)
+
+
+def _check_supports(segment: Segment, base: Base) -> None:
+    if any(
+        support.kind == "clamped"
+        or support.stiffness is not None
+        or support.rotation_stiffness is not None
+        for support in segment.supports
+    ):
+        raise _no_form(segment, "clamped or elastic supports", base)
+
+
+def _no_form(segment: Segment, what: str, base: Base) -> BoomError:
+    return BoomError(
+        "segment",
+        f"{segment.name!r} has {what}, for which the functions {base!r} have no form; use base = "
+        "'complete'",
+    )
 
 
 def kantorovich_segment(
@@ -73,6 +109,9 @@ def kantorovich_bending(
         if support.stiffness is not None:
             row = basis.at(support.x)
             stiffness += support.stiffness * np.outer(row, row)
+        if support.rotation_stiffness is not None:
+            row = basis.slope_at(support.x)
+            stiffness += support.rotation_stiffness * np.outer(row, row)
     for point in segment.masses:
         row = basis.at(point.x)
         mass += point.mass * np.outer(row, row)
@@ -117,16 +156,11 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
         held = [
             (support.x, order)
             for support in segment.supports
-            if support.stiffness is None
-            for order in range(2 if support.kind == "clamped" else 1)
+            for order, rigid in enumerate((support.stiffness is None, support.kind == "clamped"))
+            if rigid
         ]
         return complete_basis(segment, held, terms)
-    if any(s.kind == "clamped" or s.stiffness is not None for s in segment.supports):
-        raise BoomError(
-            "segment",
-            f"{segment.name!r} has clamped or elastic supports, for which the functions {base!r} "
-            "have no form; use base = 'complete'",
-        )
+    _check_supports(segment, base)
     if segment.supports:
         return outer_basis(segment, terms, base)
     return inner_basis(segment, terms)

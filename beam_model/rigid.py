@@ -18,25 +18,22 @@ def rigid_segment(segment: Segment) -> SegmentModel:
     These are the straight lines among the polynomials that its supports admit. Springs of elastic
     supports and point masses act on them; where rigid supports leave none, nothing moves.
     """
-    bends, turns = freedom(segment)
-    components: dict[Motion, Component] = {"z": _moving(segment, bends)}
+    components: dict[Motion, Component] = {"z": _moving(segment)}
     if segment.lateral is not None:
-        components["y"] = _moving(segment.turned(), bends)
+        components["y"] = _moving(segment.turned())
+        turns = segment.rigid_twists
         components["twist"] = kantorovich_twist(segment, turns) if turns else _held()
     return SegmentModel(components)
 
 
-def freedom(segment: Segment) -> tuple[int, int]:
-    """How many motions rigid supports leave to a rigid segment in one plane, and about its axis."""
-    held = sum(
-        2 if support.kind == "clamped" else 1
-        for support in segment.supports
-        if support.stiffness is None
-    )
-    return max(0, 2 - held), segment.rigid_twists
+def freedom(segment: Segment) -> int:
+    """How many motions along z rigid supports leave to a rigid segment."""
+    held = sum((s.stiffness is None) + (s.kind == "clamped") for s in segment.supports)
+    return max(0, 2 - held)
 
 
-def _moving(segment: Segment, motions: int) -> Component:
+def _moving(segment: Segment) -> Component:
+    motions = freedom(segment)
     if motions == 0:
         return _held()
     return kantorovich_bending(segment, motions, "complete", rotary_inertia=True)

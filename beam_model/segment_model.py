@@ -18,6 +18,7 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
+from geometry.cylinder import ground_lines
 from geometry.observation import Observation, Quantity
 
 
@@ -47,14 +48,19 @@ def gap_system(
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
         rows.stop(station, stop, [(0, 1.0, modes.displacement(stop.segment, stop.x, "z"))])
+    members = [_Member(modes, number) for number in range(len(models))]
     return rows.system(
         lambda row: row,
         modes.omega2,
         modes.load,
         boom.stations,
         _observed(boom, modes),
-        [(load.push(_Member(modes, load.segment)), load.history) for load in boom.loads],
-        damping=modes.damping,
+        [(load.push(members[load.segment]), load.history) for load in boom.loads],
+        [
+            (line.force, line.push, line.stiffness, line.dashpot)
+            for line in ground_lines(boom, members)
+        ],
+        modes.damping,
     )
 
 
@@ -106,6 +112,9 @@ class _Member:
 
     def moment(self, x: float, direction: Direction) -> Array:
         return self.modes.rotation(self.segment, x, direction)
+
+    def torque(self, x: float) -> Array:
+        return self.modes.twist(self.segment, x)
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         if span is None:

@@ -156,7 +156,7 @@ class GapBuilder(Generic[R]):
         places: Sequence[tuple[float, str]],
         observed: Mapping[str, Observed[R]],
         loads: Sequence[tuple[Array, History | Released | Thrown]],
-        grounded_dashpots: Sequence[tuple[float, Array]] = (),
+        lines: Sequence[tuple[str, Array, float, float]] = (),
         damping: Array | None = None,
     ) -> GapSystem:
         """The gap system in modal coordinates.
@@ -167,13 +167,14 @@ class GapBuilder(Generic[R]):
             places: x in m and direction of each station.
             observed: what a trajectory records, by its name.
             loads: (num_modes,) what pushes beside ``load``, and when.
-            grounded_dashpots: coefficients in N·s/m of those between the ground and what a row
-                (num_modes,) reads.
+            lines: to the ground: what a trajectory calls the force of the spring, pressed where it
+                is positive, or nothing; what reads the length (num_modes,); the stiffness in N/m,
+                which the modes heed already; the dashpot in N·s/m.
             damping: (num_modes,) in 1/s; none unless given.
         """
 
-        def rows(readings: Sequence[R]) -> Array:
-            return np.array([read(reading) for reading in readings]).reshape(-1, omega2.size)
+        def stacked(rows: Iterable[Array]) -> Array:
+            return np.array(list(rows)).reshape(-1, omega2.size)
 
         def total(kind: type[Released | Thrown]) -> Array:
             pushes = (push for push, when in loads if isinstance(when, kind))
@@ -183,22 +184,23 @@ class GapBuilder(Generic[R]):
             (dashpot.coefficient, sum(part * read(reading) for part, reading in dashpot.parts))
             for dashpot in self.dashpots.values()
         ]
-        dashpots = [np.sqrt(c) * row for c, row in (*across, *grounded_dashpots)]
-
+        grounded = [(c, row) for _, row, _, c in lines if c > 0.0]
+        seen = {
+            name: Observer(read(one.reading), one.unit, one.derivative)
+            for name, one in observed.items()
+        }
+        pressed = {name: Observer(-k * row, "N") for name, row, k, _ in lines if name}
         return GapSystem(
             omega2=omega2,
             load=load,
-            rows=rows([contact.reading for contact in self.contacts]),
+            rows=stacked(read(contact.reading) for contact in self.contacts),
             laws=[contact.law for contact in self.contacts],
             station_of_row=np.array([contact.station for contact in self.contacts], dtype=np.int64),
             stations=[x for x, _ in places],
-            observers={
-                name: Observer(read(seen.reading), seen.unit, seen.derivative)
-                for name, seen in observed.items()
-            },
+            observers=seen | pressed,
             damping=np.zeros(0) if damping is None else damping,
-            dashpots=np.array(dashpots).reshape(-1, omega2.size),
-            friction_rows=rows([friction.reading for friction in self.frictions]),
+            dashpots=stacked(np.sqrt(c) * row for c, row in (*across, *grounded)),
+            friction_rows=stacked(read(friction.reading) for friction in self.frictions),
             frictions=[friction.law for friction in self.frictions],
             excitations=[
                 Excitation(push, when)

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from geometry.cylinder import Cylinder, forces
+from geometry.holding import check_held
 from geometry.joint import Joint, PadSize, Stop
 from geometry.load import Load
 from geometry.observation import KINDS, Observation, Quantity
@@ -31,6 +33,7 @@ __all__ = [
     "Boom",
     "BoomError",
     "Collar",
+    "Cylinder",
     "Diaphragm",
     "Direction",
     "Joint",
@@ -48,7 +51,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Boom:
-    """Segments from the base to the tip, the joints between them, and what acts on them.
+    """Segments from the base to the tip, the joints between them, what acts on them, cylinders.
 
     A clamped arm, and a fly of which 2 m slide in it:
 
@@ -80,6 +83,7 @@ class Boom:
     loads: tuple[Load, ...] = ()
     stops: tuple[Stop, ...] = ()
     observations: tuple[Observation, ...] = ()
+    cylinders: tuple[Cylinder, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.segments:
@@ -91,7 +95,6 @@ class Boom:
         self._check_order()
         self._check_mirrors()
         self._check_diaphragms()
-        self._check_held()
         if self.spatial:
             self._check_space()
         for number, joint in enumerate(self.joints, start=1):
@@ -102,7 +105,9 @@ class Boom:
             self._check_contact_length(f"joint[{number}]", joint)
         self._check_loads()
         self._check_stops()
+        self._check_cylinders()
         self._check_observations()
+        check_held(self)
 
     @property
     def tip(self) -> float:
@@ -145,13 +150,14 @@ class Boom:
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """x of all places at which something acts on a segment, rising.
 
-        Stations of its joints, stops, point loads and point masses.
+        Stations of its joints, stops, lugs of cylinders, point loads and point masses.
         """
         places = {
             x for joint in self.joints if segment in (joint.outer, joint.inner)
             for x in joint.stations
         }  # fmt: skip
         places |= {stop.x for stop in self.stops if stop.segment == segment}
+        places |= {lug.x for lug in self.cylinders if lug.segment == segment}
         places |= {
             x for load in self.loads if load.segment == segment for x in load.places.values()
         }
@@ -239,20 +245,6 @@ class Boom:
                         f"plate can close the box there; it must be below {inner.start:g} m",
                     )
 
-    def _check_held(self) -> None:
-        held = {i for i, segment in enumerate(self.segments) if segment.rigid_modes == 0}
-        for _ in self.joints:
-            for joint in self.joints:
-                if len(joint.stations) >= 2 and held & {joint.outer, joint.inner}:
-                    held |= {joint.outer, joint.inner}
-        for i, segment in enumerate(self.segments):
-            if i not in held:
-                raise BoomError(
-                    f"segment[{i + 1}]",
-                    f"nothing holds {segment.name!r}: give it two supports, or a joint with two "
-                    "stations to a segment that is held",
-                )
-
     def _check_space(self) -> None:
         for number, joint in enumerate(self.joints, start=1):
             if joint.lateral_clearance is None:
@@ -316,7 +308,7 @@ class Boom:
                     )
 
     def _check_observations(self) -> None:
-        own = {place.name for place in self._at_ends(KINDS)}
+        own = {*forces(self), *(place.name for place in self._at_ends(KINDS))}
         for number, place in enumerate(self.observations, start=1):
             where = f"observe[{number}]"
             if place.name in own:
@@ -332,6 +324,12 @@ class Boom:
                     "the boom is flat, and nothing moves along 'y' or twists; give another "
                     "quantity, or the joints lateral_play",
                 )
+
+    def _check_cylinders(self) -> None:
+        for number, cylinder in enumerate(self.cylinders, start=1):
+            where = f"cylinder[{number}]"
+            _check_place(f"{where}.x", cylinder.x, self.segments[cylinder.segment])
+            cylinder.check(where, self.spatial)
 
 
 def _overlap(joint: Joint, segments: tuple[Segment, ...]) -> tuple[float, float]:

@@ -11,14 +11,24 @@ from geometry.arrays import Array
 from geometry.section import Direction
 
 
-class Member(Protocol):
-    """A segment of a model as loads push it; (num_dofs,) forces on its coordinates each."""
+class Body(Protocol):
+    """A segment of a model as single forces push it; (num_dofs,) on its coordinates each.
+
+    What a force pushes reads, the other way round, how far the force moves.
+    """
 
     def force(self, x: float, direction: Direction) -> Array:
         """1 N at x in m."""
 
     def moment(self, x: float, direction: Direction) -> Array:
         """1 N·m at x in m, in the plane of the direction, towards a larger slope."""
+
+    def torque(self, x: float) -> Array:
+        """1 N·m at x in m about the axis, of a segment in space."""
+
+
+class Member(Body, Protocol):
+    """A segment of a model as loads push it."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         """1 N/m between two x in m; along the whole segment where none are given."""

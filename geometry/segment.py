@@ -10,11 +10,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from geometry.section import Section
+from geometry.section import Direction, Section
 
 # Two places closer than this part of a segment's length are one: far below any plate, far above
 # round-off, in whatever unit.
 SAME_PLACE = 1.0e-10
+
+
+Hold = Literal["pinned", "clamped"]
 
 
 class BoomError(ValueError):
@@ -50,19 +53,41 @@ class Material:
 class Support:
     """What holds a segment at x: its deflection, along y as along z, and its twist.
 
-    >>> pt.Support(2.0), pt.Support(0.0, "clamped").kind
-    (Support(x=2.0, kind='pinned', stiffness=None), 'clamped')
+    >>> pt.Support(2.0).stiffness is None, pt.Support(0.0, "clamped").kind
+    (True, 'clamped')
+    >>> hinge = pt.Support(0.0, lateral_kind="clamped", depth=0.2)  # of a pin across the boom
+    >>> hinge.holds_slope("z"), hinge.holds_slope("y")
+    (False, True)
 
     Args:
         x: m.
         kind: ``pinned`` leaves the slopes free, ``clamped`` holds them too.
         stiffness: of a pinned support whose deflections give way, in N/m, the same along y and
             along z; rigid unless given. The twist is held rigidly all the same.
+        lateral_kind: whether the slope along y is held; as that along z unless given.
+        rotation_stiffness: against the slopes that are not held, in N·m/rad; none unless given.
+        dashpot: beside ``stiffness`` in N·s/m, likewise along y and along z.
+        depth: of its pin below the axis in m, which the lines of cylinders heed.
     """
 
     x: float
-    kind: Literal["pinned", "clamped"] = "pinned"
+    kind: Hold = "pinned"
     stiffness: float | None = None
+    lateral_kind: Hold | None = None
+    rotation_stiffness: float | None = None
+    dashpot: float = 0.0
+    depth: float = 0.0
+
+    def holds_slope(self, direction: Direction) -> bool:
+        """Whether the slope along y or z is held rigidly."""
+        lateral = self.lateral_kind or self.kind
+        return (self.kind if direction == "z" else lateral) == "clamped"
+
+    def turned(self) -> Support:
+        """Of a segment whose two planes are exchanged."""
+        if self.lateral_kind is None:
+            return self
+        return replace(self, kind=self.lateral_kind, lateral_kind=self.kind)
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,14 +256,22 @@ class Segment:
 
     @property
     def rigid_modes(self) -> int:
-        """How many motions in one plane of bending the supports leave free of strain."""
-        held = sum(2 if support.kind == "clamped" else 1 for support in self.supports)
+        """How many motions along z the supports leave free of strain."""
+        held = sum(
+            1 if support.kind == "pinned" and support.rotation_stiffness is None else 2
+            for support in self.supports
+        )
         return max(0, 2 - held)
 
     @property
     def rigid_twists(self) -> int:
         """How many turns about the axis the supports leave free of strain."""
         return 0 if self.supports else 1
+
+    @property
+    def foot(self) -> Support | None:
+        """The support nearest to the base, which holds the segment along x."""
+        return min(self.supports, key=lambda support: support.x, default=None)
 
     def holds(self, x: float) -> bool:
         """Whether x lies on the segment, its ends included."""
@@ -258,6 +291,7 @@ class Segment:
             second_moment_of_area=self.lateral.second_moment_of_area,
             rotary_inertia=self.lateral.rotary_inertia,
             load=self.lateral.load,
+            supports=tuple(support.turned() for support in self.supports),
             section=None if self.section is None else self.section.turned(),
             lateral=replace(
                 self.lateral,
@@ -284,7 +318,7 @@ class Segment:
             )
         for support in self.supports:
             self._check_place(f"{where}.supports", support.x)
-            _check_stiffness(f"{where}.supports", support)
+            _check_support(f"{where}.supports", support)
         places = sorted(support.x for support in self.supports)
         if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
             raise BoomError(f"{where}.supports", "a place is given twice; give each once")
@@ -350,18 +384,37 @@ class Segment:
             )
 
 
-def _check_stiffness(where: str, support: Support) -> None:
-    if support.stiffness is None:
-        return
-    if support.kind == "clamped":
+def _check_support(where: str, support: Support) -> None:
+    at = f"at {support.x:g} m"
+    if support.stiffness is not None and (support.holds_slope("z") or support.holds_slope("y")):
+        hold = "clamped support" if support.holds_slope("z") else "hinge"
         raise BoomError(
             where,
-            f"a clamped support is rigid, and the one at {support.x:g} m has a stiffness; leave it "
-            "out, or make the support pinned",
+            f"a {hold} is rigid, and the one {at} has a stiffness; leave it out, or make the "
+            "support pinned",
         )
-    if not 0.0 < support.stiffness < float("inf"):
+    if support.rotation_stiffness is not None and support.holds_slope("z"):
         raise BoomError(
             where,
-            f"the stiffness at {support.x:g} m must be a positive number of N/m, got "
-            f"{support.stiffness:g}",
+            f"a clamped support holds the slope, and the one {at} has a rotation_stiffness; leave "
+            "it out, or make the support pinned",
+        )
+    if support.dashpot > 0.0 and support.stiffness is None:
+        raise BoomError(
+            where,
+            f"the support {at} is rigid, and its dashpot would never move; leave it out, or give "
+            "the support a stiffness",
+        )
+    for key, what, unit in (
+        ("stiffness", "stiffness", "N/m"),
+        ("rotation_stiffness", "stiffness against rotation", "N m/rad"),
+    ):
+        given = getattr(support, key)
+        if given is not None and not 0.0 < given < float("inf"):
+            raise BoomError(
+                where, f"the {what} {at} must be a positive number of {unit}, got {given:g}"
+            )
+    if not 0.0 <= support.dashpot < float("inf"):
+        raise BoomError(
+            where, f"the dashpot {at} must be a number of N s/m from 0 on, got {support.dashpot:g}"
         )

@@ -78,6 +78,7 @@ def _walls(boom: Boom, number: int) -> Iterator[float]:
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)
+    yield from (lug.x for lug in boom.cylinders if lug.segment == number)
     yield from (load.x for load in boom.loads if load.segment == number and load.x is not None)
     for joint in boom.joints:
         if joint.tied and number in (joint.outer, joint.inner):

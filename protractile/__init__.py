@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from dynamics.trajectory import Trajectory as Trajectory
     from geometry.boom import Boom as Boom
     from geometry.boom import BoomError as BoomError
+    from geometry.boom import Cylinder as Cylinder
     from geometry.boom import Joint as Joint
     from geometry.boom import Load as Load
     from geometry.boom import PadSize as PadSize
@@ -90,7 +91,7 @@ _HOMES = {
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.trajectory": "Trajectory",
-        "geometry.boom": "Boom BoomError Joint Load PadSize Stop",
+        "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize Stop",
         "geometry.observation": "Observation",
         "geometry.section": "BoxSection Section",
         "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment Support",

@@ -18,6 +18,7 @@ from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine
+from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
@@ -107,6 +108,7 @@ class BoomShell:
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
         loads: those that follow a history, and (num_owned,) what they push.
         observed: what a motion records.
+        lines: to the ground, (num_owned,) each.
     """
 
     comm: MPI.Comm
@@ -117,6 +119,7 @@ class BoomShell:
     own_loads: Sequence[Array]
     loads: Sequence[tuple[Load, Array]]
     observed: Mapping[str, Observed[Reading]]
+    lines: Sequence[GroundLine] = ()
 
     @property
     def num_dofs(self) -> int:
@@ -133,6 +136,7 @@ class BoomShell:
         """(num_owned, num_forces) all that acts on a segment, contacts first."""
         own = [push for load, push in self.loads if load.segment == number]
         dragged = self.columns(number, self.rows.dragged)
+        own += [line.push for line in self.lines if line.segment == number]
         return np.column_stack([self.joined(number), dragged, self.own_loads[number], *own])
 
     def joined(self, number: int) -> Array:
@@ -190,6 +194,7 @@ def assemble_boom(
             own_loads=[shell.own_load(boom.directions) for shell in shells],
             loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
             observed=_observed(boom, shells),
+            lines=list(ground_lines(boom, shells)),
         )
 
 

@@ -78,7 +78,7 @@ def reduce_boom(
     planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     full = assemble_boom(boom, planes, options, comm, stages)
     reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
-    coordinates = BoomCoordinates(comm, full.shells, reduced, full.ties)
+    coordinates = BoomCoordinates(comm, full.shells, reduced, full.ties, full.lines)
     with stages.stage("rows"):
         system = _gap_system(full, coordinates)
     with stages.stage("fields"):
@@ -130,6 +130,10 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
         full.stations,
         full.observed,
         [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],
+        [
+            (line.force, coordinates.push(line.segment, line.push), line.stiffness, line.dashpot)
+            for line in full.lines
+        ],
     )
 
 

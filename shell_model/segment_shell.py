@@ -27,9 +27,9 @@ from shell_model.reduction.products import times
 # Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
 ON_LINE = 1.0e-7
 
-# What holds the twist of an elastic support, over G J_t / L of its segment: no segment can tell
-# it from a rigid hold.
-RIGID_TWIST = 1.0e5
+# What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
+# segment can tell it from a rigid hold.
+RIGID_TURN = 1.0e5
 
 # Part of the largest value below which a value of a load is round-off.
 _ROUND_OFF = 1.0e-10
@@ -205,6 +205,10 @@ class SegmentShell(Shell):
         """(num_owned,) 1 N·m at x in m, spread over all walls as bending stress is."""
         return self.row(self.outline(x).rotation(direction))
 
+    def torque(self, x: float) -> Array:
+        """(num_owned,) 1 N·m at x in m about the axis, spread along all walls."""
+        return self.row(self.outline(x).twist())
+
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         """(num_owned,) 1 N/m between mesh lines at two x in m, or along all of it. Collective."""
         if span is None:
@@ -244,9 +248,10 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
 
     A rigid support holds the section's outline against y and z, which leaves it free to tilt; a
     clamped one holds every displacement and rotation of it. An elastic support is a spring on
-    the mean deflection of the walls, along z and along y, with the twist held. Point masses move
-    with the same means. Nothing holds the segment along x, and nothing pushes it there. A
-    diaphragm is held, pushed and read through the outline to which it is welded alone.
+    the mean deflection of the walls, along z and along y, with the twist held; what holds one slope
+    alone, or gives way to it, is a spring on the rotation of the section. Point masses move with
+    the same means. Nothing holds the segment along x, and nothing pushes it there. A diaphragm is
+    held, pushed and read through the outline to which it is welded alone.
 
     Args:
         comm: the ranks that share it.
@@ -376,15 +381,25 @@ def _unit_load(comm: MPI.Comm, forms: ShellForms, direction: Direction) -> Array
 
 
 def _springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Where elastic supports pull, at what, and how stiffly."""
+    """Where supports pull that are elastic, or hold a turn, at what, and how stiffly."""
     section = segment.section
     assert section is not None
-    torsion = segment.material.shear_modulus * section.torsion_constant / segment.length
+    torsion = segment.material.shear_modulus * section.torsion_constant
+    bending: Mapping[Direction, float] = {
+        "z": segment.material.youngs_modulus * section.second_moment_of_area,
+        "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
+    }
     for support in segment.supports:
         if support.stiffness is not None:
             yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
             yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
-            yield support.x, Outline.twist, RIGID_TWIST * torsion
+            yield support.x, Outline.twist, RIGID_TURN * torsion / segment.length
+        for direction, stiffness in bending.items():
+            turn = partial(Outline.rotation, direction=direction)
+            if support.holds_slope(direction) and not _is_clamped(support):
+                yield support.x, turn, RIGID_TURN * stiffness / segment.length
+            elif support.rotation_stiffness is not None:
+                yield support.x, turn, support.rotation_stiffness
 
 
 def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
@@ -411,9 +426,13 @@ def _holds(space: Any, segment: Segment, section: Section) -> list[Any]:
 
 def _held_components(support: Support) -> list[tuple[int, int]]:
     """Components that a rigid support holds: (0, i) of displacement, (1, i) of rotation."""
-    if support.kind == "clamped":
+    if _is_clamped(support):
         return [(part, component) for part in (0, 1) for component in (0, 1, 2)]
     return [(0, COMPONENT["y"]), (0, COMPONENT["z"])]
+
+
+def _is_clamped(support: Support) -> bool:
+    return support.holds_slope("z") and support.holds_slope("y")
 
 
 def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:

@@ -12,7 +12,7 @@ from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import BoomError, Direction, Segment, Stop
+from geometry.boom import BoomError, Cylinder, Direction, Segment, Stop
 from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
 from runs.case.places import at
@@ -153,6 +153,23 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
         )
         for number, table in enumerate(case.stops, start=1)
         for index in [_segment(f"stop[{number}].segment", table.segment, segments)]
+    )
+
+
+def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
+    """What luffs the boom.
+
+    Raises:
+        BoomError: a name that is no segment.
+    """
+    return tuple(
+        Cylinder(
+            segment=index,
+            x=at(table.x, segments[index].start, segments[index].end),
+            **table.model_dump(exclude={"segment", "x"}),
+        )
+        for number, table in enumerate(case.cylinders, start=1)
+        for index in [_segment(f"cylinder[{number}].segment", table.segment, segments)]
     )
 
 

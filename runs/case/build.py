@@ -33,7 +33,7 @@ from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
 from runs.case.places import at, spans
-from runs.case.schema import Case, Model, SegmentTable
+from runs.case.schema import Case, Model, SegmentTable, SupportTable
 
 # What trajectories hold of every boom.
 _TAKEN = {*OF_STATIONS, *ENERGIES, "time", "station", "direction", "place", "model"}
@@ -63,6 +63,7 @@ def build_boom(case: Case) -> Boom:
         actions.loads(case, segments),
         actions.stops(case, segments),
         _observations(case, segments),
+        actions.cylinders(case, segments),
     )
 
 
@@ -205,10 +206,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         rotary_inertia=material.density * second_moment if rotary is None else rotary,
         section=section,
         load=table.load,
-        supports=tuple(
-            Support(at(support.x, *ends), **support.model_dump(exclude={"x"}))
-            for support in table.supports
-        ),
+        supports=tuple(_support(support, ends) for support in table.supports),
         viscous_damping=table.viscous_damping,
         masses=_masses(case, index, ends),
         lateral=_lateral(table, material, section) if _in_space(case) else None,
@@ -220,6 +218,13 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
             Diaphragm(at(plate.x, *ends), plate.thickness) for plate in table.diaphragms
         ),
     )
+
+
+def _support(table: SupportTable, ends: tuple[float, float]) -> Support:
+    given = table.model_dump() | {"x": at(table.x, *ends)}
+    if table.kind == "hinged":
+        given |= {"kind": "pinned", "lateral_kind": "clamped"}
+    return Support(**given)
 
 
 def material_of(case: Case, index: int) -> Material:

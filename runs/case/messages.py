@@ -30,6 +30,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "joint": contact.JointTable,
     "contact": contact.ContactTable,
     "stop": schema.StopTable,
+    "cylinder": schema.CylinderTable,
     "load": schema.LoadTable,
     "payload": schema.PayloadTable,
     "gravity": schema.GravityTable,

@@ -85,11 +85,26 @@ class SupportTable(Table):
     """A place where the ground holds a segment; in space it holds sideways and in twist too."""
 
     x: Place = Field(description="the x in m")
-    kind: Literal["pinned", "clamped"] = Field(
-        "pinned", description="whether the slope is free or held"
+    kind: Literal["pinned", "hinged", "clamped"] = Field(
+        "pinned",
+        description="whether the slope is free or held; of a hinge, a pin across the boom, it is "
+        "free in the plane of bending and held sideways",
     )
     stiffness: Positive | None = Field(
         None, description="the stiffness of an elastic support in N/m; rigid unless given"
+    )
+    rotation_stiffness: Positive | None = Field(
+        None,
+        description="the stiffness in N m/rad against the slopes that the kind leaves free; none "
+        "unless given",
+    )
+    dashpot: NotNegative = Field(
+        0.0, description="the linear dashpot of an elastic support in N s/m, beside its stiffness"
+    )
+    depth: Number = Field(
+        0.0,
+        description="how far in m its pin is below the segment's axis, of the first support of a "
+        "segment with a cylinder",
     )
 
 
@@ -222,6 +237,28 @@ class StopTable(Table):
         None,
         description="the length along x in m on which it presses the corners, which shells alone "
         "heed; a fifth of the box's height unless given",
+    )
+
+
+class CylinderTable(Table):
+    """A luffing cylinder: a spring between a lug of a segment and a point of the ground."""
+
+    segment: str = Field(description="the name of the segment")
+    x: Place = Field(description="the x of the lug in m")
+    depth: Number = Field(0.0, description="how far in m the lug is below the segment's axis")
+    ground: tuple[Number, Number] = Field(
+        description="the other end in m: its x, and how far it is above the boom's axis"
+    )
+    stiffness: Positive = Field(
+        description="the stiffness in N/m along its line, of two side by side together"
+    )
+    dashpot: NotNegative = Field(
+        0.0, description="the linear dashpot in N s/m along its line, of two together"
+    )
+    spread: NotNegative = Field(
+        0.0,
+        description="the distance in m across the boom of two side by side, of a boom in space; "
+        "one in the middle unless given",
     )
 
 
@@ -437,6 +474,9 @@ class Case(Table):
     )
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop", description="the rests that segments may touch, one [[stop]] each"
+    )
+    cylinders: Annotated[tuple[CylinderTable, ...], Few] = Field(
+        (), alias="cylinder", description="the luffing cylinders, one [[cylinder]] each"
     )
     loads: Annotated[tuple[LoadTable, ...], Few] = Field(
         (), alias="load", description="the loads that are not uniform or not constant"

@@ -137,6 +137,8 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
     table = Table("damping, joints pressed", *shapes)
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
     given += [joint.dashpot for joint in boom.joints]
+    given += [cylinder.dashpot for cylinder in boom.cylinders]
+    given += [support.dashpot for segment in boom.segments for support in segment.supports]
     for model in case.models if any(given) else ():
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.meshed else model

@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from geometry.cylinder import forces
 from geometry.observation import KINDS
 from runs.case import reading as case_file
 from runs.case import toml
@@ -183,7 +184,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
             f"at x = {place.x:g} m"
         }
         for place in boom.recorded(list(KINDS))
-    }
+    } | {name: {"long_name": title} for name, title in forces(boom).items()}
     lengths = {"time": time.size, "station": len(stations)}
     variables = {}
     for name, (dims, attributes) in units.items():

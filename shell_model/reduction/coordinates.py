@@ -11,19 +11,24 @@ from mpi4py import MPI
 from scipy.linalg import eigh, null_space
 
 from geometry.arrays import Array
+from geometry.cylinder import GroundLine
 from shell_model.cross_section import Reading
 from shell_model.reduction.products import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
 
+# What holds less than this part of what holds most, holds nothing.
+ROUND_OFF = 1.0e-9
+
 
 class BoomCoordinates:
-    """Mass-normalised coordinates a of a boom, in which the tied readings are zero. Collective.
+    """Mass-normalised coordinates a of a boom whose ties and cylinders hold it. Collective.
 
     Args:
         comm: the ranks that share the shells.
         shells, reduced: of the segments.
         ties: what stays at zero.
+        lines: to the ground, of whose springs the shells do not know.
 
     Attributes:
         omega2: (num_modes,) in rad²/s², rigid motions exactly 0.
@@ -35,13 +40,17 @@ class BoomCoordinates:
         shells: Sequence[SegmentShell],
         reduced: Sequence[ReducedSegment],
         ties: Sequence[Reading],
+        lines: Sequence[GroundLine] = (),
     ) -> None:
         self._comm, self._shells, self._reduced = comm, shells, reduced
         self._combination: Array | None = None
         self.omega2 = np.concatenate([segment.omega2 for segment in reduced])
-        if ties:
-            rows = np.array([self.row(tie) for tie in ties])
-            self.omega2, self._combination = comm.bcast(_tied_modes(self.omega2, rows))
+        springs = [line for line in lines if line.stiffness > 0.0]
+        if ties or springs:
+            tied = np.array([self.row(tie) for tie in ties]).reshape(-1, self.omega2.size)
+            pulled = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
+            pulls = np.array(pulled).reshape(-1, self.omega2.size)
+            self.omega2, self._combination = comm.bcast(_held_modes(self.omega2, tied, pulls))
 
     def row(self, reading: Reading) -> Array:
         """(num_modes,) what a reading reads of each mode, the same on every rank."""
@@ -74,12 +83,23 @@ class BoomCoordinates:
         return fields.assign(combined)
 
 
-def _tied_modes(omega2: Array, rows: Array) -> tuple[Array, Array]:
-    """ω² and combinations (num_modes, num_tied_modes) of modes that keep the rows at zero."""
-    free = null_space(rows)
-    tied_omega2, combination = eigh(free.T @ (omega2[:, None] * free))
-    # What the ties leave of the segments' rigid motions is rigid still.
-    rigid = rows[:, omega2 == 0.0]
-    left = rigid.shape[1] - int(np.linalg.matrix_rank(rigid)) if rigid.size else 0
-    tied_omega2[:left] = 0.0
-    return tied_omega2, free @ combination
+def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:
+    """ω² and combinations (num_modes, num_held_modes) of modes that springs √k p pull at.
+
+    Args:
+        omega2: (num_modes,) of those without.
+        tied: (num_ties, num_modes) what stays at zero.
+        pulls: (num_springs, num_modes) in 1/s.
+    """
+    free = null_space(tied) if tied.size else np.eye(omega2.size)
+    held = pulls @ free
+    held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + held.T @ held)
+    # What these leave of the segments' rigid motions is rigid still.
+    rigid = [rows[:, omega2 == 0.0] for rows in (tied, pulls) if rows.size]
+    scaled = np.concatenate(
+        [rows / np.abs(rows).max(initial=np.finfo(float).tiny) for rows in rigid]
+    )
+    bound = np.linalg.svd(scaled, compute_uv=False) if scaled.size else np.zeros(0)
+    left = scaled.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
+    held_omega2[:left] = 0.0
+    return held_omega2, free @ combination

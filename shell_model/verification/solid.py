@@ -142,7 +142,12 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFa
     assert isinstance(section, BoxSection)
     if segment.masses or segment.collars or segment.diaphragms:
         raise ValueError(f"{segment.name!r} as a solid has plain walls and carries no masses")
-    if any(support.stiffness is not None for support in segment.supports):
+    if any(
+        support.stiffness is not None
+        or support.rotation_stiffness is not None
+        or support.lateral_kind is not None
+        for support in segment.supports
+    ):
         raise ValueError(f"{segment.name!r} as a solid takes rigid supports alone")
     comm = MPI.COMM_SELF
     space = compat.solid_space(compat.create_hexahedron_mesh(comm, mesh.points, mesh.hexahedra))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Linear dashpots at joints, across the play."""
+"""Linear dashpots at joints, across the play, at supports and along cylinders."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
+from dynamics.damping import pressed_ratios
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Joint, Segment, Support
+from geometry.boom import Boom, BoomError, Cylinder, Joint, Segment, Support
 
 Models = Callable[..., list[SegmentModel]]
 
@@ -56,6 +57,39 @@ def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Seg
     found = decrements(system, raised, 0.5, "tip")
     assert found.size > 5
     assert found == pytest.approx(expected, rel=2e-4)
+
+
+@pytest.mark.parametrize("held", ["support", "cylinder"])
+def test_a_rigid_segment_on_its_hinge_loses_its_swing(
+    beam: Callable[..., Segment], held: str
+) -> None:
+    """Reference: analytic. About its hinge, with an arm r: ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
+
+    The line of the cylinder, from (1.4, −2) to (6, −0.5) m, passes the hinge at (3, −0.25) m.
+    """
+    supports, cylinders = [Support(3.0, depth=0.25 if held == "cylinder" else 0.0)], []
+    if held == "support":
+        arm, damping = 2.5, 4.0e3
+        supports.append(Support(5.5, stiffness=SPRING, dashpot=damping))
+    else:
+        line = np.array([4.6, 1.5]) / np.hypot(4.6, 1.5)
+        # (6 − 3, −0.5 + 0.25) × line
+        arm, damping = 3.0 * line[1] + 0.25 * line[0], 8.0e3
+        cylinders.append(Cylinder(0, 6.0, 0.5, (1.4, -2.0), SPRING, dashpot=damping))
+    segment = beam(supports=supports)
+    boom = Boom((segment,), (), cylinders=tuple(cylinders))
+    system = gap_system(boom, [rigid_segment(segment)], [])
+    mass = segment.mass_per_length * segment.length
+    inertia = mass * segment.length**2 / 3.0 + segment.rotary_inertia * segment.length
+    omega = arm * np.sqrt(SPRING / inertia)
+    assert np.sqrt(system.omega2) == pytest.approx([omega], rel=1e-9)
+    ratio = 0.5 * damping * arm / np.sqrt(SPRING * inertia)
+    assert 0.005 < ratio < 0.1
+    found = decrements(system, np.ones(1), 12.5 * 2.0 * np.pi / omega, "tip")
+    assert found.size > 8
+    assert found == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=2e-4)
+    hertz, ratios = pressed_ratios(system)
+    assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
 
 
 @pytest.mark.parametrize("spatial", [False, True], ids=["flat", "in space"])

@@ -113,6 +113,34 @@ def test_a_spring_under_the_end_of_a_cantilever(
 
 
 @KINDS
+@pytest.mark.parametrize("stiffness", [2.0e6, 4.0e8])
+def test_a_hinge_that_resists_rotation(
+    beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
+) -> None:
+    """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
+    (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft one the beam is
+    nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes 5e-6 of that.
+    """
+    segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
+    model = model_of(segment)
+    assert model.rigid_modes == segment.rigid_modes == 0
+    share = stiffness * segment.length / segment.bending_stiffness
+
+    def defect(number: float) -> float:
+        turned = np.sin(number) - np.cos(number) * np.tanh(number)
+        return float(share * (1.0 / np.cosh(number) + np.cos(number)) - number * turned)
+
+    grid = np.linspace(0.05, 11.0, 600)
+    values = np.array([defect(number) for number in grid])
+    (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
+    roots = [brentq(defect, grid[k], grid[k + 1], xtol=1e-13) for k in changes]
+    expected = angular_frequencies(segment, roots[:3])
+    rigid = np.sqrt(3.0 * stiffness / (segment.mass_per_length * segment.length**3))
+    assert (abs(expected[0] / rigid - 1.0) < 0.01) == (stiffness < 1.0e7)
+    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-5)
+
+
+@KINDS
 def test_a_mass_on_the_end_of_a_cantilever(
     beam: Beam, model_of: Callable[[Segment], Component]
 ) -> None:

@@ -246,14 +246,14 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
     ),
     "outer not held": (
         "segment[1]",
-        "nothing holds 'outer': give it two supports, or a joint with two stations to a segment "
-        "that is held",
+        "nothing holds 'outer': give it two supports, a hinge and a cylinder whose line passes "
+        "beside it, or a joint with two stations to a segment that is held",
         lambda outer, inner, joint: ((replace(outer, supports=(Support(0.0),)), inner), (joint,)),
     ),
     "inner not held": (
         "segment[2]",
-        "nothing holds 'inner': give it two supports, or a joint with two stations to a segment "
-        "that is held",
+        "nothing holds 'inner': give it two supports, a hinge and a cylinder whose line passes "
+        "beside it, or a joint with two stations to a segment that is held",
         lambda outer, inner, joint: ((outer, inner), (replace(joint, stations=(9.5,)),)),
     ),
 }

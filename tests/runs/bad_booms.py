@@ -9,7 +9,7 @@ NUMBERS = {
     "support of an unknown kind": (
         "supports = [0.0, 2.0]",
         'supports = [0.0, { x = 2.0, kind = "welded" }]',
-        "segment[1].supports[2].kind: must be 'pinned' or 'clamped', got 'welded'",
+        "segment[1].supports[2].kind: must be 'pinned', 'hinged' or 'clamped', got 'welded'",
     ),
     "soft clamp": (
         "supports = [0.0, 2.0]",
@@ -145,8 +145,8 @@ NUMBERS = {
     "nothing holds": (
         "supports = [0.0, 2.0]",
         "supports = []",
-        "segment[1]: nothing holds 'outer': give it two supports, or a joint with two stations to "
-        "a segment that is held",
+        "segment[1]: nothing holds 'outer': give it two supports, a hinge and a cylinder whose "
+        "line passes beside it, or a joint with two stations to a segment that is held",
     ),
     "inner box too large": (
         "mass_per_length = 55.07\nsecond_moment_of_area = 2.1829e-4\n",

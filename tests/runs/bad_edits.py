@@ -7,5 +7,6 @@ from tests.runs.bad_booms import NUMBERS
 from tests.runs.bad_contacts import CONTACTS
 from tests.runs.bad_forms import FORMS
 from tests.runs.bad_stiffeners import STIFFENERS
+from tests.runs.bad_supports import SUPPORTS
 
-BAD_EDITS = FORMS | NUMBERS | CONTACTS | STIFFENERS
+BAD_EDITS = FORMS | NUMBERS | CONTACTS | STIFFENERS | SUPPORTS

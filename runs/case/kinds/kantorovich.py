@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from beam_model.component import SegmentModel
-from beam_model.kantorovich import bending_basis, kantorovich_segments
+from beam_model.kantorovich import check_base, kantorovich_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Joined, StandIn
 from runs.case.limits import Count, Few, Flag
@@ -45,11 +45,10 @@ class KantorovichTable(BeamTable):
                 f"must have one number for each of the {len(segments)} segments, got "
                 f"{list(self.terms)}",
             )
-        for segment, terms in zip(segments, self.terms, strict=True):
-            try:
-                bending_basis(segment, terms, self.base)
-            except BoomError as error:
-                raise BoomError(f"{where}.base", error.what) from None
+        try:
+            check_base(joined.boom, self.base)
+        except BoomError as error:
+            raise BoomError(f"{where}.base", error.what) from None
         super().check(where, joined)
 
     def describe(self) -> str:

@@ -19,7 +19,7 @@ class RigidTable(BeamTable):
     kind: Literal["rigid"] = Field(description="the kind of model")
 
     def check(self, where: str, joined: Joined) -> None:
-        if not any(freedom(segment)[0] for segment in joined.boom.segments):
+        if not any(freedom(segment) for segment in joined.boom.segments):
             raise BoomError(
                 f"{where}.kind",
                 "every segment is held, and no rigid one could move; give another kind, or elastic "

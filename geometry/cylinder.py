@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A luffing cylinder, which holds a boom that stands on a hinge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import TYPE_CHECKING, NamedTuple
+
+from geometry.arrays import Array
+from geometry.load import Body
+from geometry.segment import BoomError, Support
+
+if TYPE_CHECKING:
+    from geometry.boom import Boom
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A spring, and a dashpot, between a lug of a segment and a point of the ground.
+
+    The lug moves with its cross-section. The segment does not stretch; along x its foot holds it,
+    the support nearest to the base.
+
+    >>> jack = pt.Cylinder(segment=0, x=4.0, depth=0.3, ground=(1.0, -4.3), stiffness=5e7)
+    >>> jack.length, jack.direction
+    (5.0, (0.6, 0.8))
+    >>> hinge = pt.Support(0.0)
+    >>> arm = replace(boom.segments[0], supports=(hinge,))
+    >>> luffed = replace(boom, segments=(arm, boom.segments[1]), cylinders=(jack,))
+    >>> bool((pt.finite_element_system(luffed, laws).omega2[:2] > 0.0).all())
+    True
+
+    Args:
+        segment: position in ``Boom.segments``.
+        x: of the lug in m.
+        depth: of the lug below the axis in m.
+        ground: x of the other end in m, and how far it is above the axis, which is straight.
+        stiffness: along its line in N/m, of two side by side together.
+        dashpot: along its line in N·s/m, likewise.
+        spread: m along y between two side by side, in space; one in the middle unless given.
+    """
+
+    segment: int
+    x: float
+    depth: float
+    ground: tuple[float, float]
+    stiffness: float
+    dashpot: float = 0.0
+    spread: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """From the ground to the lug in m."""
+        return hypot(self.x - self.ground[0], -self.depth - self.ground[1])
+
+    @property
+    def direction(self) -> tuple[float, float]:
+        """x and z of the unit vector from the ground to the lug."""
+        return (
+            (self.x - self.ground[0]) / self.length,
+            (-self.depth - self.ground[1]) / self.length,
+        )
+
+    def check(self, where: str, spatial: bool) -> None:
+        """Whether there can be such a cylinder.
+
+        Args:
+            where: its key, ``cylinder[1]`` say.
+            spatial: of the boom.
+
+        Raises:
+            BoomError: it has no length, or is impossible, or two are side by side in a flat boom.
+        """
+        if not 0.0 < self.length < float("inf"):
+            raise BoomError(
+                f"{where}.ground", "must be another point than the lug; give x and z in m"
+            )
+        for key, least, unit in (
+            ("stiffness", "above 0", "N/m"),
+            ("dashpot", "from 0 on", "N s/m"),
+            ("spread", "from 0 on", "m"),
+        ):
+            given = getattr(self, key)
+            if not 0.0 <= given < float("inf") or (given == 0.0 and key == "stiffness"):
+                raise BoomError(
+                    f"{where}.{key}", f"must be a number of {unit} {least}, got {given:g}"
+                )
+        if self.spread > 0.0 and not spatial:
+            raise BoomError(
+                f"{where}.spread",
+                "the boom is flat, and nothing turns about its axis; leave it out, or give the "
+                "joints lateral_play",
+            )
+
+    def pushes(self, body: Body, foot: Support | None) -> Iterator[Array]:
+        """(num_dofs,) what 1 N of all cylinders does to their segment: what their length reads.
+
+        Then, of two, what ½ N in one and −½ N in the other do. A point at (y, z) of a cross-section
+        moves along x by −w′ z − v′ y and along z by w + φ y, beside the segment's motion along x,
+        which is none at the foot's depth.
+
+        Args:
+            body: the segment.
+            foot: that holds it along x.
+        """
+        along, up = self.direction
+        in_plane = up * body.force(self.x, "z") + along * self.depth * body.moment(self.x, "z")
+        if foot is not None and foot.depth != 0.0:
+            in_plane = in_plane - along * foot.depth * body.moment(foot.x, "z")
+        yield in_plane
+        if self.spread > 0.0:
+            half = 0.5 * self.spread
+            yield half * (up * body.torque(self.x) - along * body.moment(self.x, "y"))
+
+
+class GroundLine(NamedTuple):
+    """A line from a segment to the ground, beside what is held in the segment itself.
+
+    Args:
+        segment: position in ``Boom.segments``.
+        push: (num_dofs,) what 1 N along it does to the segment: what its length reads.
+        stiffness: N/m.
+        dashpot: N·s/m.
+        force: what results call the spring's force, positive where it is pressed; none without.
+    """
+
+    segment: int
+    push: Array
+    stiffness: float
+    dashpot: float
+    force: str = ""
+
+
+def forces(boom: Boom) -> dict[str, str]:
+    """What results call the forces of the cylinders' springs, and what they are in words."""
+    found = {}
+    for number, one in enumerate(boom.cylinders, start=1):
+        suffix = "" if number == 1 else f"-{number}"
+        where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
+        name = "cylinder_force"
+        found[f"{name}{suffix}"] = f"spring force of the cylinder {where}, positive where pressed"
+        if one.spread > 0.0:
+            found[f"{name}_difference{suffix}"] = (
+                f"spring force of the cylinder at positive y {where}, less that of the other"
+            )
+    return found
+
+
+def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
+    """Springs and dashpots of cylinders, then dashpots of supports.
+
+    Args:
+        boom: its supports and cylinders.
+        bodies: its segments.
+    """
+    names = iter(forces(boom))
+    for one in boom.cylinders:
+        for push in one.pushes(bodies[one.segment], boom.segments[one.segment].foot):
+            yield GroundLine(one.segment, push, one.stiffness, one.dashpot, next(names))
+    for number, segment in enumerate(boom.segments):
+        for support in segment.supports:
+            if support.dashpot > 0.0:
+                for direction in boom.directions:
+                    push = bodies[number].force(support.x, direction)
+                    yield GroundLine(number, push, 0.0, support.dashpot)

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether a boom is held: what its rigid segments can do against supports, joints and stops.
+
+Each segment moves along z and turns there, in space also along y, and about its axis. What holds
+it is a row over these motions of all segments; the boom is held where the rows leave none of them.
+A stop may hold one way alone: then the loads of t = 0 have to press it there, with what the other
+rows bear in balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.cylinder import ground_lines
+from geometry.load import Member
+from geometry.section import Direction
+from geometry.segment import BoomError, Segment
+
+if TYPE_CHECKING:
+    from geometry.boom import Boom
+
+# Part of the largest row, or of the largest force, below which what is left is round-off.
+_ROUND_OFF = 1.0e-9
+
+# Motions of a segment in the plane, and in space.
+_FLAT, _SPATIAL = 2, 5
+
+
+def check_held(boom: Boom) -> None:
+    """Whether supports, cylinders, joints and stops leave no rigid motion.
+
+    Args:
+        boom: with places that are on its segments.
+
+    Raises:
+        BoomError: nothing holds a segment, or loads lift it off what does.
+    """
+    _check_depths(boom)
+    bodies = [_RigidBody(boom, number) for number in range(len(boom.segments))]
+    always = list(_always(boom, bodies))
+    # The push of those that the segment meets from one side.
+    one_way = [
+        np.sign(stop.stiffness_below - stop.stiffness) * bodies[stop.segment].force(stop.x, "z")
+        for stop in boom.stops
+        if 0.0 in (stop.stiffness, stop.stiffness_below)
+    ]
+    left = _left([*always, *one_way], bodies)
+    for body in _free(bodies, left):
+        if np.abs(left[body.motions][:_FLAT]).max() > _ROUND_OFF:
+            raise BoomError(
+                body.key,
+                f"nothing holds {body.segment.name!r}: give it two supports, a hinge and a "
+                "cylinder whose line passes beside it, or a joint with two stations to a segment "
+                "that is held",
+            )
+        raise BoomError(
+            body.key,
+            f"nothing holds {body.segment.name!r} sideways: give it two supports, one that is "
+            "hinged or clamped, or a joint with two stations to a segment that is held",
+        )
+    left = _left(always, bodies)
+    if not left.size:
+        return
+    from scipy.optimize import nnls
+
+    load = sum((body.load for body in bodies), np.zeros(len(left))) @ left
+    _, unbalanced = nnls((np.array(one_way) @ left).T, -load)
+    if unbalanced > _ROUND_OFF * np.linalg.norm(load):
+        body = next(_free(bodies, left))
+        raise BoomError(
+            body.key,
+            f"the loads of t = 0 lift {body.segment.name!r} off what it rests on, and nothing else "
+            "holds it: give it two supports, or a stop that holds both ways",
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _RigidBody(Member):
+    """A segment among rigid ones, over the motions of all: slopes and turns by their way at the
+    boom's length.
+    """
+
+    boom: Boom
+    number: int
+
+    @property
+    def segment(self) -> Segment:
+        return self.boom.segments[self.number]
+
+    @property
+    def key(self) -> str:
+        """Its key in a case."""
+        return f"segment[{self.number + 1}]"
+
+    @property
+    def _length(self) -> float:
+        return self.boom.tip - self.boom.segments[0].start
+
+    @property
+    def motions(self) -> slice:
+        """Its own ones: along z, then along y and about the axis."""
+        count = _SPATIAL if self.boom.spatial else _FLAT
+        return slice(count * self.number, count * (self.number + 1))
+
+    @property
+    def load(self) -> Array:
+        """What acts on it at t = 0."""
+        whole = self.segment.load * self.uniform("z", None)
+        if self.boom.spatial and self.segment.lateral is not None:
+            whole += self.segment.lateral.load * self.uniform("y", None)
+        for load in self.boom.loads:
+            # What is over by then has no values.
+            if load.segment == self.number and callable(load.history):
+                whole += float(load.history(np.zeros(()))) * load.push(self)
+        return whole
+
+    def force(self, x: float, direction: Direction) -> Array:
+        middle = 0.5 * (self.segment.start + self.segment.end)
+        return self._row(0 if direction == "z" else 2, 1.0, (x - middle) / self._length)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self._row(1 if direction == "z" else 3, 1.0 / self._length)
+
+    def torque(self, x: float) -> Array:
+        return self._row(4, 1.0 / self._length)
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        start, end = span or (self.segment.start, self.segment.end)
+        return (end - start) * self.force(0.5 * (start + end), direction)
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        return force * self.uniform(direction, None)
+
+    def turning(self, direction: Direction) -> Array:
+        segment = self.segment if direction == "z" else self.segment.turned()
+        mass, middle = segment.mass_per_length * segment.length, 0.5 * (segment.start + segment.end)
+        inertia = mass * segment.length**2 / 12.0 + segment.rotary_inertia * segment.length
+        return mass * middle * self.force(middle, direction) + inertia * self.moment(
+            middle, direction
+        )
+
+    def _row(self, first: int, *values: float) -> Array:
+        row = np.zeros(len(self.boom.segments) * (self.motions.stop - self.motions.start))
+        first += self.motions.start
+        row[first : first + len(values)] = values
+        return row
+
+
+def _check_depths(boom: Boom) -> None:
+    feet = {number: boom.segments[number].foot for number in {c.segment for c in boom.cylinders}}
+    for number, segment in enumerate(boom.segments):
+        for k, support in enumerate(segment.supports, start=1):
+            if support.depth != 0.0 and support is not feet.get(number):
+                raise BoomError(
+                    f"segment[{number + 1}].supports[{k}].depth",
+                    "heeded where a cylinder pulls at the segment, by its first support alone; "
+                    "leave it out",
+                )
+
+
+def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
+    """Rows of what holds both ways."""
+    for body in bodies:
+        for support in body.segment.supports:
+            for direction in boom.directions:
+                yield body.force(support.x, direction)
+                if support.holds_slope(direction) or support.rotation_stiffness is not None:
+                    yield body.moment(support.x, direction)
+            if boom.spatial:
+                yield body.torque(support.x)
+    yield from (line.push for line in ground_lines(boom, bodies) if line.stiffness > 0.0)
+    for joint in boom.joints:
+        inner, outer = bodies[joint.inner], bodies[joint.outer]
+        for x in joint.stations:
+            for direction in boom.directions:
+                yield inner.force(x, direction) - outer.force(x, direction)
+            if boom.spatial:
+                yield inner.torque(x) - outer.torque(x)
+    for stop in boom.stops:
+        if stop.stiffness > 0.0 and stop.stiffness_below > 0.0:
+            yield bodies[stop.segment].force(stop.x, "z")
+
+
+def _left(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
+    """(num_motions, num_left) what rows leave of the motions."""
+    sizes = [(row, float(np.linalg.norm(row))) for row in rows]
+    scaled = np.array([row / size for row, size in sizes if size > 0.0])
+    motions = np.eye(bodies[-1].motions.stop)
+    if not scaled.size:
+        return motions
+    _, bound, turned = np.linalg.svd(scaled)
+    return np.asarray(turned[int(np.count_nonzero(bound > _ROUND_OFF * bound[0])) :].T)
+
+
+def _free(bodies: list[_RigidBody], left: Array) -> Iterator[_RigidBody]:
+    """Segments that move in what is left."""
+    return (body for body in bodies if np.abs(left[body.motions]).max(initial=0.0) > _ROUND_OFF)

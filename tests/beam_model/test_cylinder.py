@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms on a hinge and a luffing cylinder, against statics and dynamics by hand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.boom_modes import BoomModes
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import Base, kantorovich_segments
+from beam_model.rigid import rigid_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.equilibrium import equilibrium
+from dynamics.excitation import Step
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom, BoomError, Cylinder, Joint, Load, Material, Segment, Stop, Support
+from geometry.section import BoxSection
+from tests.space import in_space
+
+Beam = Callable[..., Segment]
+
+SMALL = BoxSection(height=0.4, width=0.3, flange=0.01, web=0.01)
+UNIFORM, TIP = -2.0e3, -1.5e4
+# The hinge is 0.15 m below the axis; the line rises steeply, and passes it at some distance.
+HINGE = Support(3.0, depth=0.15)
+CYLINDER = Cylinder(0, x=5.0, depth=0.45, ground=(3.8, -2.2), stiffness=3.0e7)
+
+
+def by_hand(segment: Segment, cylinder: Cylinder) -> tuple[float, float]:
+    """Force of the cylinder, positive where it is pressed, in N, and deflection of the tip in m.
+
+    E J w = R x³/6 + q x⁴/24 + Σ P ⟨x − a⟩³/6 − Σ C ⟨x − a⟩²/2 + E J θ x from the hinge on, free of
+    moment and force at the tip, and shorter by F/k along the line.
+    """
+    length, stiffness = segment.length, segment.bending_stiffness
+    lug, arm, foot = cylinder.x - 3.0, cylinder.depth, HINGE.depth
+    run, rise = cylinder.x - cylinder.ground[0], -arm - cylinder.ground[1]
+    along, up = run / np.hypot(run, rise), rise / np.hypot(run, rise)
+    # Unknown: the hinge's force R, the cylinder's F, the slope at the hinge θ.
+    at_lug = np.array([lug**3 / 6.0, along * foot * lug**2 / 2.0, stiffness * lug]) / stiffness
+    slope = np.array([lug**2 / 2.0, along * foot * lug, stiffness]) / stiffness
+    shortened = up * at_lug + along * (arm * slope - foot * np.array([0.0, 0.0, 1.0]))
+    system = np.array(
+        [
+            [1.0, up, 0.0],
+            [length, up * (length - lug) - along * (arm - foot), 0.0],
+            shortened + np.array([0.0, 1.0 / cylinder.stiffness, 0.0]),
+        ]
+    )
+    load = UNIFORM / stiffness
+    right = [
+        -(UNIFORM * length + TIP),
+        -UNIFORM * length**2 / 2.0,
+        -load * (up * lug**4 / 24.0 + along * arm * lug**3 / 6.0),
+    ]
+    reaction, force, turn = np.linalg.solve(system, right)
+    beyond = length - lug
+    bent = reaction * length**3 + force * up * beyond**3 + UNIFORM * length**4 / 4.0
+    turned = force * along * (foot * length**2 - arm * beyond**2)
+    return force, (bent / 6.0 + turned / 2.0) / stiffness + turn * length
+
+
+def luffed(beam: Beam, cylinder: Cylinder = CYLINDER) -> Boom:
+    segment = beam(supports=(HINGE,), load=UNIFORM)
+    return Boom((segment,), (), (Load(0, "z", TIP, 8.0, Step()),), cylinders=(cylinder,))
+
+
+def rest(system: GapSystem) -> tuple[float, float]:
+    """Force of the cylinder in N and deflection of the tip in m at rest."""
+    position = equilibrium(system, system.gathered().load)
+    force, tip = (system.observers[name].row @ position for name in ("cylinder_force", "tip"))
+    return float(force), float(tip)
+
+
+@pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
+def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
+    """Reference: analytic, by hand as above, for elements, which are exact at their nodes; the
+    force is that of the lever arms for every model; series lack the bend at the lug.
+    """
+    boom = luffed(beam, replace(CYLINDER, stiffness=stiffness))
+    (segment,) = boom.segments
+    expected = by_hand(segment, boom.cylinders[0])
+    arms = np.cross([2.0, -0.45 + 0.15], CYLINDER.direction)
+    weight = UNIFORM * segment.length**2 / 2.0 + TIP * segment.length
+    assert expected[0] == pytest.approx(-weight / float(arms), rel=1e-12)
+    models = finite_element_segments(boom, 1.0, "euler-bernoulli", rotary_inertia=True)
+    assert rest(gap_system(boom, models, [])) == pytest.approx(expected, rel=1e-6)
+    force, tip = rest(gap_system(boom, kantorovich_segments(boom, [24], "complete", True), []))
+    assert force == pytest.approx(expected[0], rel=1e-6)
+    assert tip == pytest.approx(expected[1], rel=2e-3)
+    force, tip = rest(gap_system(boom, [rigid_segment(segment)], []))
+    assert force == pytest.approx(expected[0], rel=1e-9)
+    assert tip == pytest.approx(-force / stiffness * segment.length / float(arms), rel=1e-9)
+
+
+@pytest.mark.parametrize("tied", [False, True], ids=["one", "of two tied"])
+def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, tied: bool) -> None:
+    """Reference: analytic, r √(k / I) about the hinge; beams of 1e4 times the stiffness of steel
+    follow within 2e-4, rigid ones to round-off.
+    """
+    stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
+    whole = beam(supports=(HINGE,), material=stiff)
+    parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))
+    joint = Joint(0, 1, stations=(6.0,), clearance=0.0, tied=True)
+    boom = Boom((whole,), (), cylinders=(CYLINDER,))
+    if tied:
+        over = replace(parts[1], start=5.5, mass_per_length=0.8 * whole.mass_per_length)
+        over = replace(over, section=None)
+        boom = Boom((parts[0], over), (replace(joint, stations=(5.6, 5.9)),), cylinders=(CYLINDER,))
+    inertia = sum(
+        s.mass_per_length * ((s.end - 3.0) ** 3 - (s.start - 3.0) ** 3) / 3.0
+        + s.rotary_inertia * s.length
+        for s in boom.segments
+    )
+    arm = float(np.cross([2.0, -0.45 + 0.15], CYLINDER.direction))
+    expected = arm * np.sqrt(CYLINDER.stiffness / inertia) / (2.0 * np.pi)
+    rigid = tied_system(boom, [rigid_segment(segment) for segment in boom.segments])
+    assert rigid.frequencies == pytest.approx([expected], rel=1e-9)
+    for models in (
+        finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=True),
+        kantorovich_segments(boom, [8] * len(boom.segments), "complete", rotary_inertia=True),
+    ):
+        first = tied_system(boom, models).frequencies[0]
+        assert first == pytest.approx(expected, rel=2e-4)
+
+
+def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
+    """Reference: analytic, Bredt's shaft and Bernoulli's beam from a hinge that holds twist and
+    slope sideways: of what they read, q = b (s_z φ − s_x v′), springs k give −k q both ways.
+    """
+    base = in_space(beam(supports=(Support(3.0, lateral_kind="clamped"),)))
+    inner = in_space(beam(name="fly", start=7.0, end=9.0, section=SMALL))
+    joint = Joint(0, 1, (7.2, 7.8), clearance=0.0, lateral_clearance=0.0, tied=True)
+    pair = replace(CYLINDER, spread=1.2)
+    boom = Boom((base, inner), (joint,), cylinders=(pair,))
+    models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=True)
+    modes = BoomModes(boom, models)
+    assert base.lateral is not None
+    twisting = base.material.shear_modulus * base.lateral.torsion_constant
+    bending = base.material.youngs_modulus * base.lateral.second_moment_of_area
+    along, up = pair.direction
+    lever, lug = 0.5 * pair.spread, pair.x - base.start
+    # Under 1 N·m about the axis at 7.2 m, a node where the fly does not help yet.
+    read = lever * up * lug / twisting
+    yielding = lever**2 * (up**2 / twisting + along**2 / bending) * lug
+    force = read / (1.0 / pair.stiffness + yielding)
+    twist = 4.2 / twisting - force * lever * up * lug / twisting
+    aside = force * lever * along * lug / bending * (4.2 - 0.5 * lug)
+    row = modes.twist(0, 7.2)
+    at_rest = row / modes.omega2
+    assert row @ at_rest == pytest.approx(twist, rel=1e-7)
+    assert modes.displacement(0, 7.2, "y") @ at_rest == pytest.approx(aside, rel=1e-7)
+    system = gap_system(boom, models, [])
+    names = "cylinder_force", "cylinder_force_difference"
+    found = [float(system.observers[name].row @ at_rest) for name in names]
+    assert found == pytest.approx([0.0, -force], rel=1e-7, abs=1e-9 * force)
+    # One in the middle knows nothing of it.
+    single = BoomModes(replace(boom, cylinders=(CYLINDER,)), models)
+    row = single.twist(0, 7.2)
+    free = 4.2 / twisting
+    assert row @ (row / single.omega2) == pytest.approx(free, rel=1e-7)
+    assert twist < 0.96 * free
+
+
+def test_a_boom_rests_on_a_hinge_and_a_stop(beam: Beam) -> None:
+    """Reference: analytic, the lever rule; nothing else holds it, and the weight presses."""
+    segment = beam(supports=(Support(3.0),), load=UNIFORM)
+    stop = Stop(0, 6.0, 1e-2, stiffness=0.0, stiffness_below=1e7, exponent=1.0)
+    boom = Boom((segment,), (), stops=(stop,))
+    models = finite_element_segments(boom, 1.0, "euler-bernoulli", rotary_inertia=True)
+    system = gap_system(boom, models, [])
+    gap = float(system.rows[0] @ equilibrium(system, system.load))
+    assert system.laws[0].force(gap) == pytest.approx(UNIFORM * 5.0 * 2.5 / 3.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("base", ["as printed", "pinned"])
+def test_the_printed_functions_take_no_cylinder(beam: Beam, base: Base) -> None:
+    message = (
+        f"segment: 'beam' has a cylinder, for which the functions {base!r} have no form; use "
+        "base = 'complete'"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        kantorovich_segments(luffed(beam), [5], base, rotary_inertia=False)

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What holds a boom, what does not, and what loads press. Reference: statics by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from dynamics.excitation import Ramp, Released, Step
+from geometry.boom import Boom, BoomError, Cylinder, Load, Segment, Stop, Support
+from geometry.observation import Observation
+from tests.space import in_space
+
+HINGE = Support(0.0)
+ACROSS = Support(0.0, lateral_kind="clamped")
+ARM = Cylinder(0, x=4.0, depth=0.3, ground=(1.0, -2.0), stiffness=1.0e7)
+# Holds from below what is pressed down, from above what is pressed up.
+BELOW = Stop(0, 6.0, 0.01, stiffness=0.0, stiffness_below=1.0e7, exponent=1.0)
+ABOVE = replace(BELOW, stiffness=1.0e7, stiffness_below=0.0)
+BOTH = replace(BELOW, stiffness=1.0e7)
+
+
+def held(boom: Boom, *supports: Support, stations: tuple[float, ...] = (), **others: Any) -> Boom:
+    """The boom with other supports, and maybe other stations."""
+    outer, inner = boom.segments
+    (joint,) = boom.joints
+    joint = replace(joint, stations=stations or joint.stations)
+    return replace(
+        boom, segments=(replace(outer, supports=supports), inner), joints=(joint,), **others
+    )
+
+
+HELD: Mapping[str, Mapping[str, Any]] = {
+    "by a cylinder": {"supports": [HINGE], "cylinders": (ARM,)},
+    "by a spring against rotation": {"supports": [replace(HINGE, rotation_stiffness=1e6)]},
+    "by a stop both ways": {"supports": [HINGE], "stops": (BOTH,)},
+    # Its own loads press up.
+    "by a stop that is pressed": {"supports": [HINGE], "stops": (ABOVE,)},
+    "by two stops that are pressed": {"supports": [], "stops": (ABOVE, replace(ABOVE, x=9.0))},
+    "by a stop that a force presses": {
+        "supports": [HINGE],
+        "stops": (BELOW,),
+        "loads": (Load(1, "z", -1e5, 19.0, Step()),),
+    },
+    # The inner segment by one station and its own stop.
+    "by a station and a stop": {
+        "supports": [HINGE, Support(2.0)],
+        "stations": (9.5,),
+        "stops": (replace(BOTH, segment=1, x=18.0),),
+    },
+}
+
+
+@pytest.mark.parametrize("case", HELD.values(), ids=HELD.keys())
+def test_a_boom_is_held(paper_boom: Boom, case: Mapping[str, Any]) -> None:
+    others = {key: value for key, value in case.items() if key != "supports"}
+    assert held(paper_boom, *case["supports"], **others)
+
+
+LIFTED = (
+    "the loads of t = 0 lift 'outer' off what it rests on, and nothing else holds it: give it two "
+    "supports, or a stop that holds both ways"
+)
+LOOSE = (
+    "nothing holds '{}': give it two supports, a hinge and a cylinder whose line passes beside it, "
+    "or a joint with two stations to a segment that is held"
+)
+UNHELD: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
+    "by a stop that is left": (
+        "segment[1]",
+        LIFTED,
+        {"supports": [HINGE], "stops": (BELOW,)},
+    ),
+    "by a stop that no lasting load presses": (
+        "segment[1]",
+        LIFTED,
+        {
+            "supports": [HINGE],
+            "stops": (BELOW,),
+            "loads": (
+                Load(1, "z", -1e5, 19.0, Ramp(1.0)),
+                Load(1, "z", -1e5, 19.0, Released()),
+            ),
+        },
+    ),
+    "by a stop at its hinge": (
+        "segment[1]",
+        LOOSE.format("outer"),
+        {"supports": [replace(HINGE, stiffness=1e6)], "stops": (replace(BOTH, x=0.0),)},
+    ),
+    "by a cylinder through its hinge": (
+        "segment[1]",
+        LOOSE.format("outer"),
+        {
+            "supports": [replace(HINGE, depth=-0.1)],
+            "cylinders": (replace(ARM, x=4.0, depth=0.3, ground=(1.0, 0.0)),),
+        },
+    ),
+    "by one station": (
+        "segment[2]",
+        LOOSE.format("inner"),
+        {"supports": [HINGE, Support(2.0)], "stations": (9.5,)},
+    ),
+}
+
+
+@pytest.mark.parametrize(("where", "what", "case"), UNHELD.values(), ids=UNHELD.keys())
+def test_a_boom_is_not_held(
+    paper_boom: Boom, where: str, what: str, case: Mapping[str, Any]
+) -> None:
+    others = {key: value for key, value in case.items() if key != "supports"}
+    with pytest.raises(BoomError) as caught:
+        held(paper_boom, *case["supports"], **others)
+    assert (caught.value.where, caught.value.what) == (where, what)
+
+
+def test_in_space_a_boom_is_held_sideways_too(spatial_boom: Boom) -> None:
+    """A pin lets it turn sideways, a hinge does not, and two cylinders side by side do not."""
+    pair = replace(ARM, spread=1.0)
+    assert held(spatial_boom, ACROSS, cylinders=(ARM,))
+    assert held(spatial_boom, HINGE, cylinders=(pair,))
+    with pytest.raises(BoomError) as caught:
+        held(spatial_boom, HINGE, cylinders=(ARM,))
+    assert (caught.value.where, caught.value.what) == (
+        "segment[1]",
+        "nothing holds 'outer' sideways: give it two supports, one that is hinged or clamped, or a "
+        "joint with two stations to a segment that is held",
+    )
+
+
+FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
+    "lug beside the segment": (
+        "cylinder[1].x",
+        "12 m lies outside 'outer'; it must be between 0 and 10 m",
+        [HINGE],
+        {"cylinders": (replace(ARM, x=12.0),)},
+    ),
+    "no length": (
+        "cylinder[1].ground",
+        "must be another point than the lug; give x and z in m",
+        [HINGE],
+        {"cylinders": (replace(ARM, ground=(4.0, -0.3)),)},
+    ),
+    "a cylinder that drives": (
+        "cylinder[1].dashpot",
+        "must be a number of N s/m from 0 on, got -1",
+        [HINGE],
+        {"cylinders": (replace(ARM, dashpot=-1.0),)},
+    ),
+    "a cylinder without stiffness": (
+        "cylinder[1].stiffness",
+        "must be a number of N/m above 0, got 0",
+        [HINGE],
+        {"cylinders": (replace(ARM, stiffness=0.0),)},
+    ),
+    "an output of a cylinder's name": (
+        "observe[1].name",
+        "'cylinder_force' is the name of another output already; give it its own",
+        [HINGE],
+        {"cylinders": (ARM,), "observations": (Observation("cylinder_force", 0, 5.0),)},
+    ),
+    "two side by side in a flat boom": (
+        "cylinder[1].spread",
+        "the boom is flat, and nothing turns about its axis; leave it out, or give the joints "
+        "lateral_play",
+        [HINGE],
+        {"cylinders": (replace(ARM, spread=1.0),)},
+    ),
+    "a depth that nothing reads": (
+        "segment[1].supports[2].depth",
+        "heeded where a cylinder pulls at the segment, by its first support alone; leave it out",
+        [HINGE, Support(2.0, depth=0.1)],
+        {"cylinders": (ARM,)},
+    ),
+    "a depth without a cylinder": (
+        "segment[1].supports[1].depth",
+        "heeded where a cylinder pulls at the segment, by its first support alone; leave it out",
+        [replace(HINGE, depth=0.1), Support(2.0)],
+        {},
+    ),
+    "a soft clamp against rotation": (
+        "segment[1].supports",
+        "a clamped support holds the slope, and the one at 0 m has a rotation_stiffness; leave it "
+        "out, or make the support pinned",
+        [Support(0.0, "clamped", rotation_stiffness=1e6)],
+        {},
+    ),
+    "a soft hinge": (
+        "segment[1].supports",
+        "a hinge is rigid, and the one at 0 m has a stiffness; leave it out, or make the support "
+        "pinned",
+        [replace(ACROSS, stiffness=1e6), Support(2.0)],
+        {},
+    ),
+    "a dashpot that never moves": (
+        "segment[1].supports",
+        "the support at 2 m is rigid, and its dashpot would never move; leave it out, or give the "
+        "support a stiffness",
+        [HINGE, Support(2.0, dashpot=1e3)],
+        {},
+    ),
+    "a negative dashpot": (
+        "segment[1].supports",
+        "the dashpot at 2 m must be a number of N s/m from 0 on, got -1",
+        [HINGE, Support(2.0, stiffness=1e6, dashpot=-1.0)],
+        {},
+    ),
+    "a negative spring against rotation": (
+        "segment[1].supports",
+        "the stiffness against rotation at 0 m must be a positive number of N m/rad, got -1",
+        [replace(HINGE, rotation_stiffness=-1.0), Support(2.0)],
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("where", "what", "supports", "others"), FAULTS.values(), ids=FAULTS.keys()
+)
+def test_what_cannot_hold_is_refused(
+    paper_boom: Boom, where: str, what: str, supports: list[Support], others: Mapping[str, Any]
+) -> None:
+    with pytest.raises(BoomError) as caught:
+        held(paper_boom, *supports, **others)
+    assert (caught.value.where, caught.value.what) == (where, what)
+
+
+def test_a_turned_segment_has_its_hinge_turned(paper_boom: Boom) -> None:
+    segment: Segment = in_space(replace(paper_boom.segments[0], supports=(ACROSS,)))
+    (support,) = segment.turned().supports
+    assert (support.holds_slope("z"), support.holds_slope("y")) == (True, False)
+    assert segment.turned().rigid_modes == 0
+    assert segment.turned().turned().supports == (replace(ACROSS, lateral_kind="clamped"),)

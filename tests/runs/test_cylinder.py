@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A luffed boom from its case file to its trajectory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.boom import Cylinder, Support
+from protractile.cases import run_case
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.toml import dumps
+
+LUFFED = """
+title = "A boom on its cylinder"
+
+[time]
+duration = 0.05
+output_step = 1e-3
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[gravity]
+angle = 30.0
+
+[start]
+state = "equilibrium"
+
+[[segment]]
+name = "base"
+span = [0.0, 9.0]
+supports = [{ x = 0.0, kind = "hinged", depth = 0.2 }]
+section = { height = 0.60, width = 0.40, flange = 0.010, web = 0.008 }
+
+[[segment]]
+name = "fly"
+span = [7.5, 15.0]
+section = { height = 0.56, width = 0.36, flange = 0.008, web = 0.006 }
+
+[[joint]]
+outer = "base"
+inner = "fly"
+stations = [7.5, 9.0]
+play = 0.004
+stiffness = 1e9
+exponent = 1.0
+dashpot = 500.0
+
+[[cylinder]]
+segment = "base"
+x = 3.0
+depth = 0.5
+ground = [1.2, -2.4]
+stiffness = 6e7
+dashpot = 2e4
+
+[payload]
+mass = 1000.0
+
+[[model]]
+name = "elements"
+kind = "finite-element"
+element_length = 1.5
+
+[[model]]
+name = "series"
+kind = "kantorovich"
+terms = [10, 8]
+base = "complete"
+
+[[model]]
+name = "rigid"
+kind = "rigid"
+
+[[model]]
+name = "tied"
+kind = "finite-element"
+tied = true
+"""
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    place = tmp_path / "case.toml"
+    place.write_text(LUFFED, encoding="utf-8")
+    return place
+
+
+def test_the_boom_is_what_the_case_says(path: Path, tmp_path: Path) -> None:
+    """As it is written, and as a run writes it again."""
+    again = tmp_path / "again.toml"
+    again.write_text(dumps(case_file.load(str(path))), encoding="utf-8")
+    for file in (path, again):
+        boom = build_boom(case_file.load(str(file)))
+        assert boom.segments[0].supports == (Support(0.0, lateral_kind="clamped", depth=0.2),)
+        assert boom.cylinders == (Cylinder(0, 3.0, 0.5, (1.2, -2.4), 6.0e7, 2.0e4, 0.0),)
+        assert boom.joints[0].dashpot == 500.0
+
+
+def test_every_model_stands_on_its_cylinder(path: Path) -> None:
+    """Reference: analytic, moments about the hinge; at rest nothing moves, and energy is kept."""
+    results = run_case(case_file.load(str(path)))
+    boom = build_boom(case_file.load(str(path)))
+    weights = [s.mass_per_length * s.length for s in boom.segments]
+    turning = weights[0] * 4.5 + weights[1] * 11.25 + 1000.0 * 15.0
+    turning *= 9.80665 * np.cos(np.radians(30.0))
+    run, rise = 3.0 - 1.2, -0.5 + 2.4
+    arm = (3.0 * rise - (-0.5 + 0.2) * run) / np.hypot(run, rise)
+    force = results.trajectories["cylinder_force"]
+    assert force.attrs == {
+        "units": "N",
+        "long_name": "spring force of the cylinder at x = 3 m of 'base', positive where pressed",
+    }
+    for model in ("elements", "series", "rigid", "tied"):
+        pressed = force.sel(model=model).values
+        assert pressed == pytest.approx(np.full(pressed.size, turning / arm), rel=1e-5)
+        assert results.summary.models[model].energy_residual < 1e-4
+
+
+def test_check_tells_how_far_its_dashpots_damp(
+    path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from rich.console import Console
+
+    from runs.pipeline.inferred import print_inferred
+
+    print_inferred(case_file.load(str(path)), Console(width=200))
+    out = capsys.readouterr().out
+    ratios = [line for line in out.splitlines() if " % at " in line]
+    assert len(ratios) == 4
