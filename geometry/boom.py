@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from geometry.cylinder import Cylinder, forces
+from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
 from geometry.joint import Joint, PadSize, Stop
 from geometry.load import Load
@@ -95,6 +96,7 @@ class Boom:
         self._check_order()
         self._check_mirrors()
         self._check_diaphragms()
+        self._check_touching()
         if self.spatial:
             self._check_space()
         for number, joint in enumerate(self.joints, start=1):
@@ -245,6 +247,16 @@ class Boom:
                         f"plate can close the box there; it must be below {inner.start:g} m",
                     )
 
+    def _check_touching(self) -> None:
+        for stop in self.stops:
+            check_flats(f"segment[{stop.segment + 1}]", self.segments[stop.segment], ("z",))
+        for joint in self.joints:
+            if joint.tied:
+                continue
+            outer, inner = self.segments[joint.outer], self.segments[joint.inner]
+            check_flats(f"segment[{joint.outer + 1}]", outer, self.directions)
+            check_flats(f"segment[{joint.inner + 1}]", inner, self.directions, outer)
+
     def _check_space(self) -> None:
         for number, joint in enumerate(self.joints, start=1):
             if joint.lateral_clearance is None:
@@ -362,24 +374,7 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
     near = SAME_PLACE * outer.length
     if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")
-    if outer.section is None or inner.section is None:
-        return
-    height = outer.section.room_around(inner.section, "z")
-    width = outer.section.room_around(inner.section, "y")
-    if height < 2.0 * joint.clearance - near or width < 0.0:
-        raise BoomError(
-            f"{where}.play",
-            f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
-            f"{width:.6g} m of width are free, and a play of {2.0 * joint.clearance:.6g} m is "
-            "asked for; make the inner section or the play smaller",
-        )
-    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - near:
-        raise BoomError(
-            f"{where}.lateral_play",
-            f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
-            f"a lateral play of {2.0 * joint.lateral_clearance:.6g} m is asked for; make the inner "
-            "section or the lateral play smaller",
-        )
+    check_room(where, joint, outer, inner)
 
 
 def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint, Stop
-from geometry.section import Offset, Side
+from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
 
 ContactLine = Literal["near webs", "across", "surface"]
@@ -34,13 +34,19 @@ class Patch:
 
     Args:
         start, end: x in m.
-        near, far: distances in m from the middle of the wall, of its edges.
+        offset: of its edge from that of the wall in m.
+        width: across the wall in m.
     """
 
     start: float
     end: float
-    near: float
-    far: float
+    offset: float
+    width: float
+
+    def across(self, face: Face) -> tuple[float, float]:
+        """Where it begins and ends on a wall of the inner segment, in m from the wall's middle."""
+        far = 0.5 * face.width - self.offset
+        return far - self.width, far
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +181,7 @@ def pads(boom: Boom) -> list[Pad]:
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
                             pressed=pressed,
-                            patch=_patch(boom, joint, x, direction, side),
+                            patch=_patch(boom, joint, x),
                         )
                     )
                 station += 1
@@ -203,16 +209,15 @@ def _points(
             yield side, within, around, 0.5
 
 
-def _patch(boom: Boom, joint: Joint, x: float, direction: Direction, side: Side) -> Patch | None:
+def _patch(boom: Boom, joint: Joint, x: float) -> Patch | None:
     """The wall that a pad covers; None where pads are points, or plates not known.
 
     It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
     its offset from the corner of the inner box.
     """
-    size, section = joint.pad, boom.segments[joint.inner].section
-    if size is None or section is None:
+    size = joint.pad
+    if size is None or boom.segments[joint.inner].section is None:
         return None
     first, last = boom.overlap(joint)
     start = min(max(x - 0.5 * size.length, first), last - size.length)
-    far = 0.5 * section.face(direction, side or 1).width - size.offset
-    return Patch(start, start + size.length, far - size.width, far)
+    return Patch(start, start + size.length, size.offset, size.width)

@@ -26,6 +26,10 @@ from geometry.section import COMPONENT, Direction, Section
 # Lengths are compared in this part of a mesh's extent: below any edge, above round-off.
 _ROUNDED = 1.0e-9
 
+# To tell edges of the same length: the part by which one at the outline is taken for shorter, and
+# how far along x, y and z counts.
+_NEARER, _BESIDE = 1.0e-6, np.array([0.0, 1.0, 1.6])
+
 # Rectangles in parts of the mesh size: across everywhere, along the boom from spots outwards.
 _ACROSS = 0.3
 _ALONG = (0.5, 1.0, 2.0)
@@ -103,9 +107,14 @@ def _along(breaks: Mapping[str, float], size: float, spots: Sequence[Spot]) -> d
 
 
 def _diagonals_first(mesh: SegmentMesh) -> SegmentMesh:
-    """The mesh with the longest edge of each triangle first, which two of them share."""
+    """The mesh with the longest edge of each triangle first, which two of them share.
+
+    Of edges that are as long in a diaphragm's fan that nearer to the axis, as in all mirror images.
+    """
     corners = mesh.points[mesh.triangles]
-    turn = _edges(corners).argmax(axis=1)[:, None] + np.arange(3)
+    beside = np.abs(corners + np.roll(corners, -1, axis=1)) @ _BESIDE
+    lengths = _edges(corners) * (1.0 - _NEARER * beside / np.ptp(mesh.points[:, 1:]))
+    turn = lengths.argmax(axis=1)[:, None] + np.arange(3)
     return replace(mesh, triangles=np.take_along_axis(mesh.triangles, turn % 3, axis=1))
 
 

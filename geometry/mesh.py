@@ -236,31 +236,56 @@ def _build_patches(
 
 
 def _close(x: float, ring: _Ring, section: Section, size: float) -> list[int]:
-    """Transfinite patches of a diaphragm, one in each corner; gives their surfaces."""
-    geo = gmsh.model.geo
-    plates, count = section.plates, len(ring.points)
-    middle = geo.addPoint(
-        x, *(0.5 * (low + high) for low, high in zip(*section.bounds, strict=True))
-    )
-    spokes = {}
-    for j in range(1, count, 2):
-        spokes[j] = geo.addLine(ring.points[j], middle)
-        # As many edges as the halves of the plates beside it have, which face the spoke.
-        _divide(spokes[j], 0.5 * plates[(j // 2 + 1) % len(plates)].length, size)
+    """Transfinite patches of a diaphragm; gives their surfaces.
+
+    One in each corner where the outline allows it, as a box's does: a patch's spokes have as many
+    edges as the halves of plates that they face. Else one on each half of a plate, a fan from the
+    middle.
+    """
+    low, high = section.bounds
+    middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
+    halves = [_edges(0.5 * plate.length, size) for plate in section.plates]
+    if all(before == after for before, after in zip(halves, np.roll(halves, -2), strict=True)):
+        spokes = dict(zip(range(1, len(ring.points), 2), np.roll(halves, -1), strict=True))
+    else:
+        across = 0.5 * min(section.size("y"), section.size("z"))
+        spokes = dict.fromkeys(range(len(ring.points)), _edges(across, size))
+    return _spanned(ring, middle, spokes)
+
+
+def _spanned(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
+    """Patches from spoke to spoke.
+
+    Args:
+        ring: around.
+        middle: gmsh's point.
+        spokes: number of a ring's point → edges from there to the middle.
+    """
+    geo, count, places = gmsh.model.geo, len(ring.points), list(spokes)
+    curves = {j: geo.addLine(ring.points[j], middle) for j in places}
+    for j, edges in spokes.items():
+        geo.mesh.setTransfiniteCurve(curves[j], edges + 1)
     surfaces = []
-    for j in range(0, count, 2):
-        before, after = (j - 1) % count, j + 1
-        sides = [ring.curves[before], ring.curves[j], spokes[after], -spokes[before]]
-        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop(sides)]))
+    for before, after in zip([places[-1] - count, *places], places, strict=False):
+        sides = [ring.curves[j % count] for j in range(before, after)]
+        loop = geo.addCurveLoop([*sides, curves[after], -curves[before % count]])
+        surfaces.append(geo.addPlaneSurface([loop]))
+        ends = [ring.points[j % count] for j in range(before, after + 1)]
         # Every diagonal runs from the middle towards a corner, for the mirrors' sake.
-        ends = [ring.points[before], ring.points[j], ring.points[after], middle]
-        geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", ends)
+        if len(ends) == 2:
+            corner_last = ends if after % 2 == 0 else ends[::-1]
+            geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", [middle, *corner_last])
+        else:
+            geo.mesh.setTransfiniteSurface(surfaces[-1], "Left", [*ends, middle])
     return surfaces
 
 
 def _divide(curve: int, length: float, size: float) -> None:
-    edges = max(1, int(np.floor(length / size + 0.5)))
-    gmsh.model.geo.mesh.setTransfiniteCurve(curve, edges + 1)
+    gmsh.model.geo.mesh.setTransfiniteCurve(curve, _edges(length, size) + 1)
+
+
+def _edges(length: float, size: float) -> int:
+    return max(1, int(np.floor(length / size + 0.5)))
 
 
 def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:

@@ -154,7 +154,7 @@ class Section(Protocol):
 
     @property
     def faces(self) -> tuple[Face, ...]:
-        """One for each direction and side."""
+        """One for each direction and side that has a plate at right angles to it."""
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
@@ -163,7 +163,7 @@ class Section(Protocol):
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """Numbers of the plates that carry a shear force of the direction in their own plane.
 
-        Each with the part that it takes of a force through the centroid.
+        Each with what it carries along its tangent of a unit force through the centroid.
         """
 
     def __str__(self) -> str:
@@ -209,13 +209,8 @@ class Section(Protocol):
         return high - low
 
     def face(self, direction: Direction, side: float) -> Face:
-        """The one with this outward normal; of ``side`` the sign alone counts."""
+        """The one with this outward normal, which there must be; of ``side`` the sign counts."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)
-
-    def room_around(self, inner: Section, direction: Direction) -> float:
-        """What is free along a direction between this section and one within it, in m."""
-        hole = self.face(direction, 1).inside - self.face(direction, -1).inside
-        return hole - (inner.face(direction, 1).outside - inner.face(direction, -1).outside)
 
     def on_plates(self, places: Array) -> Mask:
         """(num_places,) which places (num_places, 2) lie on a mid-line."""
@@ -351,7 +346,7 @@ class BoxSection(Section):
 
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
         """The webs along z, the flanges along y."""
-        return ((1, 0.5), (3, 0.5)) if direction == "z" else ((2, 0.5), (0, 0.5))
+        return ((1, 0.5), (3, -0.5)) if direction == "z" else ((2, -0.5), (0, 0.5))
 
 
 def _hollow_rectangle(width: float, height: float, web: float, flange: float) -> float:
@@ -408,6 +403,11 @@ def infer_inner_section(
         SectionError: no such box exists, or it is too wide; the way out is an explicit
             section with pads that leave the stated clearance.
     """
+    if len(outer.plates) != len(outer.faces):
+        raise SectionError(
+            "a box is inferred within a box alone, and the section around it has inclined plates; "
+            "give the section explicitly"
+        )
     high, wide = (outer.face(axis, 1).inside - outer.face(axis, -1).inside for axis in ("z", "y"))
     outside_height, widest = high - 2.0 * clearance, wide
 

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Patch, Stretch, pads, rests
+from geometry.contact_places import ContactLine, Pad, Stretch, pads, rests
 from geometry.grading import Spot
 from geometry.section import Direction, Face, Section
 
@@ -70,7 +70,7 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
         for end, stretch in zip((pad.joint.inner, pad.joint.outer), pad.pressed, strict=True):
             if end == number:
                 for face in _faces(section, pad.direction):
-                    yield _pressed(pad.patch, stretch, face, line)
+                    yield _pressed(boom, pad, stretch, face, line)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -108,14 +108,15 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
     return low, high, size, _CORNER_GROWTH
 
 
-def _pressed(covered: Patch | None, stretch: Stretch, face: Face, line: ContactLine) -> _Measured:
+def _pressed(boom: Boom, pad: Pad, stretch: Stretch, face: Face, line: ContactLine) -> _Measured:
     """What a pad presses of a segment's face."""
-    if covered is None:
+    covered, section = pad.patch, boom.segments[pad.joint.inner].section
+    if covered is None or section is None:
         low, high, size, growth = _corner(stretch, face)
         return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
-    size = _PAD * min(covered.end - covered.start, covered.far - covered.near)
+    size = _PAD * min(covered.end - covered.start, covered.width)
+    near, far = covered.across(section.face(face.direction, face.side))
     low, high = (
-        _place(face, x, across)
-        for x, across in ((covered.start, covered.near), (covered.end, covered.far))
+        _place(face, x, across) for x, across in ((covered.start, near), (covered.end, far))
     )
     return low, high, size, _PAD_GROWTH

@@ -123,8 +123,8 @@ class UnequalBox(Section):
         """The webs along z, the flanges along y, by the law of the lever."""
         y, z = self.centroid
         if direction == "z":
-            return (1, 0.5 + y / self.width), (3, 0.5 - y / self.width)
-        return (2, 0.5 + z / self.height), (0, 0.5 - z / self.height)
+            return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)
+        return (2, -0.5 - z / self.height), (0, 0.5 - z / self.height)
 
     def __str__(self) -> str:
         walls = " / ".join(f"{1e3 * t:.4g}" for t in (self.top, self.bottom, self.right, self.left))

@@ -49,6 +49,11 @@ if TYPE_CHECKING:
     from geometry.boom import PadSize as PadSize
     from geometry.boom import Stop as Stop
     from geometry.observation import Observation as Observation
+    from geometry.polygon import PolygonSection as PolygonSection
+    from geometry.polygon import closed_polygon as closed_polygon
+    from geometry.profiles import hexagon as hexagon
+    from geometry.profiles import octagon as octagon
+    from geometry.profiles import u_section as u_section
     from geometry.section import BoxSection as BoxSection
     from geometry.section import Section as Section
     from geometry.segment import Collar as Collar
@@ -58,6 +63,7 @@ if TYPE_CHECKING:
     from geometry.segment import PointMass as PointMass
     from geometry.segment import Segment as Segment
     from geometry.segment import Support as Support
+    from geometry.shear_flow import shear_centre as shear_centre
     from geometry.unequal_box import UnequalBox as UnequalBox
     from protractile.cases import change as change
     from protractile.cases import load_case as load_case
@@ -93,8 +99,11 @@ _HOMES = {
         "dynamics.trajectory": "Trajectory",
         "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize Stop",
         "geometry.observation": "Observation",
+        "geometry.polygon": "PolygonSection closed_polygon",
+        "geometry.profiles": "hexagon octagon u_section",
         "geometry.section": "BoxSection Section",
         "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment Support",
+        "geometry.shear_flow": "shear_centre",
         "geometry.unequal_box": "UnequalBox",
         "protractile.cases": "change load_case run_case",
         "runs": "CASES",

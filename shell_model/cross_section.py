@@ -92,19 +92,30 @@ class Outline:
         return Row.of(self.dofs[nodes, _X], -areas * z / (areas @ z**2))
 
     def distortion(self) -> Row:
-        """How much taller the section has become: mean u_z of the top less the bottom, in m."""
-        faces = (self.section.face("z", side) for side in (1, -1))
-        top, bottom = (self._mean(self.section.plates[face.plate], "z") for face in faces)
-        return top - bottom
+        """How much taller the section has become: mean u_z of the top less the bottom, in m.
+
+        Where they are folds or bends, of the plates whose middles are the highest and the lowest.
+        """
+        plates = self.section.plates
+        levels = np.array([plate.middle[1] for plate in plates])
+        top, bottom = (
+            np.flatnonzero(np.abs(levels - level) < self.section.near).tolist()
+            for level in (levels.max(), levels.min())
+        )
+        rows = (
+            sum((1.0 / len(one) * self._mean(plates[n], "z") for n in one), Row())
+            for one in (top, bottom)
+        )
+        return next(rows) - next(rows)
 
     def wall_deflection(self, direction: Direction) -> Row:
-        """u_z or u_y averaged over the plates that carry its shear force in their own plane, in m.
+        """u_z or u_y by the plates that carry its shear force in their own plane, in m.
 
-        A force spread so bends no plate.
+        Each slides along itself, and counts as much as it carries: a force spread so bends none.
         """
         carriers = self.section.carriers(direction)
         plates = self.section.plates
-        return sum((part * self._mean(plates[n], direction) for n, part in carriers), Row())
+        return sum((force * self._slide(plates[n]) for n, force in carriers), Row())
 
     def twist(self) -> Row:
         """Turn about x in rad: the circulation of the displacement over twice the enclosed area.
@@ -114,10 +125,7 @@ class Outline:
         """
         turn = Row()
         for plate in self.section.plates:
-            part = plate.length / (2.0 * self.section.enclosed_area)
-            for direction, slope in zip(COMPONENT, plate.tangent.tolist(), strict=True):
-                if slope != 0.0:
-                    turn += part * slope * self._mean(plate, direction)
+            turn += plate.length / (2.0 * self.section.enclosed_area) * self._slide(plate)
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
@@ -139,6 +147,12 @@ class Outline:
         left, _, right = along[2 * edge : 2 * edge + 3]
         shapes = quadratic(np.asarray((place - left) / (right - left)))
         return Row.of(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
+
+    def _slide(self, plate: Plate) -> Row:
+        """Mean displacement along one plate, in m."""
+        slopes = zip(COMPONENT, plate.tangent.tolist(), strict=True)
+        parts = (slope * self._mean(plate, axis) for axis, slope in slopes if slope != 0.0)
+        return sum(parts, Row())
 
     def _mean(self, plate: Plate, direction: Direction) -> Row:
         """Mean displacement over one plate's line, in m."""

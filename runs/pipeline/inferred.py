@@ -13,6 +13,7 @@ from rich.table import Table
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NumericsError
 from geometry.boom import Boom, Direction, Joint
+from geometry.walls import free_room
 from runs.case import actions
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import JointTable
@@ -89,9 +90,8 @@ def _joints(case: Case, boom: Boom) -> Table:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         room = "unknown"
         if outer.section is not None and inner.section is not None:
-            height = 1e3 * outer.section.room_around(inner.section, "z")
-            width = 1e3 * outer.section.room_around(inner.section, "y")
-            room = f"{height:.1f} high, {width:.1f} wide"
+            height, width = free_room(outer.section, inner.section, 2.0 * joint.clearance)
+            room = f"{1e3 * height:.1f} high, {1e3 * width:.1f} wide"
         table.add_row(
             f"{inner.name} in {outer.name}",
             f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",

@@ -107,7 +107,8 @@ def _mean_approach(
 ) -> Reading:
     """Mean of u − w over a patch: read the other way round, a uniform pressure on both walls."""
     x, along = gauss(patch.start, patch.end, _POINTS)
-    y, over = gauss(half * patch.near, half * patch.far, _POINTS)
+    near, far = patch.across(inner.section.face(pad.direction, side))
+    y, over = gauss(half * near, half * far, _POINTS)
     places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
     weights = np.outer(along, over).ravel()
     wall = Wall(pad.direction, side)

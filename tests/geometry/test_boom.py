@@ -20,6 +20,7 @@ from geometry.boom import (
     Stop,
     Support,
 )
+from geometry.walls import free_room
 
 Fault = Callable[[Segment, Segment, Joint], tuple[tuple[Segment, ...], tuple[Joint, ...]]]
 
@@ -366,4 +367,4 @@ def test_boxes_that_just_fit_are_taken(paper_boom: Boom) -> None:
     outer, inner = paper_boom.segments
     assert outer.section is not None
     assert inner.section is not None
-    assert outer.section.room_around(inner.section, "z") == pytest.approx(14.0e-3, rel=1e-12)
+    assert free_room(outer.section, inner.section)[0] == pytest.approx(14.0e-3, rel=1e-12)

@@ -15,6 +15,7 @@ from geometry.boom import Boom, BoomError
 from geometry.mesh import mesh_segment, plain_thickness
 from geometry.section import BoxSection
 from geometry.unequal_box import UnequalBox
+from geometry.walls import free_room
 
 # Outside 0.41 m wide, from -0.31 to 0.32 m; hole 0.39 m wide, from -0.29 to 0.28 m.
 BOX = UnequalBox(height=0.60, width=0.40, top=0.04, bottom=0.02, right=0.01, left=0.01)
@@ -92,14 +93,14 @@ def test_faces_count_from_the_centroid() -> None:
     assert (top.outside, bottom.outside) == pytest.approx((0.32 - z, -0.31 - z), rel=1e-12)
     assert (top.inside, bottom.inside) == pytest.approx((0.28 - z, -0.29 - z), rel=1e-12)
     inner = BoxSection(height=0.53, width=0.30, flange=0.02, web=0.02)
-    assert BOX.room_around(inner, "z") == pytest.approx(0.02, rel=1e-12)
+    assert free_room(BOX, inner)[0] == pytest.approx(0.02, rel=1e-12)
 
 
 def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None:
     """Reference: analytic. The parts sum to one, and their resultant is in the centroid."""
-    carriers = BOX.carriers("y")
-    assert sum(part for _, part in carriers) == pytest.approx(1.0, rel=1e-15)
-    arms = [part * BOX.plates[number].middle[1] for number, part in carriers]
+    forces = [(n, part * BOX.plates[n].tangent[0]) for n, part in BOX.carriers("y")]
+    assert sum(force for _, force in forces) == pytest.approx(1.0, rel=1e-15)
+    arms = [force * BOX.plates[number].middle[1] for number, force in forces]
     assert sum(arms) == pytest.approx(0.0, abs=1e-16)
 
 

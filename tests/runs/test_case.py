@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from dynamics.contact import PowerContact
+from geometry.walls import free_room
 from runs import CASES
 from runs.case import toml
 from runs.case.build import build_boom, contact_laws
@@ -85,7 +86,7 @@ def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> Non
     outer, inner = (segment.section for segment in boom.segments)
     assert outer is not None
     assert inner is not None
-    assert outer.room_around(inner, "z") == pytest.approx(0.014, rel=1e-9)
+    assert free_room(outer, inner)[0] == pytest.approx(0.014, rel=1e-9)
 
 
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(folder: Path) -> None:
@@ -132,8 +133,8 @@ stiffness = 1e13
     assert outer is not None
     assert inner is not None
     assert innermost is not None
-    assert outer.room_around(inner, "z") == pytest.approx(0.014, rel=1e-9)
-    assert inner.room_around(innermost, "z") == pytest.approx(0.008, rel=1e-9)
+    assert free_room(outer, inner)[0] == pytest.approx(0.014, rel=1e-9)
+    assert free_room(inner, innermost)[0] == pytest.approx(0.008, rel=1e-9)
 
 
 def test_a_model_s_own_contact_law_keeps_the_joint_s_clearance() -> None:

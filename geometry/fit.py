@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether sections fit in one another, and touch flat on flat."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from geometry.joint import Joint
+from geometry.section import Direction, Side
+from geometry.segment import SAME_PLACE, BoomError, Segment
+from geometry.walls import free_room
+
+_WHERE: Mapping[tuple[Direction, Side], str] = {
+    ("z", 1): "top",
+    ("z", -1): "bottom",
+    ("y", 1): "right",
+    ("y", -1): "left",
+}
+
+
+def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
+    """Whether the inner segment of a joint has its play within the outer one, where both are known.
+
+    Raises:
+        BoomError: it has not; at a key of the joint ``where``.
+    """
+    if outer.section is None or inner.section is None:
+        return
+    near = SAME_PLACE * outer.length
+    height, width = free_room(outer.section, inner.section, 2.0 * joint.clearance)
+    if height < 2.0 * joint.clearance - near or width < 0.0:
+        raise BoomError(
+            f"{where}.play",
+            f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
+            f"{width:.6g} m of width are free, and a play of {2.0 * joint.clearance:.6g} m is "
+            "asked for; make the inner section or the play smaller",
+        )
+    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - near:
+        raise BoomError(
+            f"{where}.lateral_play",
+            f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
+            f"a lateral play of {2.0 * joint.lateral_clearance:.6g} m is asked for; make the inner "
+            "section or the lateral play smaller",
+        )
+
+
+def check_flats(
+    where: str, segment: Segment, directions: tuple[Direction, ...], around: Segment | None = None
+) -> None:
+    """Whether a segment has plates that can touch, as far as its section is known.
+
+    Args:
+        where: its key.
+        segment: which touches, on both sides.
+        directions: along which.
+        around: the segment whose plates it touches, if any.
+
+    Raises:
+        BoomError: it has none, or wider ones than the segment around it.
+    """
+    if segment.section is None:
+        return
+    flats = {(face.direction, face.side): face for face in segment.section.faces}
+    for sides, place in _WHERE.items():
+        if sides[0] not in directions:
+            continue
+        if sides not in flats:
+            raise BoomError(
+                f"{where}.section",
+                f"has no single plate at right angles to {sides[0]} at its {place}, where the boom "
+                "touches it; folds and inclined plates cannot be touched, give it a flat there",
+            )
+        if around is None or around.section is None:
+            continue
+        room, width = around.section.face(*sides).width, flats[sides].width
+        if width > room:
+            raise BoomError(
+                f"{where}.section",
+                f"its {place} is {width:.6g} m wide, and that of {around.name!r}, which it "
+                f"touches, {room:.6g} m; make it narrower",
+            )

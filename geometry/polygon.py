@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A convex closed polygon of flat plates, each with a thickness of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from geometry.arrays import Array, Indices
+from geometry.section import COMPONENT, Direction, Face, Offset, Plate, Section, SectionError, Side
+from geometry.shear_flow import ShearFlow, carriers
+from geometry.unequal_box import UnequalBox
+from geometry.walls import trapezoids
+
+# Places closer than this part of a section's size are one.
+_SAME = 1.0e-9
+
+# Turns of a corner in rad: below the first it is inwards, beyond the second a plate folds back.
+_LEAST_TURN, _MOST_TURN = -1.0e-9, np.radians(170.0)
+
+
+@dataclass(frozen=True)
+class PolygonSection(Section):
+    """Plates once around a cell, described by the corners of their mid-lines.
+
+    Area, centroid and second moments are those of the plates with their thickness, whose surfaces
+    meet in the corners, as those of :class:`geometry.section.BoxSection` do; shear areas those of
+    the shear flow along the mid-lines (:mod:`geometry.shear_flow`).
+
+    >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
+    >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))
+    >>> print(f"{1e4 * trapezoid.area:.1f} cm²")
+    134.2 cm²
+
+    Args:
+        corners: (y, z) in m of the corners in turn, either way around, from wherever.
+        thicknesses: in m of the plates, each from a corner to the next; the last one closes the
+            cell.
+
+    Raises:
+        SectionError: fewer than three corners, numbers that are not positive and finite, a plate
+            without length, corners that turn inwards or run around more than once, walls that fill
+            the cell.
+    """
+
+    corners: tuple[Offset, ...]
+    thicknesses: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        _check(self.corners, self.thicknesses)
+
+    @cached_property
+    def plates(self) -> tuple[Plate, ...]:
+        """Anticlockwise from the lowest corner, of several that to the left."""
+        corners = self._upwards[0] - np.array(self.centroid)
+        for axis in self.mirrors:
+            # What differs by round-off alone becomes the same to the last bit, as meshes need it.
+            image = _mirrored(corners, axis)
+            corners = 0.5 * (corners + image[_partners(corners, image)])
+        return _plates(corners, self._upwards[1])
+
+    @cached_property
+    def area(self) -> float:
+        """Cross-sectional area in m²."""
+        return float(sum(plate.length * plate.thickness for plate in self.plates))
+
+    @cached_property
+    def second_moment_of_area(self) -> float:
+        """Second moment about y (bending in the plane x-z) in m⁴."""
+        return float(_moments(trapezoids(self.plates))[3])
+
+    @cached_property
+    def lateral_second_moment_of_area(self) -> float:
+        """Second moment about z (bending in the plane x-y) in m⁴."""
+        return float(_moments(trapezoids(self.plates))[2])
+
+    @cached_property
+    def torsion_constant(self) -> float:
+        """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
+        around = sum(plate.length / plate.thickness for plate in self.plates)
+        return 4.0 * self.enclosed_area**2 / around
+
+    @cached_property
+    def shear_area(self) -> float:
+        """Area that carries a shear force along z in m², by the work of its flow."""
+        return ShearFlow.of(self.plates, "z").shear_area
+
+    @cached_property
+    def lateral_shear_area(self) -> float:
+        """Area that carries a shear force along y in m², by the work of its flow."""
+        return ShearFlow.of(self.plates, "y").shear_area
+
+    @cached_property
+    def centroid(self) -> Offset:
+        """(y, z) in m where the corners are given."""
+        parts = _moments(trapezoids(_plates(*self._upwards)))
+        return float(parts[0]), float(parts[1])
+
+    @cached_property
+    def faces(self) -> tuple[Face, ...]:
+        """Of each direction and side the outermost plate, where one alone lies at right angles."""
+        ends = np.array([(plate.start, plate.end) for plate in self.plates])
+        found = []
+        for direction, side in _OUTWARDS:
+            outwards = side * ends[:, :, COMPONENT[direction] - 1]
+            outermost = np.flatnonzero(outwards.min(axis=1) > outwards.max() - self.near)
+            if len(outermost) == 1:
+                found.append(Face.of(self.plates, int(outermost[0]), direction, side))
+        return tuple(found)
+
+    @cached_property
+    def mirrors(self) -> tuple[Direction, ...]:
+        """Those in which corners and thicknesses are their own images."""
+        corners, thicknesses = self._upwards
+        corners = corners - np.array(self.centroid)
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+        found: list[Direction] = []
+        for axis in COMPONENT:
+            places = np.vstack([corners, middles])
+            partners = _partners(places, _mirrored(places, axis))
+            beside = np.linalg.norm(_mirrored(places, axis)[partners] - places, axis=1)
+            alike = thicknesses[partners[len(corners) :] - len(corners)] == thicknesses
+            if beside.max() < _SAME * np.abs(corners).max() and alike.all():
+                found.append(axis)
+        return tuple(found)
+
+    def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
+        """By the shear flow."""
+        return carriers(self.plates, direction)
+
+    def __str__(self) -> str:
+        sizes = " x ".join(f"{1e3 * self.size(axis):.4g}" for axis in ("z", "y"))
+        walls = " / ".join(dict.fromkeys(f"{1e3 * plate.thickness:.4g}" for plate in self.plates))
+        return f"{sizes} x {walls}, {len(self.plates)} plates"
+
+    def turned(self) -> PolygonSection:
+        """The section lying on its side, y and z exchanged."""
+        return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
+
+    @cached_property
+    def _upwards(self) -> tuple[Array, Array]:
+        """Corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
+        corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
+        if _twice_enclosed(corners) < 0.0:
+            corners, thicknesses = corners[::-1], np.roll(thicknesses[::-1], -1)
+        near = _SAME * float(np.ptp(corners, axis=0).max())
+        low = np.flatnonzero(corners[:, 1] < corners[:, 1].min() + near)
+        first = low[corners[low, 0].argmin()]
+        return np.roll(corners, -first, axis=0), np.roll(thicknesses, -first)
+
+
+_OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("y", -1))
+
+
+def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
+    """The section of plates once around; upright rectangles are boxes.
+
+    A box carries shear in its webs alone, a polygon by the flow: a box has the numbers of a box
+    however it is written.
+
+    >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
+    >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))
+    400 x 300 x 8 / 10 / 6 / 6
+
+    Args:
+        corners, thicknesses: as of :class:`PolygonSection`.
+
+    Raises:
+        SectionError: as of :class:`PolygonSection`.
+    """
+    section = PolygonSection(tuple(corners), tuple(thicknesses))
+    if len(section.plates) != 4 or len(section.faces) != 4:
+        return section
+    bottom, right, top, left = (plate.thickness for plate in section.plates)
+    return UnequalBox(section.size("z"), section.size("y"), top, bottom, right, left)
+
+
+def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
+    if len(corners) < 3:
+        raise SectionError(f"a closed polygon has three corners at least, got {len(corners)}")
+    if len(thicknesses) != len(corners):
+        raise SectionError(
+            f"{len(corners)} corners have as many plates between them, got {len(thicknesses)} "
+            "thicknesses; give one for each plate, the last one from the last corner to the first"
+        )
+    if not np.isfinite(corners).all():
+        raise SectionError("corners must be numbers of m")
+    for thickness in thicknesses:
+        if not (np.isfinite(thickness) and thickness > 0.0):
+            raise SectionError(f"thicknesses must be positive numbers of m, got {thickness}")
+    places = np.array(corners)
+    if _twice_enclosed(places) < 0.0:
+        places = places * [-1.0, 1.0]
+    sides = np.roll(places, -1, axis=0) - places
+    lengths = np.linalg.norm(sides, axis=1)
+    for number, length in enumerate(lengths, start=1):
+        if length <= _SAME * lengths.sum():
+            raise SectionError(
+                f"corners {number} and {number % len(corners) + 1} are one; give each once"
+            )
+    tangents = sides / lengths[:, None]
+    before = np.roll(tangents, 1, axis=0)
+    sines = before[:, 0] * tangents[:, 1] - before[:, 1] * tangents[:, 0]
+    turns = np.arctan2(sines, (before * tangents).sum(axis=1))
+    for number, turn in enumerate(turns, start=1):
+        if not _LEAST_TURN <= turn <= _MOST_TURN:
+            how = "back" if abs(turn) > _MOST_TURN else "inwards"
+            raise SectionError(
+                f"corner {number} turns {how}; plates go once around, every corner outwards"
+            )
+    if turns.sum() > 3.0 * np.pi:
+        raise SectionError("the plates go around more than once")
+    quads = trapezoids(_plates(places, np.array(thicknesses)))
+    for number, (inwards, tangent) in enumerate(zip(quads, tangents, strict=True), start=1):
+        if (inwards[2] - inwards[3]) @ tangent <= 0.0:
+            raise SectionError(
+                f"plate {number} of {thicknesses[number - 1]} m and its neighbours leave no room "
+                "in the polygon; they must be thinner"
+            )
+
+
+def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
+    """Named after the side on which they lie, from the bottom upwards."""
+    names = _names(corners)
+    ends: list[Offset] = [(y, z) for y, z in corners.tolist()]
+    return tuple(
+        Plate(name, start, end, thickness)
+        for name, start, end, thickness in zip(
+            names, ends, [*ends[1:], ends[0]], thicknesses.tolist(), strict=True
+        )
+    )
+
+
+def _names(corners: Array) -> list[str]:
+    """Bottom and top where there are such plates, and those beside them: right, left."""
+    ends, low, high = np.roll(corners, -1, axis=0), *(_reach(corners))
+    near = _SAME * (high - low)
+    sides = []
+    for (_, start), (_, end) in zip(corners, ends, strict=True):
+        if max(start, end) < low + near:
+            sides.append("bottom")
+        elif min(start, end) > high - near:
+            sides.append("top")
+        else:
+            sides.append("right" if end > start else "left")
+    names = []
+    for n, side in enumerate(sides):
+        count, before = sides.count(side), sides[:n].count(side)
+        upwards = count - before if side == "left" else before + 1
+        names.append(side if count == 1 else f"{side}-{upwards}")
+    return names
+
+
+def _reach(corners: Array) -> tuple[float, float]:
+    return float(corners[:, 1].min()), float(corners[:, 1].max())
+
+
+def _twice_enclosed(corners: Array) -> float:
+    """Twice the area within corners (num_corners, 2), positive where they go anticlockwise."""
+    after = np.roll(corners, -1, axis=0)
+    return float(corners[:, 0] @ after[:, 1] - corners[:, 1] @ after[:, 0])
+
+
+def _mirrored(places: Array, axis: Direction) -> Array:
+    return np.asarray(places * [-1.0 if axis == one else 1.0 for one in COMPONENT])
+
+
+def _partners(places: Array, images: Array) -> Indices:
+    """(num_places,) number of the image nearest to each place."""
+    apart = np.linalg.norm(places[:, None] - images, axis=2)
+    return np.asarray(apart.argmin(axis=1))
+
+
+def _moments(polygons: Array) -> Array:
+    """Of all polygons together: y and z of the centroid in m, ∫ y² dA and ∫ z² dA in m⁴ (Green).
+
+    Args:
+        polygons: (num_polygons, num_corners, 2) in m, anticlockwise.
+    """
+    after = np.roll(polygons, -1, axis=1)
+    cross = polygons[..., 0] * after[..., 1] - polygons[..., 1] * after[..., 0]
+    first = ((polygons + after) * cross[..., None]).sum(axis=(0, 1)) / 6.0
+    squares = polygons**2 + polygons * after + after**2
+    second = (squares * cross[..., None]).sum(axis=(0, 1)) / 12.0
+    return np.concatenate([first / (0.5 * cross.sum()), second])

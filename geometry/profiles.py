@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Polygons that booms have: hexagons, octagons, and a U folded of plates under a flat top.
+
+Sizes are those of the mid-lines in m; y = z = 0 is in the middle of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.polygon import PolygonSection
+from geometry.section import SectionError
+
+
+def hexagon(
+    height: float, width: float, flat: float, top: float, bottom: float, web: float
+) -> PolygonSection:
+    """Level top and bottom, and two inclined plates on each side, which meet in a fold.
+
+    >>> print(pt.hexagon(0.5, 0.4, flat=0.2, top=0.006, bottom=0.008, web=0.005))
+    500 x 400 x 8 / 5 / 6, 6 plates
+
+    Args:
+        height: of the bottom from the top.
+        width: of the folds from each other.
+        flat: width of the top, and of the bottom.
+        top, bottom, web: thicknesses of the top, the bottom, and the inclined plates.
+
+    Raises:
+        SectionError: the top is not narrower than the section, or as :class:`PolygonSection`.
+    """
+    if not flat < width:
+        raise SectionError(f"flat must be below the width of {width:g} m, got {flat:g}")
+    return _mirrored([(flat, -height), (width, 0.0), (flat, height)], [bottom, web, web, top])
+
+
+def octagon(
+    height: float, width: float, chamfer: float, top: float, bottom: float, web: float
+) -> PolygonSection:
+    """A rectangle whose corners are cut at 45°.
+
+    >>> print(pt.octagon(0.5, 0.4, chamfer=0.1, top=0.006, bottom=0.008, web=0.005))
+    500 x 400 x 8 / 5 / 6, 8 plates
+
+    Args:
+        height, width: of the rectangle.
+        chamfer: what is cut of each of its sides at either end.
+        top, bottom, web: thicknesses of the top, the bottom, and all other plates.
+
+    Raises:
+        SectionError: the cuts leave nothing of a side, or as :class:`PolygonSection`.
+    """
+    if not 2.0 * chamfer < min(height, width):
+        raise SectionError(
+            f"chamfer must be below half the height and half the width, "
+            f"{0.5 * min(height, width):g} m, got {chamfer:g}"
+        )
+    flat, upright = width - 2.0 * chamfer, height - 2.0 * chamfer
+    right = [(flat, -height), (width, -upright), (width, upright), (flat, height)]
+    return _mirrored(right, [bottom, web, web, web, top])
+
+
+def u_section(
+    height: float, width: float, radius: float, facets: int, top: float, bottom: float, web: float
+) -> PolygonSection:
+    """A U, each bend of its bottom folded as plates that touch the bend's circle, under a top.
+
+    >>> print(pt.u_section(0.5, 0.4, radius=0.15, facets=3, top=0.008, bottom=0.006, web=0.006))
+    500 x 400 x 6 / 8, 10 plates
+
+    Args:
+        height: of the bottom from the top.
+        width: of the webs from each other.
+        radius: of the bends; half the width makes one round of both.
+        facets: flat plates in each bend, between the level bottom and the web.
+        top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
+
+    Raises:
+        SectionError: the bends are larger than the section, or as :class:`PolygonSection`.
+    """
+    most = min(0.5 * width, height)
+    if not 0.0 < radius <= most:
+        raise SectionError(
+            f"radius must be above 0 and not above half the width and the height, {most:g} m, got "
+            f"{radius:g}"
+        )
+    fold = 0.5 * np.pi / (facets + 1)
+    turned = (np.arange(facets + 1) + 0.5) * fold
+    corner = radius / np.cos(0.5 * fold)
+    y = 0.5 * width - radius + corner * np.sin(turned)
+    z = -0.5 * height + radius - corner * np.cos(turned)
+    right = np.vstack([2.0 * np.column_stack([y, z]), [width, height]])
+    return _mirrored(right, [bottom, *[bottom] * facets, web, top])
+
+
+def _mirrored(
+    twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
+) -> PolygonSection:
+    """The section of a right half and its image.
+
+    Args:
+        twice: (num_corners, 2) (y, z) of its corners times two in m, upwards.
+        thicknesses: in m, of the bottom, the plates between the corners, and the top.
+    """
+    right = 0.5 * np.array(twice)
+    left = right[::-1] * [-1.0, 1.0]
+    bottom, *between, top = thicknesses
+    corners = tuple((float(y), float(z)) for y, z in [*left[-1:], *right, *left[:-1]])
+    return PolygonSection(corners, (bottom, *between, top, *between[::-1]))

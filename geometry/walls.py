@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The material of flat plates once around a cell, and what room it leaves to another one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.section import Plate, Section
+
+# Sine of the angle below which plates meet butt to butt, not on a mitre, which would be long where
+# their thicknesses differ.
+_STRAIGHT = 0.1
+
+# Part of a normal's length below which a plate does not stand in the way.
+_ASIDE = 1.0e-9
+
+
+def normals(plates: Sequence[Plate]) -> Array:
+    """(num_plates, 2) unit vectors outwards of plates that go around anticlockwise."""
+    tangents = np.array([plate.tangent for plate in plates])
+    return np.column_stack([tangents[:, 1], -tangents[:, 0]])
+
+
+def trapezoids(plates: Sequence[Plate]) -> Array:
+    """(num_plates, 4, 2) corners in m of each plate with its thickness, anticlockwise.
+
+    The outer edge first. Neighbours meet where their surfaces do, so that corners are filled and
+    the outermost edges are the section's outside, the innermost ones its hole.
+    """
+    start, end = (np.array([getattr(plate, at) for plate in plates]) for at in ("start", "end"))
+    normal, half = normals(plates), 0.5 * np.array([plate.thickness for plate in plates])
+    before, half_before = np.roll(normal, 1, axis=0), np.roll(half, 1)
+    sine = before[:, 0] * normal[:, 1] - before[:, 1] * normal[:, 0]
+    mitred = np.abs(sine) > _STRAIGHT
+    corner = np.column_stack(
+        [
+            half_before * normal[:, 1] - half * before[:, 1],
+            half * before[:, 0] - half_before * normal[:, 0],
+        ]
+    ) / np.where(mitred, sine, 1.0)[:, None]  # fmt: skip
+    first = np.where(mitred[:, None], corner, half[:, None] * normal)
+    last = np.where(
+        np.roll(mitred, -1)[:, None], np.roll(corner, -1, axis=0), half[:, None] * normal
+    )
+    return np.stack([start + first, end + last, end - last, start - first], axis=1)
+
+
+def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
+    """How far a section can move within another one along z, and then along y, in m.
+
+    Both must be convex. Less than 0 where it does not fit.
+
+    Args:
+        outer: the section around.
+        inner: the section within, wherever it is along z.
+        play: in m, along z; wherever in it the inner section is, it can move so far along y.
+    """
+    reach = trapezoids(inner.plates)[:, :2].reshape(-1, 2)
+    normal = normals(outer.plates)
+    starts = np.array([plate.start for plate in outer.plates])
+    walls = np.array([plate.thickness for plate in outer.plates])
+    clear = (normal * starts).sum(axis=1) - 0.5 * walls - (normal @ reach.T).max(axis=1)
+    low, high = _travel(normal[:, 1], clear)
+    pressed = 0.5 * (low + high) + np.array([-0.5, 0.5]) * play
+    widths = (_travel(normal[:, 0], clear - normal[:, 1] * place) for place in pressed)
+    return high - low, min(right - left for left, right in widths)
+
+
+def _travel(slope: Array, clear: Array) -> tuple[float, float]:
+    """The lowest and the highest shift that leave room to every plate, in m.
+
+    Args:
+        slope: (num_plates,) what a unit of shift takes of the room.
+        clear: (num_plates,) room in m at a shift of 0.
+    """
+    ahead, behind = slope > _ASIDE, slope < -_ASIDE
+    return float((clear[behind] / slope[behind]).max()), float((clear[ahead] / slope[ahead]).min())

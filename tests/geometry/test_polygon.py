@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Polygons of plates: their properties, plates, faces and mirrors, and what is no polygon."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from geometry.arrays import Array
+from geometry.polygon import PolygonSection, closed_polygon
+from geometry.profiles import hexagon, octagon, u_section
+from geometry.section import BoxSection, Section
+from geometry.unequal_box import UnequalBox
+
+TRAPEZOID = PolygonSection(
+    ((-0.1, -0.3), (0.1, -0.3), (0.2, 0.3), (-0.2, 0.3)), (0.010, 0.006, 0.008, 0.006)
+)
+HEXAGON = hexagon(0.50, 0.45, 0.25, top=0.006, bottom=0.008, web=0.005)
+OCTAGON = octagon(0.50, 0.40, 0.10, top=0.006, bottom=0.006, web=0.005)
+U = u_section(0.50, 0.35, 0.15, 3, top=0.008, bottom=0.006, web=0.005)
+ALL = {"trapezoid": TRAPEZOID, "hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
+
+
+def rectangle(
+    top: float, bottom: float, right: float, left: float, at: float = 0.0
+) -> PolygonSection:
+    """0.6 m high and 0.4 m wide."""
+    corners = ((at - 0.2, -0.3), (at + 0.2, -0.3), (at + 0.2, 0.3), (at - 0.2, 0.3))
+    return PolygonSection(corners, (bottom, right, top, left))
+
+
+def regular(sides: int, side: float, wall: float) -> PolygonSection:
+    turns = 2.0 * np.pi * np.arange(sides) / sides
+    radius = 0.5 * side / np.sin(np.pi / sides)
+    places = radius * np.column_stack([np.cos(turns), np.sin(turns)])
+    return PolygonSection(tuple((y, z) for y, z in places.tolist()), (wall,) * sides)
+
+
+@pytest.mark.parametrize("walls", [(0.04, 0.02, 0.01, 0.01), (0.02, 0.02, 0.01, 0.012)])
+def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, float]) -> None:
+    """Reference: other code, the box's own formulas, wherever the corners are counted from."""
+    polygon, box = rectangle(*walls, at=0.7), UnequalBox(0.6, 0.4, *walls)
+    for name in (
+        "area", "second_moment_of_area", "lateral_second_moment_of_area", "torsion_constant",
+        "polar_second_moment_of_area", "enclosed_area", "perimeter",
+    ):  # fmt: skip
+        assert getattr(polygon, name) == pytest.approx(getattr(box, name), rel=1e-12), name
+    assert polygon.centroid == pytest.approx((box.centroid[0] + 0.7, box.centroid[1]), abs=1e-15)
+    assert polygon.mirrors == box.mirrors
+    for mine, its in zip(polygon.plates, box.plates, strict=True):
+        assert (mine.name, mine.thickness) == (its.name, its.thickness)
+        assert mine.start == pytest.approx(its.start, abs=1e-15)
+    for face, one in zip(polygon.faces, box.faces, strict=True):
+        assert face[:3] == one[:3]
+        assert face[3:] == pytest.approx(one[3:], abs=1e-15)
+    assert str(closed_polygon(polygon.corners, polygon.thicknesses)) == str(box)
+
+
+def test_an_upright_rectangle_is_a_box() -> None:
+    """Reference: other code, the box's own formulas, those of its webs among them."""
+    box = BoxSection(height=0.6, width=0.4, flange=0.02, web=0.01)
+    same = closed_polygon(rectangle(0.02, 0.02, 0.01, 0.01).corners, (0.02, 0.01, 0.02, 0.01))
+    for name in ("area", "second_moment_of_area", "shear_area", "lateral_shear_area"):
+        assert getattr(same, name) == pytest.approx(getattr(box, name), rel=1e-12), name
+    assert isinstance(closed_polygon(TRAPEZOID.corners, TRAPEZOID.thicknesses), PolygonSection)
+
+
+def test_a_regular_hexagon() -> None:
+    """Reference: analytic. A hexagon of side a has the area (3√3/2) a² and J = (5√3/16) a⁴; the
+    walls' surfaces are hexagons of sides a ± t/√3.
+    """
+    side, wall = 0.2, 0.02
+    section = regular(6, side, wall)
+    outer, inner = side + wall / np.sqrt(3.0), side - wall / np.sqrt(3.0)
+    area = 1.5 * np.sqrt(3.0) * (outer**2 - inner**2)
+    bending = 5.0 * np.sqrt(3.0) / 16.0 * (outer**4 - inner**4)
+    assert section.area == pytest.approx(area, rel=1e-12)
+    assert section.second_moment_of_area == pytest.approx(bending, rel=1e-12)
+    assert section.lateral_second_moment_of_area == pytest.approx(bending, rel=1e-12)
+    enclosed = 1.5 * np.sqrt(3.0) * side**2
+    assert section.torsion_constant == pytest.approx(
+        4.0 * enclosed**2 * wall / (6.0 * side), rel=1e-12
+    )
+    assert section.shear_area == pytest.approx(section.lateral_shear_area, rel=1e-12)
+
+
+def test_many_plates_are_a_tube() -> None:
+    """Reference: analytic, a thin tube: J = π r³ t, torsion 2 π r³ t, shear area π r t. The corners
+    of 240 plates are within 1e-4 of the circle.
+    """
+    radius, wall = 0.2, 1.0e-4
+    tube = regular(240, 2.0 * radius * np.sin(np.pi / 240), wall)
+    assert tube.second_moment_of_area == pytest.approx(np.pi * radius**3 * wall, rel=5e-4)
+    assert tube.torsion_constant == pytest.approx(2.0 * np.pi * radius**3 * wall, rel=5e-4)
+    assert tube.shear_area == pytest.approx(np.pi * radius * wall, rel=5e-4)
+
+
+def _between(normals: Array, offsets: Array, z: float) -> float:
+    """How wide the half-planes n·x ≤ c leave it at a level, in m."""
+    across = np.abs(normals[:, 0]) > 1e-9
+    if (normals[~across, 1] * z > offsets[~across]).any():
+        return 0.0
+    places = (offsets - normals[:, 1] * z)[across] / normals[across, 0]
+    right = normals[across, 0] > 0.0
+    return float(max(0.0, places[right].min() - places[~right].max()))
+
+
+def _level_by_level(section: Section, power: int) -> float:
+    """∫ z^power dA of the material within the walls' surfaces."""
+    tangents = np.array([plate.tangent for plate in section.plates])
+    normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
+    middles = np.array([plate.start for plate in section.plates])
+    half = 0.5 * np.array([plate.thickness for plate in section.plates])
+    offsets = (normals * middles).sum(axis=1)
+    low, high = section.reach("z")
+    surfaces = [place for face in section.faces for place in (face.outside, face.inside)]
+    levels = np.union1d(np.linspace(low - 0.02, high + 0.02, 4001), surfaces)
+    z = 0.5 * (levels[1:] + levels[:-1])
+    outer, inner = (
+        np.array([_between(normals, reach, at) for at in z])
+        for reach in (offsets + half, offsets - half)
+    )
+    return float(np.diff(levels) @ (z**power * (outer - inner)))
+
+
+@pytest.mark.parametrize("name", ["trapezoid", "hexagon", "u"])
+def test_properties_against_integration_over_levels(name: str) -> None:
+    """Reference: other code, the midpoint rule over 4000 levels between the walls' surfaces."""
+    section = ALL[name]
+    assert section.area == pytest.approx(_level_by_level(section, 0), rel=1e-5)
+    assert _level_by_level(section, 1) / section.area == pytest.approx(0.0, abs=1e-6)
+    assert section.second_moment_of_area == pytest.approx(_level_by_level(section, 2), rel=1e-5)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_on_its_side(name: str) -> None:
+    """Reference: analytic, y and z exchanged."""
+    section, side = ALL[name], ALL[name].turned()
+    for one, other in (
+        ("second_moment_of_area", "lateral_second_moment_of_area"),
+        ("shear_area", "lateral_shear_area"),
+        ("area", "area"),
+        ("torsion_constant", "torsion_constant"),
+    ):
+        assert getattr(side, one) == pytest.approx(getattr(section, other), rel=1e-12), one
+    assert {axis for axis in "yz" if axis not in side.mirrors} == {
+        {"y": "z", "z": "y"}[axis] for axis in "yz" if axis not in section.mirrors
+    }
+    assert side.turned() == section
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_wherever_its_corners_begin(name: str) -> None:
+    """Reference: analytic. Another first corner, the other way around: the same plates."""
+    section = ALL[name]
+    corners = (*section.corners[2:], *section.corners[:2])
+    shifted = PolygonSection(corners, (*section.thicknesses[2:], *section.thicknesses[:2]))
+    backwards = PolygonSection(
+        corners[::-1], (*shifted.thicknesses[-2::-1], shifted.thicknesses[-1])
+    )
+    for same in (shifted, backwards):
+        for mine, its in zip(same.plates, section.plates, strict=True):
+            assert (mine.name, mine.thickness) == (its.name, its.thickness)
+            assert (*mine.start, *mine.end) == pytest.approx((*its.start, *its.end), abs=1e-15)
+
+
+def test_plates_faces_and_mirrors() -> None:
+    """Reference: analytic, of shapes drawn by hand. Images are images to the last bit."""
+    assert [plate.name for plate in HEXAGON.plates] == [
+        "bottom", "right-1", "right-2", "top", "left-2", "left-1",
+    ]  # fmt: skip
+    sides = {name: [face[1:3] for face in section.faces] for name, section in ALL.items()}
+    assert sides["hexagon"] == sides["trapezoid"] == [("z", -1), ("z", 1)]
+    assert sides["octagon"] == sides["u"] == [("z", -1), ("y", 1), ("z", 1), ("y", -1)]
+    assert [HEXAGON.face("z", side).width for side in (1, -1)] == pytest.approx([0.25, 0.25])
+    mirrors = {name: section.mirrors for name, section in ALL.items()}
+    assert mirrors["octagon"] == ("y", "z")
+    assert mirrors["hexagon"] == mirrors["trapezoid"] == mirrors["u"] == ("y",)
+    for section in ALL.values():
+        places = {plate.start for plate in section.plates}
+        assert places == {(-y, z) for y, z in places}
+    crooked = PolygonSection(TRAPEZOID.corners, (0.010, 0.006, 0.008, 0.007))
+    assert crooked.mirrors == ()
+
+
+def test_sizes_of_the_short_forms() -> None:
+    """Reference: analytic. The U's facets touch the circles of its bends."""
+    for section in (HEXAGON, OCTAGON, U):
+        assert section.size("z") == pytest.approx(0.50, rel=1e-12)
+    assert [section.size("y") for section in (HEXAGON, OCTAGON, U)] == pytest.approx(
+        [0.45, 0.40, 0.35]
+    )
+    assert OCTAGON.face("z", 1).width == pytest.approx(0.20, rel=1e-12)
+    middle = np.array([0.5 * 0.35 - 0.15, U.reach("z")[0] + 0.15])
+    touching = [plate.distance(middle[None])[0] for plate in U.plates[:5]]
+    assert touching == pytest.approx([0.15] * 5, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("corners", "thicknesses", "message"),
+    [
+        (((0, 0), (1, 0)), (0.1, 0.1), "a closed polygon has three corners at least, got 2"),
+        (
+            ((0, 0), (1, 0), (0, 1)),
+            (0.01, 0.01),
+            "3 corners have as many plates between them, got 2 thicknesses; give one for each "
+            "plate, the last one from the last corner to the first",
+        ),
+        (((0, 0), (1, np.inf), (0, 1)), (0.01,) * 3, "corners must be numbers of m"),
+        (
+            ((0, 0), (1, 0), (0, 1)),
+            (0.01, 0.0, 0.01),
+            "thicknesses must be positive numbers of m, got 0.0",
+        ),
+        (((0, 0), (1, 0), (0, 1), (0, 0)), (0.01,) * 4, "corners 4 and 1 are one; give each once"),
+        (
+            ((0, 0), (1, 0), (0.4, 0.4), (0, 1)),
+            (0.01,) * 4,
+            "corner 3 turns inwards; plates go once around, every corner outwards",
+        ),
+        (
+            ((0, 0), (1, 0), (2, 0)),
+            (0.01,) * 3,
+            "corner 1 turns back; plates go once around, every corner outwards",
+        ),
+        (
+            tuple((np.cos(0.8 * np.pi * k), np.sin(0.8 * np.pi * k)) for k in range(5)),
+            (0.01,) * 5,
+            "the plates go around more than once",
+        ),
+        (
+            ((0, 0), (1, 0), (1, 0.1), (0, 0.1)),
+            (0.12, 0.01, 0.12, 0.01),
+            "plate 2 of 0.01 m and its neighbours leave no room in the polygon; they must be "
+            "thinner",
+        ),
+    ],
+)
+def test_refuses_what_is_no_polygon(
+    corners: Sequence[tuple[float, float]], thicknesses: Sequence[float], message: str
+) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        closed_polygon(corners, thicknesses)
+
+
+def test_refuses_what_is_no_short_form() -> None:
+    message = "flat must be below the width of 0.4 m, got 0.4"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        hexagon(0.5, 0.4, 0.4, 0.01, 0.01, 0.01)
+    message = "chamfer must be below half the height and half the width, 0.2 m, got 0.2"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        octagon(0.5, 0.4, 0.2, 0.01, 0.01, 0.01)
+    message = "radius must be above 0 and not above half the width and the height, 0.2 m, got 0.3"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        u_section(0.5, 0.4, 0.3, 2, 0.01, 0.01, 0.01)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What room a section leaves to another one, and what fits and touches in a boom."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.boom import Boom, BoomError, Stop
+from geometry.polygon import PolygonSection
+from geometry.profiles import hexagon, octagon, u_section
+from geometry.section import BoxSection, Section
+from geometry.walls import free_room, trapezoids
+from tests.geometry.test_polygon import ALL, HEXAGON
+
+
+def test_plates_meet_where_their_surfaces_do() -> None:
+    """Reference: analytic. A box's trapezoids have the corners of its outside and of its hole."""
+    walls = trapezoids(BoxSection(0.6, 0.4, flange=0.04, web=0.01).plates)
+    outside = [(-0.205, -0.32), (0.205, -0.32), (0.205, 0.32), (-0.205, 0.32)]
+    hole = [(-0.195, -0.28), (0.195, -0.28), (0.195, 0.28), (-0.195, 0.28)]
+    assert walls[:, 0] == pytest.approx(np.array(outside), rel=1e-12)
+    assert walls[:, 3] == pytest.approx(np.array(hole), rel=1e-12)
+
+
+def test_room_of_boxes() -> None:
+    """Reference: analytic. Outside 0.52 x 0.34 m in a hole of 0.58 x 0.38 m."""
+    outer, inner = BoxSection(0.6, 0.4, 0.02, 0.02), BoxSection(0.5, 0.33, 0.02, 0.01)
+    assert free_room(outer, inner) == pytest.approx((0.06, 0.04), rel=1e-12)
+    assert free_room(outer, inner, 0.05) == pytest.approx((0.06, 0.04), rel=1e-12)
+
+
+def _smaller(section: Section, clear: float) -> PolygonSection:
+    """The section whose every plate lies so far within that a gap is left of ``clear`` m."""
+    tangents = np.array([plate.tangent for plate in section.plates])
+    normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
+    walls = np.array([plate.thickness for plate in section.plates])
+    starts = np.array([plate.start for plate in section.plates])
+    offsets = (normals * starts).sum(axis=1) - walls - clear
+    corners = [
+        tuple(np.linalg.solve(normals[[k - 1, k]], offsets[[k - 1, k]]))
+        for k in range(len(offsets))
+    ]
+    return PolygonSection(tuple(corners), tuple(walls))
+
+
+def test_room_between_inclined_plates() -> None:
+    """Reference: analytic. In a hexagon with the same gap g everywhere the flats leave 2 g along
+    z, and so do plates of the slope n_z, 2 g/n_z, more than that. Along y all is up to these:
+    2 g/n_y; where the play has been used up to one side, n_z times half of it is gone.
+    """
+    inner, gap = _smaller(HEXAGON, 0.01), 0.01
+    n_y, n_z = HEXAGON.plates[1].tangent * [1.0, -1.0]
+    n_y, n_z = HEXAGON.plates[1].tangent[1], -HEXAGON.plates[1].tangent[0]
+    height, width = free_room(HEXAGON, inner)
+    assert height == pytest.approx(2.0 * gap, rel=1e-9)
+    assert width == pytest.approx(2.0 * gap / n_y, rel=1e-9)
+    _, pressed = free_room(HEXAGON, inner, 0.5 * gap)
+    assert pressed == pytest.approx(2.0 * (gap - 0.25 * gap * abs(n_z)) / n_y, rel=1e-9)
+
+
+def test_inclined_plates_stand_in_the_way() -> None:
+    """Reference: analytic. A box in an octagon, whose corners meet the chamfers first."""
+    outer = octagon(0.5, 0.4, 0.1, 0.01, 0.01, 0.01)
+    box = BoxSection(0.28, 0.28, 0.01, 0.01)
+    # Chamfers are at |y| + |z| = 0.35 − 0.01/√2 within, the box's corner at (0.145, 0.145).
+    room = 0.35 - 0.01 / np.sqrt(2.0) - 2.0 * 0.145
+    assert free_room(outer, box)[0] == pytest.approx(2.0 * room, rel=1e-9)
+    assert free_room(outer, replace(box, height=0.4))[0] < 0.0
+
+
+def _in(boom: Boom, outer: Section, inner: Section) -> Boom:
+    first, second = boom.segments
+    return replace(boom, segments=(replace(first, section=outer), replace(second, section=inner)))
+
+
+def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) -> None:
+    inner = octagon(0.45, 0.25, 0.05, 0.005, 0.005, 0.005)
+    outer = octagon(0.50, 0.32, 0.05, 0.006, 0.006, 0.006)
+    for boom in (paper_boom, spatial_boom):
+        assert _in(boom, outer, inner).segments[0].section is outer
+    beside = hexagon(0.5, 0.5, 0.3, 0.006, 0.006, 0.006)
+    within = hexagon(0.40, 0.40, 0.24, 0.005, 0.005, 0.005)
+    assert _in(paper_boom, beside, within).segments[0].section is beside
+    message = (
+        "segment[1].section: has no single plate at right angles to y at its right, where the boom "
+        "touches it; folds and inclined plates cannot be touched, give it a flat there"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _in(spatial_boom, beside, within)
+    folded = PolygonSection(
+        ((0, -0.22), (0.11, -0.18), (0.11, 0.2), (-0.11, 0.2), (-0.11, -0.18)), (0.005,) * 5
+    )
+    message = (
+        "segment[2].section: has no single plate at right angles to z at its bottom, where the "
+        "boom touches it; folds and inclined plates cannot be touched, give it a flat there"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _in(paper_boom, outer, folded)
+    joint = replace(paper_boom.joints[0], tied=True)
+    tied = _in(replace(paper_boom, joints=(joint,)), outer, folded)
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        replace(tied, stops=(Stop(1, 15.0, 0.1, 1e7, 1e7, 1.0),))
+
+
+def test_a_flat_lies_on_one_as_wide(paper_boom: Boom) -> None:
+    outer = u_section(0.50, 0.32, 0.15, 3, 0.006, 0.006, 0.006)
+    inner = u_section(0.30, 0.20, 0.02, 1, 0.005, 0.005, 0.005)
+    message = (
+        "segment[2].section: its bottom is 0.176569 m wide, and that of 'outer', which it touches, "
+        "0.0796737 m; make it narrower"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _in(paper_boom, outer, inner)
+
+
+def test_a_section_without_room_is_refused(paper_boom: Boom) -> None:
+    outer, inner = HEXAGON, _smaller(HEXAGON, 0.005)
+    message = (
+        "joint[1].play: 'inner' does not fit in 'outer': 0.01 m of height and 0.00517033 m of "
+        "width are free, and a play of 0.014 m is asked for; make the inner section or the play "
+        "smaller"
+    )
+    with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
+        _in(paper_boom, outer, inner)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_box_is_inferred_in_boxes_alone(name: str) -> None:
+    from geometry.section import infer_inner_section
+
+    message = (
+        "a box is inferred within a box alone, and the section around it has inclined plates; give "
+        "the section explicitly"
+    )
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        infer_inner_section(0.007, 2.2e-4, ALL[name], 0.007)
