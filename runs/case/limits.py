@@ -40,7 +40,7 @@ StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10
 # Whole tips are kept of each.
 MOST_MEMBERS = 10_000
 # A boom has a few of each; many more are a slip of the pen, and would take for ever to draw.
-MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS = 20, 50, 50
+MOST_SEGMENTS, MOST_STATIONS, MOST_MODELS, MOST_FACETS = 20, 50, 50, 20
 Few = Field(max_length=100)
 # Measured accelerations of a minute at a thousand a second, and more.
 MOST_TIMES = 100_000

@@ -9,9 +9,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from geometry.polygon import closed_polygon
+from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
 from geometry.unequal_box import UnequalBox
-from runs.case.limits import Positive, Table
+from runs.case.limits import MOST_FACETS, Few, Number, Positive, Table
 
 
 class ShapeTable(Table):
@@ -55,7 +57,74 @@ class UnequalBoxTable(ShapeTable):
         return UnequalBox(self.height, self.width, self.top, self.bottom, self.web, self.web)
 
 
-SHAPES: Mapping[str, type[ShapeTable]] = {"box": SectionTable, "unequal box": UnequalBoxTable}
+class PolygonTable(ShapeTable):
+    """Flat plates once around a cell, by the corners of their mid-lines."""
+
+    shape: Literal["polygon"] = Field(description="the shape of the section")
+    corners: Annotated[tuple[tuple[Number, Number], ...], Few] = Field(
+        description="the corners of the mid-lines in turn, as pairs of y and z in m from anywhere"
+    )
+    thicknesses: Annotated[tuple[Positive, ...], Few] = Field(
+        description="the thickness of each plate in m, from each corner to the next; the last one "
+        "closes the cell"
+    )
+
+    def section(self) -> Section:
+        return closed_polygon(self.corners, self.thicknesses)
+
+
+class _FoldedTable(ShapeTable):
+    """What sections of a top, a bottom and folded sides have."""
+
+    height: Positive = Field(description="the height of the top's mid-line above the bottom's in m")
+    width: Positive = Field(description="the greatest distance of the sides' mid-lines in m")
+    top: Positive = Field(description="the thickness of the top in m")
+    bottom: Positive = Field(description="the thickness of the bottom, with its bends, in m")
+    web: Positive = Field(description="the thickness of the other plates in m")
+
+
+class HexagonTable(_FoldedTable):
+    """A hexagon that lies on a flat bottom, its sides folded in the middle."""
+
+    shape: Literal["hexagon"] = Field(description="the shape of the section")
+    flat: Positive = Field(description="the width of the top, and of the bottom, in m")
+
+    def section(self) -> Section:
+        return hexagon(self.height, self.width, self.flat, self.top, self.bottom, self.web)
+
+
+class OctagonTable(_FoldedTable):
+    """A rectangle whose corners are cut at 45°."""
+
+    shape: Literal["octagon"] = Field(description="the shape of the section")
+    chamfer: Positive = Field(description="what is cut of the rectangle's sides at each end in m")
+
+    def section(self) -> Section:
+        return octagon(self.height, self.width, self.chamfer, self.top, self.bottom, self.web)
+
+
+class UTable(_FoldedTable):
+    """A U whose bends are folded of flat plates, closed by a flat top."""
+
+    shape: Literal["U"] = Field(description="the shape of the section")
+    radius: Positive = Field(description="the radius of the bottom's two bends in m")
+    facets: Annotated[int, Field(strict=True, ge=0, le=MOST_FACETS)] = Field(
+        3, description="the number of flat plates in each bend, which touch its circle"
+    )
+
+    def section(self) -> Section:
+        sizes = self.height, self.width, self.radius, self.facets
+        return u_section(*sizes, self.top, self.bottom, self.web)
+
+
+SHAPES: Mapping[str, type[ShapeTable]] = {
+    "box": SectionTable,
+    "unequal box": UnequalBoxTable,
+    "polygon": PolygonTable,
+    "hexagon": HexagonTable,
+    "octagon": OctagonTable,
+    "U": UTable,
+}
 
 
 def _shape(given: Any) -> str:
@@ -66,6 +135,11 @@ def _shape(given: Any) -> str:
 
 
 AnySection = Annotated[
-    Annotated[SectionTable, Tag("box")] | Annotated[UnequalBoxTable, Tag("unequal box")],
+    Annotated[SectionTable, Tag("box")]
+    | Annotated[UnequalBoxTable, Tag("unequal box")]
+    | Annotated[PolygonTable, Tag("polygon")]
+    | Annotated[HexagonTable, Tag("hexagon")]
+    | Annotated[OctagonTable, Tag("octagon")]
+    | Annotated[UTable, Tag("U")],
     Discriminator(_shape),
 ]

@@ -34,7 +34,45 @@ FORMS = {
     "shape that is none": (
         "height_to_width = 1.5",
         "section = { shape = 'star', height = 0.49 }",
-        "segment[1].section.shape: must be 'box' or 'unequal box', got 'star'",
+        "segment[1].section.shape: must be 'box', 'unequal box', 'polygon', 'hexagon', 'octagon' "
+        "or 'U', got 'star'",
+    ),
+    "missing key of a hexagon": (
+        "height_to_width = 1.5",
+        "section = { shape = 'hexagon', height = 0.5, width = 0.3, top = 0.01, bottom = 0.01, "
+        "web = 0.01 }",
+        "segment[1].section.flat: missing; it is the width of the top, and of the bottom, in m",
+    ),
+    "key of another shape": (
+        "height_to_width = 1.5",
+        "section = { shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
+        "bottom = 0.01, web = 0.01, radius = 0.1 }",
+        "segment[1].section.radius: unknown key; known ones are shape, height, width, top, bottom, "
+        "web, chamfer",
+    ),
+    "corner that is no pair": (
+        "height_to_width = 1.5",
+        "section = { shape = 'polygon', corners = [[0, 0], [1], [0, 1]], thicknesses = [1, 1, 1] }",
+        "segment[1].section.corners[2]: must be a list of two numbers, got [1]",
+    ),
+    "corner that turns inwards": (
+        "height_to_width = 1.5",
+        "section = { shape = 'polygon', corners = [[0, 0], [1, 0], [0.4, 0.4], [0, 1]], "
+        "thicknesses = [0.01, 0.01, 0.01, 0.01] }",
+        "segment[1].section: corner 3 turns inwards; plates go once around, every corner outwards",
+    ),
+    "facets without end": (
+        "height_to_width = 1.5",
+        "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.1, facets = 21, "
+        "top = 0.01, bottom = 0.01, web = 0.01 }",
+        "segment[1].section.facets: must be a number not greater than 20, got 21",
+    ),
+    "bend larger than the section": (
+        "height_to_width = 1.5",
+        "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.2, top = 0.01, "
+        "bottom = 0.01, web = 0.01 }",
+        "segment[1].section: radius must be above 0 and not above half the width and the height, "
+        "0.15 m, got 0.2",
     ),
     "missing key of a shape": (
         "height_to_width = 1.5",

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shapes of sections in a case file, for beams and series."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+from geometry.profiles import hexagon, octagon, u_section
+from geometry.section import Section
+from geometry.unequal_box import UnequalBox
+from runs import cli
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.reading import load
+from runs.pipeline.models import build
+from tests.runs.coarse_case import COARSE
+
+# The two segments' numbers as beams.
+GIVEN = (
+    "mass_per_length = 83.16\nsecond_moment_of_area = 3.7986e-4\nrotary_inertia = 3.48\n"
+    "height_to_width = 1.5\n",
+    "mass_per_length = 55.07\nsecond_moment_of_area = 2.1829e-4\nrotary_inertia = 1.68\n",
+)
+BOXES = (
+    "{ height = 0.50, width = 0.32, flange = 0.008, web = 0.006 }",
+    "{ height = 0.46, width = 0.28, flange = 0.006, web = 0.005 }",
+)
+
+
+@pytest.fixture(autouse=True)
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def written(sections: Sequence[str]) -> str:
+    """A case file of the coarse case with these sections."""
+    text = COARSE
+    for given, section in zip(GIVEN, sections, strict=True):
+        assert given in text
+        text = text.replace(given, f"section = {section}\n")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    return "case.toml"
+
+
+def polygon(height: float, width: float, walls: Sequence[float]) -> str:
+    corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
+    return f"{{ shape = 'polygon', corners = {corners}, thicknesses = {list(walls)} }}"
+
+
+def boom_of(sections: Sequence[str]) -> Boom:
+    return build_boom(load(written(sections)))
+
+
+@pytest.mark.parametrize(
+    ("table", "section"),
+    [
+        (
+            "{ shape = 'hexagon', height = 0.6, width = 0.5, flat = 0.3, top = 0.008, "
+            "bottom = 0.007, web = 0.006 }",
+            hexagon(0.6, 0.5, 0.3, 0.008, 0.007, 0.006),
+        ),
+        (
+            "{ shape = 'octagon', height = 0.6, width = 0.5, chamfer = 0.08, top = 0.008, "
+            "bottom = 0.007, web = 0.006 }",
+            octagon(0.6, 0.5, 0.08, 0.008, 0.007, 0.006),
+        ),
+        (
+            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, top = 0.008, bottom = 0.007, "
+            "web = 0.006 }",
+            u_section(0.6, 0.5, 0.1, 3, 0.008, 0.007, 0.006),
+        ),
+        (
+            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, facets = 0, top = 0.008, "
+            "bottom = 0.007, web = 0.006 }",
+            u_section(0.6, 0.5, 0.1, 0, 0.008, 0.007, 0.006),
+        ),
+        (
+            polygon(0.6, 0.5, (0.01, 0.006, 0.008, 0.006)),
+            UnequalBox(0.6, 0.5, 0.008, 0.01, 0.006, 0.006),
+        ),
+    ],
+    ids=["hexagon", "octagon", "U", "U with one fold", "polygon"],
+)
+def test_a_table_is_its_section(table: str, section: Section) -> None:
+    """Reference: other code, the section made in Python."""
+    outer, _ = boom_of([table, BOXES[1]]).segments
+    assert outer.section == section
+    assert outer.mass_per_length == 7850.0 * section.area
+    assert outer.second_moment_of_area == section.second_moment_of_area
+
+
+def _numbers(name: str) -> dict[str, np.ndarray]:
+    case = load("case.toml")
+    (model,) = (model for model in case.models if model.name == name)
+    system = build(case, build_boom(case), model).system
+    assert isinstance(system, GapSystem)
+    return {
+        "omega2": system.omega2, "load": np.abs(system.load), "rows": np.abs(system.rows),
+        "tip": np.abs(system.observers["tip"].row),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["kantorovich-5", "timoshenko"])
+def test_a_box_written_as_a_polygon_has_the_numbers_of_the_box(name: str) -> None:
+    """Reference: other code, the box's formulas."""
+    written(BOXES)
+    box = _numbers(name)
+    written(
+        [
+            polygon(0.50, 0.32, (0.008, 0.006, 0.008, 0.006)),
+            polygon(0.46, 0.28, (0.006, 0.005, 0.006, 0.005)),
+        ]
+    )
+    for key, found in _numbers(name).items():
+        largest = np.abs(box[key]).max()
+        assert found == pytest.approx(box[key], rel=1e-9, abs=1e-9 * largest), key
+
+
+def test_unequal_webs_are_refused() -> None:
+    """They would bend sideways under their weight, which a boom in its plane does not know."""
+    message = (
+        "case.toml: segment[1].section: does not mirror itself in y, and would bend sideways under "
+        "its weight"
+    )
+    written([polygon(0.50, 0.32, (0.008, 0.006, 0.008, 0.005)), BOXES[1]])
+    with pytest.raises(BadInput, match=f"^{re.escape(message)}$"):
+        load("case.toml")
+
+
+def test_check_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: analytic. A hole of 0.492 x 0.314 m around an outside of 0.466 x 0.285 m."""
+    table = (
+        "{ shape = 'octagon', height = 0.5, width = 0.32, chamfer = 0.004, top = 0.008, "
+        "bottom = 0.008, web = 0.006 }"
+    )
+    with pytest.raises(SystemExit) as ended:
+        cli.main(("check", written([table, BOXES[1]])))
+    assert ended.value.code == 0
+    printed = capsys.readouterr().out
+    assert "500 x 320 x 8 / 6" in printed
+    assert "26.0 high" in printed
+    assert "29.0 wide" in printed
