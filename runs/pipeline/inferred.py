@@ -21,6 +21,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
 from runs.pipeline.plausibility import slips
+from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
@@ -40,6 +41,7 @@ def print_inferred(case: Case, console: Console) -> None:
     ratios = _damping_ratios(case, boom)
     if ratios.rows:
         console.print(ratios)
+    print_statics(case, boom, console)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
     for slip in slips(case, boom):

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What holds a boom at rest: forces of its supports, joints, cylinders and stops, from beams.
+
+A segment without supports, bent as the boom at rest is, is in balance with its loads but where
+something holds it. So what K w − f leaves at a node is the force that acts there, however many
+supports there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from beam_model.boom_modes import BoomModes
+from beam_model.component import Component
+from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
+from beam_model.segment_model import gap_system
+from dynamics.contact import ContactLaw
+from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom, Direction
+from geometry.load import Member
+
+
+class Hold(NamedTuple):
+    """What holds a segment at a place, along z in N and towards a larger slope in N·m."""
+
+    segment: int
+    x: float
+    force: float
+    moment: float
+
+
+class Rest(NamedTuple):
+    """A boom at rest under the loads of t = 0.
+
+    Args:
+        system: of its beams.
+        position: (num_modes,) of the system in √kg·m.
+        holds: by segment, from its start to its end.
+    """
+
+    system: GapSystem
+    position: Array
+    holds: list[Hold]
+
+    @property
+    def tip(self) -> float:
+        """Its deflection in m."""
+        return float(self.system.observers["tip"].row @ self.position)
+
+
+def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[ContactLaw]) -> Rest:
+    """A boom of beam elements at rest, of Timoshenko's where all sections are known.
+
+    Args:
+        boom: with its loads.
+        laws, lateral_laws: of its joints along z, and in space along y.
+
+    Raises:
+        NumericsError: it has no rest.
+    """
+    known = all(segment.section is not None for segment in boom.segments)
+    theory: Theory = "timoshenko" if known else "euler-bernoulli"
+    longest = max(segment.length for segment in boom.segments)
+    models = finite_element_segments(boom, longest, theory, rotary_inertia=False)
+    system = gap_system(boom, models, laws, lateral_laws).gathered()
+    now = np.zeros(1)
+    load = system.load + sum(x.history(now)[0] * x.load for x in system.excitations)
+    position = equilibrium(system, load)
+    modes = BoomModes(boom, models)
+    holds = [
+        hold
+        for number in range(len(boom.segments))
+        for hold in _holds(boom, number, theory, modes, position)
+    ]
+    return Rest(system, position, holds)
+
+
+def _holds(
+    boom: Boom, number: int, theory: Theory, modes: BoomModes, position: Array
+) -> list[Hold]:
+    """What is left of a segment without its supports where something may hold it."""
+    segment = boom.segments[number]
+    places = {support.x for support in segment.supports}
+    places |= {stop.x for stop in boom.stops if stop.segment == number}
+    places |= {jack.x for jack in boom.cylinders if jack.segment == number}
+    joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
+    places |= {x for joint in joints for x in joint.stations}
+    alone = replace(segment, supports=())
+    model = finite_element_segment(
+        alone, segment.length, [*places, *boom.stations_of(number)], theory, rotary_inertia=False
+    )
+    component = model.components["z"]
+    nodes = component.breaks
+    bent = [
+        row @ position
+        for x in nodes
+        for row in (modes.displacement(number, x, "z"), modes.rotation(number, x, "z"))
+    ]
+    load = component.load.copy()
+    for given in boom.loads:
+        # What is over by t = 0 has no values.
+        if given.segment == number and given.direction == "z" and callable(given.history):
+            load += given.history(np.zeros(1))[0] * given.push(_Bare(component))
+    left = (component.stiffness @ np.array(bent) - load).reshape(-1, 2)
+    return [Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()])) for x in sorted(places)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Bare(Member):
+    """A segment's own coordinates along z as loads push them."""
+
+    component: Component
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.component.at(x)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        assert self.component.rotation is not None
+        return self.component.rotation(x)
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        return self.component.unit_load if span is None else self.component.uniform_load(*span)
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        return force * self.component.unit_load
+
+    def torque(self, x: float) -> Array:
+        return np.zeros(len(self.component.load))
+
+    def turning(self, direction: Direction) -> Array:
+        return np.zeros(len(self.component.load))

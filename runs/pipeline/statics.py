@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a designer knows by heart: weights, and what the boom at rest does and what holds it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from beam_model.statics import Rest, at_rest
+from dynamics.damping import pressed_modes
+from dynamics.failure import NumericsError
+from geometry.boom import Boom
+from runs.case.build import joined
+from runs.case.schema import Case
+
+KILO, MILLI = 1.0e3, 1.0e-3
+
+
+def print_statics(case: Case, boom: Boom, console: Console) -> None:
+    """Print masses, and the boom at rest under the loads of t = 0, as beam elements."""
+    console.print(_masses(boom))
+    with_play = next((model for model in case.models if not model.play_free), None)
+    laws = joined(case, boom, with_play or case.models[0])
+    tied = replace(boom, joints=tuple(joint.without_play for joint in boom.joints))
+    try:
+        with np.errstate(all="ignore"):
+            held = at_rest(tied, [], [])
+            played = at_rest(boom, laws.laws, laws.lateral_laws) if with_play else held
+            console.print(_holds(boom, played))
+            console.print(_line(played, held), highlight=False)
+    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+        console.print("No rest under the loads of t = 0 is found.")
+
+
+def _masses(boom: Boom) -> Table:
+    """Of each segment with what it carries, and of all."""
+    table = Table("mass", "segment (kg)", "on it (kg)", "middle (m)")
+    whole, moment = 0.0, 0.0
+    for segment in boom.segments:
+        own, carried = segment.mass_per_length * segment.length, segment.masses
+        here = own + sum(point.mass for point in carried)
+        middle = own * 0.5 * (segment.start + segment.end)
+        middle += sum(point.mass * point.x for point in carried)
+        table.add_row(segment.name, f"{own:.4g}", f"{here - own:.4g}", f"{middle / here:.4g}")
+        whole, moment = whole + here, moment + middle
+    table.add_row("all", f"{whole:.4g}", "", f"{moment / whole:.4g}")
+    return table
+
+
+def _holds(boom: Boom, rest: Rest) -> Table:
+    """Forces on the segments where something holds them, and how deep contacts are pressed."""
+    table = Table("holds at rest", "x (m)", "force (kN)", "moment (kN m)", "pressed in (mm)")
+    reacting = {(joint.outer, x) for joint in boom.joints for x in joint.stations}
+    gaps = rest.system.rows @ rest.position
+    pressed = dict.fromkeys(range(len(boom.stations)), 0.0)
+    for station, law, gap in zip(rest.system.station_of_row, rest.system.laws, gaps, strict=True):
+        beyond = max(0.0, float(abs(gap)) - law.clearance)
+        pressed[int(station)] = max(pressed[int(station)], beyond)
+    deep = {x: pressed[k] for k, (x, way) in enumerate(boom.stations) if way == "z"}
+    for hold in (hold for hold in rest.holds if hold[:2] not in reacting):
+        moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
+        depth = f"{deep[hold.x] / MILLI:.3g}" if hold.x in deep else ""
+        table.add_row(
+            boom.segments[hold.segment].name,
+            f"{hold.x:g}",
+            f"{hold.force / KILO:.4g}",
+            moment,
+            depth,
+        )
+    return table
+
+
+def _line(played: Rest, tied: Rest) -> str:
+    hertz = [float(pressed_modes(rest.system)[0][0]) / (2.0 * np.pi) for rest in (played, tied)]
+    return (
+        f"At rest the tip is at {played.tip / MILLI:.4g} mm, without play at "
+        f"{tied.tip / MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the joints "
+        f"pressed, {hertz[1]:.4g} Hz without play."
+    )
