@@ -45,6 +45,7 @@ STUDIES = (
     "refinement",
     "model_ladder",
     "histories",
+    "supports",
 )
 
 

@@ -24,6 +24,8 @@ _TABLES = (
     '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\n',
     '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = -100.0\nfrequency = {}\n',
     '[[stop]]\nsegment = "inner"\nx = 18.0\nplay = 0.1\nstiffness = {}\n',
+    '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, {}]\nstiffness = 1e7\n',
+    '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, -2.0]\nstiffness = {}\n',
     "[ensemble]\nmembers = {}\n", "[ensemble]\nmembers = 3\nrelative = {}\n",
     "[ensemble]\nmembers = 3\nseed = {}\n",
     '[[load]]\nsegment = "inner"\nfrom = 12.0\nto = {}\nmagnitude = -10.0\n',

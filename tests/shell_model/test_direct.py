@@ -22,7 +22,7 @@ from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Direction, Stop
+from geometry.boom import Boom, BoomError, Cylinder, Direction, Stop
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.cross_section import Reading
 from shell_model.reduced_shell import reduce_boom
@@ -245,6 +245,11 @@ def test_two_ranks_give_the_serial_motion(
             replace(flat_boom(), joints=(replace(flat_boom().joints[0], dashpot=1.0),)),
             LAW,
             "the unreduced shell takes joints without dashpots",
+        ),
+        (
+            replace(flat_boom(), cylinders=(Cylinder(0, 4.0, 0.3, (1.0, -2.0), 1.0e7),)),
+            LAW,
+            "the unreduced shell takes neither cylinders nor dashpots",
         ),
     ],
 )

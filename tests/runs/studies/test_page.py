@@ -16,7 +16,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.studies import direct, working_load
+from runs.studies import direct, supports, working_load
 from runs.studies.convergence import STUDIES
 from runs.studies.motions import friction_case
 from runs.studies.study import Study
@@ -75,6 +75,10 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     },
     "damping": {"PressedBoom.of": swung, "_system": one},
     "histories": {},
+    "supports": {
+        "_MODELS": dict.fromkeys(supports._MODELS, supports._elements),
+        "decrement": one,
+    },
 }
 # Studies without a proof have no section.
 PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder")]
