@@ -33,7 +33,8 @@ from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
 from runs.case.places import at, spans
-from runs.case.schema import Case, Model, SegmentTable, SupportTable
+from runs.case.schema import Case, Model
+from runs.case.segment import SegmentTable, SupportTable
 
 # What trajectories hold of every boom.
 _TAKEN = {*OF_STATIONS, *ENERGIES, "time", "station", "direction", "place", "model"}

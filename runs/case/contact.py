@@ -15,6 +15,8 @@ from runs.case.limits import (
     Exponent,
     Few,
     Flag,
+    In,
+    Length,
     NotNegative,
     Number,
     Positive,
@@ -90,6 +92,7 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
 
 Forces = Annotated[
     tuple[tuple[Number, Number], ...],
+    In("m", "N"),
     Field(min_length=1, max_length=MOST_POINTS),
     AfterValidator(_check_points),
 ]
@@ -98,27 +101,31 @@ Forces = Annotated[
 class RestitutionTable(Table):
     """How much of its speed a blow gives back."""
 
-    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0)] = Field(
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")] = Field(
         description="the coefficient of restitution"
     )
-    speed: Positive = Field(description="the speed of the impact in m/s at which it holds")
+    speed: Annotated[Positive, In("m/s")] = Field(
+        description="the speed of the impact in m/s at which it holds"
+    )
 
 
 class PadTable(Table):
     """A slide pad beside a corner: a patch of the inner segment's wall."""
 
-    length: Positive = Field(description="the length along x in m")
-    width: Positive = Field(description="the width from the corner inwards in m")
-    offset: NotNegative = Field(0.0, description="the distance in m between the pad and the corner")
-    thickness: Positive | None = Field(
+    length: Length = Field(description="the length along x in m")
+    width: Length = Field(description="the width from the corner inwards in m")
+    offset: Annotated[NotNegative, In("m")] = Field(
+        0.0, description="the distance in m between the pad and the corner"
+    )
+    thickness: Length | None = Field(
         None,
         description="the thickness in m, from which the joint's stiffness follows unless given",
     )
-    modulus: Positive = Field(
+    modulus: Annotated[Positive, In("Pa")] = Field(
         POLYAMIDE,
         description="the modulus of compression in Pa; that of moist cast polyamide unless given",
     )
-    allowable_pressure: Positive | None = Field(
+    allowable_pressure: Annotated[Positive, In("Pa")] | None = Field(
         None, description="the pressure in Pa that it may bear; not judged unless given"
     )
 
@@ -143,7 +150,7 @@ class JointTable(Table):
 
     outer: str = Field(description="the name of the outer segment")
     inner: str = Field(description="the name of the inner segment")
-    extension: NotNegative | None = Field(
+    extension: Annotated[NotNegative, In("m")] | None = Field(
         None,
         description="the length in m of the inner segment that is out of the outer one, where the "
         "inner one is given by its length",
@@ -152,11 +159,13 @@ class JointTable(Table):
         description="the x in m at which the two may touch, rising; 'tail' is the inner segment's "
         "start, 'head' the outer one's end, { head = 0.2 } lies 0.2 m before that"
     )
-    play: NotNegative = Field(description="the play in m, the clearance above and below together")
-    play_above: NotNegative | None = Field(
+    play: Annotated[NotNegative, In("m")] = Field(
+        description="the play in m, the clearance above and below together"
+    )
+    play_above: Annotated[NotNegative, In("m")] | None = Field(
         None, description="the part of the play in m that is above; half of it unless given"
     )
-    interference: NotNegative = Field(
+    interference: Annotated[NotNegative, In("m")] = Field(
         0.0,
         description="the amount in m by which shims press the inner segment from above and below "
         "together, where there is no play",
@@ -174,10 +183,10 @@ class JointTable(Table):
         description="the names of two columns in the heading of the file, of the penetrations and "
         "of the forces; its only two unless given",
     )
-    stiffness: Positive | None = Field(
+    stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
         None, description="the contact stiffness in N/m^n where the inner segment presses up"
     )
-    stiffness_below: NotNegative | None = Field(
+    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = Field(
         None,
         description="the contact stiffness in N/m^n where the inner segment presses down; the "
         "same as above unless given",
@@ -188,25 +197,27 @@ class JointTable(Table):
     restitution: RestitutionTable | None = Field(
         None, description="the table of the contact's own damping; none unless given"
     )
-    friction: NotNegative = Field(0.0, description="the coefficient of dry friction")
-    normal_forces: Annotated[tuple[NotNegative, ...], Few] = Field(
+    friction: Annotated[NotNegative, In("1")] = Field(
+        0.0, description="the coefficient of dry friction"
+    )
+    normal_forces: Annotated[tuple[Annotated[NotNegative, In("N")], ...], Few] = Field(
         (),
         description="the forces in N that press the segments at each station for the friction; in "
         "space the contact forces of the other plane do unless given",
     )
-    lateral_play: NotNegative | None = Field(
+    lateral_play: Annotated[NotNegative, In("m")] | None = Field(
         None,
         description="the play to the sides in m, left and right together; with it the boom moves "
         "in space",
     )
-    lateral_play_left: NotNegative | None = Field(
+    lateral_play_left: Annotated[NotNegative, In("m")] | None = Field(
         None,
         description="the part of the lateral play in m towards larger y; half of it unless given",
     )
-    lateral_interference: NotNegative = Field(
+    lateral_interference: Annotated[NotNegative, In("m")] = Field(
         0.0, description="the amount in m by which shims press from the sides, without lateral play"
     )
-    lateral_stiffness: Positive | None = Field(
+    lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
         None, description="the contact stiffness to the sides in N/m^n; the same unless given"
     )
     lateral_exponent: Exponent | None = Field(
@@ -220,12 +231,12 @@ class JointTable(Table):
         description="the table of the slide pads' size, which shells alone heed; the corners of "
         "the boxes along contact_length unless given",
     )
-    contact_length: Positive | None = Field(
+    contact_length: Length | None = Field(
         None,
         description="the length along x in m on which stations press the corners, as long as a "
         "slide pad, which shells alone heed; a tenth of the overlap unless given",
     )
-    dashpot: NotNegative = Field(
+    dashpot: Annotated[NotNegative, In("N s/m")] = Field(
         0.0,
         description="the linear dashpot across the play at each station in N s/m, to the sides "
         "too where the boom moves in space",
@@ -237,6 +248,10 @@ class JointTable(Table):
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
         return self
+
+    def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
+        own = self.lateral_exponent if key == "lateral_stiffness" else None
+        return super().units_of(key, own or self.exponent or exponent)
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
         """Above and below in m, along y left and right; negative where shims press."""
@@ -283,8 +298,10 @@ class ContactTable(Table):
         description="the names of two columns in the heading of the file, of the penetrations and "
         "of the forces; its only two unless given",
     )
-    stiffness: Positive | None = Field(None, description="the contact stiffness in N/m^n")
-    stiffness_below: NotNegative | None = Field(
+    stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
+        None, description="the contact stiffness in N/m^n"
+    )
+    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = Field(
         None, description="the contact stiffness in N/m^n below; the same as above unless given"
     )
     exponent: Exponent | None = Field(

@@ -3,16 +3,72 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Iterable, Iterator
+from functools import reduce
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    ValidationError,
+)
+from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError
+
+
+class In:
+    """Says of what unit the numbers of a field are, by the names of :mod:`runs.case.units`.
+
+    Args:
+        units: one for all of them, or one for each column of a table; ``1`` for none, ``^n`` a
+            power that is the exponent of a contact law.
+    """
+
+    def __init__(self, *units: str) -> None:
+        self.units = units
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return {**handler(schema), "unit": ", ".join(self.units)}
 
 
 class Table(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    # The key that a number alone stands for, where one may stand in place of the table.
+    bare: ClassVar[str] = ""
+
+    def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
+        """What the numbers of a key are in, as of :class:`In`; empty where they are none.
+
+        Args:
+            key: as the class calls it.
+            exponent: of the contact law that a table without one belongs to.
+        """
+        declared = declared_units(type(self).model_fields[key])
+        n = getattr(self, "exponent", None) or exponent
+        powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
+        return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
+
+
+def declared_units(field: FieldInfo) -> tuple[str, ...]:
+    """What a field's :class:`In` says."""
+    return next((said.units for said in _said((*field.metadata, field.annotation))), ())
+
+
+def _said(parts: Iterable[Any]) -> Iterator[In]:
+    for part in parts:
+        if isinstance(part, In):
+            yield part
+        else:
+            yield from _said(get_args(part))
 
 
 def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> ValidationError:
@@ -24,10 +80,11 @@ def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> Vali
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Length = Annotated[Positive, In("m")]
 # Hertz has 3/2; series of a press have as many terms as the exponent, and more.
-Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False)]
+Exponent = Annotated[float, Field(strict=True, ge=1.0, le=10.0, allow_inf_nan=False), In("1")]
 Count = Annotated[int, Field(strict=True, ge=1, le=1000)]
-Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0)]
+Part = Annotated[float, Field(strict=True, gt=0.0, lt=1.0), In("1")]
 Flag = Annotated[bool, Field(strict=True)]
 # A name becomes a part of file names, and an element of a comma-separated list.
 NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
@@ -77,5 +134,6 @@ def _contact_tolerance(given: Any) -> Any:
 
 ContactTolerance = Annotated[
     float | Literal["any"],
+    In("1"),
     BeforeValidator(_contact_tolerance, json_schema_input_type=Part | Literal["any"]),
 ]

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from runs.case import contact, schema
+from runs.case import contact, schema, segment
 from runs.case.kinds import KINDS
 from runs.case.limits import NAME
 from runs.case.sections import SHAPES
@@ -19,12 +19,12 @@ from runs.process.shown import shown
 _TABLES: Mapping[str, type[BaseModel]] = {
     "time": schema.TimeTable,
     "ensemble": schema.EnsembleTable,
-    "material": schema.MaterialTable,
-    "supports": schema.SupportTable,
-    "masses": schema.MassTable,
-    "collars": schema.CollarTable,
-    "diaphragms": schema.DiaphragmTable,
-    "segment": schema.SegmentTable,
+    "material": segment.MaterialTable,
+    "supports": segment.SupportTable,
+    "masses": segment.MassTable,
+    "collars": segment.CollarTable,
+    "diaphragms": segment.DiaphragmTable,
+    "segment": segment.SegmentTable,
     "restitution": contact.RestitutionTable,
     "pad": contact.PadTable,
     "joint": contact.JointTable,

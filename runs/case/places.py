@@ -15,20 +15,20 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from geometry.boom import BoomError
-from runs.case.limits import NotNegative, Number, Table
+from runs.case.limits import In, NotNegative, Number, Table
 
 if TYPE_CHECKING:
     from runs.case.contact import JointTable
-    from runs.case.schema import SegmentTable
+    from runs.case.segment import SegmentTable
 
 
 class PlaceTable(Table):
     """A distance from an end: of a segment, or of the overlap of a joint's."""
 
-    tail: NotNegative | None = Field(
+    tail: Annotated[NotNegative, In("m")] | None = Field(
         None, description="the distance in m from the segment's start, in a joint the inner one's"
     )
-    head: NotNegative | None = Field(
+    head: Annotated[NotNegative, In("m")] | None = Field(
         None, description="the distance in m from the segment's end, in a joint the outer one's"
     )
 
@@ -60,6 +60,7 @@ def _is_distance(given: Any) -> bool:
 
 Place = Annotated[
     float | PlaceTable,
+    In("m"),
     BeforeValidator(_place, json_schema_input_type=Number | End | PlaceTable),
 ]
 

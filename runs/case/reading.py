@@ -16,6 +16,7 @@ from geometry.boom import Boom, BoomError
 from runs.case.build import build_boom, check_names, joined
 from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
+from runs.case.conversion import in_si
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS
 from runs.case.messages import BadInput, choices
@@ -26,6 +27,7 @@ from runs.case.schema import (
     Model,
     TimeTable,
 )
+from runs.case.units import System
 from runs.case.user_files import read_text
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
@@ -37,7 +39,6 @@ Law = TypeVar("Law", JointTable, ContactTable)
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
-_OF_LAW = Column("penetration", "m"), Column("force", "N")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
@@ -49,7 +50,7 @@ def load(path: str) -> Case:
         BadInput: the file cannot be read, or what it says cannot be.
     """
     try:
-        case = _read_tables(Case.model_validate(_read(path)), path)
+        case = in_si(_read_tables(Case.model_validate(_read(path)), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
     check(case, path)
@@ -172,10 +173,12 @@ def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
 
 def _read_tables(case: Case, path: str) -> Case:
     """The case with the CSV files of its histories in place, so that it stands alone."""
+    system = System(case.units)
 
     def standing(key: str, histories: Sequence[History]) -> tuple[History, ...]:
         return tuple(
-            _history(path, f"{key}[{i}]", history) for i, history in enumerate(histories, start=1)
+            _history(path, f"{key}[{i}]", history, system)
+            for i, history in enumerate(histories, start=1)
         )
 
     def contact(key: str, table: Law) -> Law:
@@ -183,7 +186,8 @@ def _read_tables(case: Case, path: str) -> Case:
         if table.force_file is None:
             return table
         key = f"{key}.force_file"
-        points = read_pairs(path, key, table.force_file, table.force_columns, _OF_LAW).values
+        law = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
+        points = read_pairs(path, key, table.force_file, table.force_columns, law).values
         try:
             table_law(points)
         except ValueError as error:
@@ -208,12 +212,13 @@ def _read_tables(case: Case, path: str) -> Case:
     )
 
 
-def _history(path: str, key: str, table: History) -> History:
+def _history(path: str, key: str, table: History, system: System) -> History:
     """A table with the pairs of its file, if it has one, in place."""
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
         return table
-    wanted = Column("time", "s"), Column("factor", table.unit, factor=True)
+    (unit,) = table.units_of(table.amount)
+    wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
     if not read.measured and table.amount not in table.model_fields_set:
         what = type(table).model_fields[table.amount].description

@@ -13,7 +13,7 @@ from geometry.polygon import closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
 from geometry.unequal_box import UnequalBox
-from runs.case.limits import MOST_FACETS, Few, Number, Positive, Table
+from runs.case.limits import MOST_FACETS, Few, In, Length, Number, Table
 
 
 class ShapeTable(Table):
@@ -34,10 +34,10 @@ class SectionTable(ShapeTable):
     """A box by its wall mid-lines and thicknesses."""
 
     shape: Literal["box"] = Field("box", description="the shape of the section")
-    height: Positive = Field(description="the distance of the flange mid-lines in m")
-    width: Positive = Field(description="the distance of the web mid-lines in m")
-    flange: Positive = Field(description="the thickness of the two flanges in m")
-    web: Positive = Field(description="the thickness of the two webs in m")
+    height: Length = Field(description="the distance of the flange mid-lines in m")
+    width: Length = Field(description="the distance of the web mid-lines in m")
+    flange: Length = Field(description="the thickness of the two flanges in m")
+    web: Length = Field(description="the thickness of the two webs in m")
 
     def section(self) -> BoxSection:
         return BoxSection(self.height, self.width, self.flange, self.web)
@@ -47,11 +47,11 @@ class UnequalBoxTable(ShapeTable):
     """A box with flanges of different thickness, by its wall mid-lines and thicknesses."""
 
     shape: Literal["unequal box"] = Field(description="the shape of the section")
-    height: Positive = Field(description="the distance of the flange mid-lines in m")
-    width: Positive = Field(description="the distance of the web mid-lines in m")
-    top: Positive = Field(description="the thickness of the upper flange in m")
-    bottom: Positive = Field(description="the thickness of the lower flange in m")
-    web: Positive = Field(description="the thickness of the two webs in m")
+    height: Length = Field(description="the distance of the flange mid-lines in m")
+    width: Length = Field(description="the distance of the web mid-lines in m")
+    top: Length = Field(description="the thickness of the upper flange in m")
+    bottom: Length = Field(description="the thickness of the lower flange in m")
+    web: Length = Field(description="the thickness of the two webs in m")
 
     def section(self) -> UnequalBox:
         return UnequalBox(self.height, self.width, self.top, self.bottom, self.web, self.web)
@@ -61,10 +61,10 @@ class PolygonTable(ShapeTable):
     """Flat plates once around a cell, by the corners of their mid-lines."""
 
     shape: Literal["polygon"] = Field(description="the shape of the section")
-    corners: Annotated[tuple[tuple[Number, Number], ...], Few] = Field(
+    corners: Annotated[tuple[tuple[Number, Number], ...], Few, In("m")] = Field(
         description="the corners of the mid-lines in turn, as pairs of y and z in m from anywhere"
     )
-    thicknesses: Annotated[tuple[Positive, ...], Few] = Field(
+    thicknesses: Annotated[tuple[Length, ...], Few] = Field(
         description="the thickness of each plate in m, from each corner to the next; the last one "
         "closes the cell"
     )
@@ -76,18 +76,18 @@ class PolygonTable(ShapeTable):
 class _FoldedTable(ShapeTable):
     """What sections of a top, a bottom and folded sides have."""
 
-    height: Positive = Field(description="the height of the top's mid-line above the bottom's in m")
-    width: Positive = Field(description="the greatest distance of the sides' mid-lines in m")
-    top: Positive = Field(description="the thickness of the top in m")
-    bottom: Positive = Field(description="the thickness of the bottom, with its bends, in m")
-    web: Positive = Field(description="the thickness of the other plates in m")
+    height: Length = Field(description="the height of the top's mid-line above the bottom's in m")
+    width: Length = Field(description="the greatest distance of the sides' mid-lines in m")
+    top: Length = Field(description="the thickness of the top in m")
+    bottom: Length = Field(description="the thickness of the bottom, with its bends, in m")
+    web: Length = Field(description="the thickness of the other plates in m")
 
 
 class HexagonTable(_FoldedTable):
     """A hexagon that lies on a flat bottom, its sides folded in the middle."""
 
     shape: Literal["hexagon"] = Field(description="the shape of the section")
-    flat: Positive = Field(description="the width of the top, and of the bottom, in m")
+    flat: Length = Field(description="the width of the top, and of the bottom, in m")
 
     def section(self) -> Section:
         return hexagon(self.height, self.width, self.flat, self.top, self.bottom, self.web)
@@ -97,7 +97,7 @@ class OctagonTable(_FoldedTable):
     """A rectangle whose corners are cut at 45°."""
 
     shape: Literal["octagon"] = Field(description="the shape of the section")
-    chamfer: Positive = Field(description="what is cut of the rectangle's sides at each end in m")
+    chamfer: Length = Field(description="what is cut of the rectangle's sides at each end in m")
 
     def section(self) -> Section:
         return octagon(self.height, self.width, self.chamfer, self.top, self.bottom, self.web)
@@ -107,7 +107,7 @@ class UTable(_FoldedTable):
     """A U whose bends are folded of flat plates, closed by a flat top."""
 
     shape: Literal["U"] = Field(description="the shape of the section")
-    radius: Positive = Field(description="the radius of the bottom's two bends in m")
+    radius: Length = Field(description="the radius of the bottom's two bends in m")
     facets: Annotated[int, Field(strict=True, ge=0, le=MOST_FACETS)] = Field(
         3, description="the number of flat plates in each bend, which touch its circle"
     )

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
 
 # Length, mass, time, as exponents.
 Dimension = tuple[float, float, float]
@@ -19,6 +21,7 @@ _SYMBOLS: dict[str, tuple[str, Dimension]] = {
     "-": ("1.0", _NONE),
     "%": ("0.01", _NONE),
     "rad": ("1.0", _NONE),
+    "deg": ("1.0", _NONE),
     "m": ("1.0", _LENGTH),
     "km": ("1.0e3", _LENGTH),
     "cm": ("1.0e-2", _LENGTH),
@@ -46,7 +49,7 @@ _SYMBOLS: dict[str, tuple[str, Dimension]] = {
 }
 
 # m^2, m2, N/m^1.5.
-_POWER = re.compile(r"([^\^0-9]+|1)(?:\^(-?[0-9](?:\.[0-9]{1,9})?)|([0-9]))?")
+_POWER = re.compile(r"([^\^0-9]+|1)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|([0-9]))?")
 _PLAIN = str.maketrans("²³⁴μ·*", "234µ  ")
 
 
@@ -86,3 +89,45 @@ class Unit:
                 for base, power_of in enumerate(dimension):
                     exponents[base] += exponent * power_of
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
+
+
+# Systems of units: what each has in place of units of the SI.
+SystemName = Literal["SI", "mm-t-s", "N-mm"]
+_MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
+_SYSTEMS: Mapping[SystemName, Mapping[str, str]] = {
+    "SI": {},
+    "mm-t-s": _MILLIMETRES,
+    "N-mm": _MILLIMETRES,
+}
+
+
+_RAISED = str.maketrans("234", "²³⁴")
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A coherent system of units."""
+
+    name: SystemName = "SI"
+
+    def unit(self, si: str) -> str:
+        """What it has for a unit of the SI: ``N/mm`` for ``N/m``, say."""
+        symbols = _SYSTEMS[self.name]
+        return re.sub("[A-Za-z]+", lambda found: symbols.get(found[0], found[0]), si)
+
+    def size(self, si: str) -> Fraction:
+        """How many of a unit of the SI its own one is."""
+        return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
+
+    def of(self, value: float, si: str) -> float:
+        """A value in a unit of the SI in its own one."""
+        return scaled(value, 1 / self.size(si))
+
+    def label(self, si: str) -> str:
+        """Its unit as headings have it: ``mm⁴``."""
+        return self.unit(si).replace("^", "").translate(_RAISED)
+
+
+def scaled(value: float, size: Fraction) -> float:
+    """Value times size as decimals are: 9.7 mm are 0.0097 m to the last bit."""
+    return float(Fraction(repr(float(value))) * size)

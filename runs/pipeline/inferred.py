@@ -18,6 +18,7 @@ from runs.case import actions
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
+from runs.case.units import System
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
 from runs.pipeline.plausibility import slips
@@ -32,7 +33,7 @@ def print_inferred(case: Case, console: Console) -> None:
     boom = build_boom(case)
     console.print(case.title, markup=False)
     console.print(_segments(case, boom))
-    stiffeners = _stiffeners(boom)
+    stiffeners = _stiffeners(boom, case.system)
     if stiffeners.rows:
         console.print(stiffeners)
     if boom.joints:
@@ -50,44 +51,52 @@ def print_inferred(case: Case, console: Console) -> None:
 
 
 def _segments(case: Case, boom: Boom) -> Table:
-    table = Table("segment", "span (m)", "m (kg/m)", "J (m⁴)", "I_p (kg m)", "box (mm)")
+    system = case.system
+    headings = {"span": "m", "m": "kg/m", "J": "m^4", "I_p": "kg m"}
+    shown = [f"{name} ({system.label(unit)})" for name, unit in headings.items()]
+    table = Table("segment", *shown, "box (mm)")
     for given, segment in zip(case.segments, boom.segments, strict=True):
         box = "unknown" if segment.section is None else str(segment.section)
         table.add_row(
             segment.name,
-            f"{segment.start:g}–{segment.end:g}",
-            f"{segment.mass_per_length:.4g}",
-            f"{segment.second_moment_of_area:.4g}",
-            f"{segment.rotary_inertia:.3g}",
+            f"{system.of(segment.start, 'm'):g}–{system.of(segment.end, 'm'):g}",
+            f"{system.of(segment.mass_per_length, 'kg/m'):.4g}",
+            f"{system.of(segment.second_moment_of_area, 'm^4'):.4g}",
+            f"{system.of(segment.rotary_inertia, 'kg m'):.3g}",
             box if given.section is not None or segment.section is None else f"{box}, inferred",
         )
     return table
 
 
-def _stiffeners(boom: Boom) -> Table:
+def _stiffeners(boom: Boom, system: System) -> Table:
     """Those of segments with known plates; without, there is no shell either."""
-    table = Table("on shells alone", "of", "x (m)", "t (mm)", "mass (kg)")
+    x, mass = f"x ({system.label('m')})", f"mass ({system.label('kg')})"
+    table = Table("on shells alone", "of", x, "t (mm)", mass)
     for segment in boom.segments:
         box, density = segment.section, segment.material.density
         if box is None:
             continue
         for one in segment.collars:
             area = box.perimeter * (one.end - one.start)
-            place = f"{one.start:g}–{one.end:g}"
-            table.add_row("collar", segment.name, place, *_plate(one.thickness, density * area))
+            place = f"{system.of(one.start, 'm'):g}–{system.of(one.end, 'm'):g}"
+            row = _plate(one.thickness, density * area, system)
+            table.add_row("collar", segment.name, place, *row)
         for plate in segment.diaphragms:
             per_thickness = density * box.enclosed_area
-            row = _plate(plate.thickness, per_thickness)
-            table.add_row("diaphragm", segment.name, f"{plate.x:g}", *row)
+            row = _plate(plate.thickness, per_thickness, system)
+            table.add_row("diaphragm", segment.name, f"{system.of(plate.x, 'm'):g}", *row)
     return table
 
 
-def _plate(thickness: float, mass_per_thickness: float) -> tuple[str, str]:
-    return f"{1e3 * thickness:g}", f"{mass_per_thickness * thickness:.3g}"
+def _plate(thickness: float, mass_per_thickness: float, system: System) -> tuple[str, str]:
+    mass = system.of(mass_per_thickness * thickness, "kg")
+    return f"{1e3 * thickness:g}", f"{mass:.3g}"
 
 
 def _joints(case: Case, boom: Boom) -> Table:
-    table = Table("joint", "overlap (m)", "stations (m)", "clearance (mm)", "free (mm)", "friction")
+    system, m = case.system, case.system.label("m")
+    lengths = f"overlap ({m})", f"stations ({m})"
+    table = Table("joint", *lengths, "clearance (mm)", "free (mm)", "friction")
     for given, joint in zip(case.joints, boom.joints, strict=True):
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         room = "unknown"
@@ -96,8 +105,8 @@ def _joints(case: Case, boom: Boom) -> Table:
             room = f"{1e3 * height:.1f} high, {1e3 * width:.1f} wide"
         table.add_row(
             f"{inner.name} in {outer.name}",
-            f"{min(outer.end, inner.end) - max(outer.start, inner.start):g}",
-            ", ".join(f"{x:g}" for x in joint.stations),
+            f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
+            ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
             "tied" if joint.tied else ", ".join(_clearances(given)),
             room,
             _friction(joint),

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 
 from pydantic import ValidationError
@@ -24,6 +24,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
+from runs.case.units import System
 from runs.sweep.variation import Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
@@ -88,6 +89,10 @@ def plan(
     case_file.select(whole, file, models, mesh_size, 0)
     tables = whole.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"ensemble"})
     variations = parse(texts, tables, file)
+    first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
+    system = whole.system
+    units = [system.unit(unit_of(variation.places[0], first)) for variation in variations]
+    variations = [_in_units_of(system, variation, first) for variation in variations]
 
     def chosen(settings: Sequence[Setting]) -> Case:
         return case_file.select(_written(file, tables, settings), file, models)
@@ -104,10 +109,16 @@ def plan(
         checked = _checked(file, label, held, any(plates[shaping]))
         points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
     _check_influence(file, variations, points)
-    first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
-    units = [unit_of(variation.places[0], first) for variation in variations]
     play_free = [model.name for model in points[0].case.models if model.play_free]
     return Plan(file, whole.title, variations, units, play_free, points)
+
+
+def _in_units_of(system: System, variation: Variation, case: Case) -> Variation:
+    """A variation whose values are in a system's units."""
+    places = (
+        replace(place, size=system.size(unit_of(place, case) or "1")) for place in variation.places
+    )
+    return replace(variation, places=tuple(places))
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:

@@ -12,13 +12,15 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel
 
+from runs.case.limits import Table
 from runs.case.messages import BadInput
 from runs.case.schema import Case
+from runs.case.units import scaled
 
 # A case file as plain tables and lists.
 Tables = dict[str, Any]
@@ -33,24 +35,27 @@ _STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
 _WHOLE = re.compile(r"[0-9]{1,9}")
 _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
-# Units as the schema's descriptions have them: "in N/m^n where", "in kg m;".
-_UNIT = re.compile(
-    r"\bin ((?:kg|N|Pa|Hz|m|s|1)(?:[ /](?:m|s|kg)(?:\^\w)?)*(?:\^\w)?)(?![\w/^])", re.ASCII
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """One number of a case: the way to it through :data:`Tables`, and how messages call it."""
+    """One number of a case: the way to it through :data:`Tables`, and how messages call it.
+
+    Args:
+        steps, name: these.
+        size: how many of its SI unit are one of what it is set in.
+    """
 
     steps: tuple[str | int, ...]
     name: str
+    size: Fraction = Fraction(1)
 
     def put(self, tables: Tables, value: Any) -> None:
         """Set it, tables that are not given made on the way."""
         here: Any = tables
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
+        if isinstance(value, float):
+            value = scaled(value, self.size)
         # A whole number fits keys of both kinds.
         whole = isinstance(value, float) and value.is_integer()
         here[self.steps[-1]] = int(value) if whole else value
@@ -119,19 +124,19 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def unit_of(place: Place, case: Case) -> str:
-    """The unit of a number that a case has, as the schema's description says it, '' for none."""
+    """The SI unit of a number that a case has, '' for none."""
     here: Any = case
-    description = ""
+    units: tuple[str, ...] = ()
     for step in place.steps:
-        if isinstance(here, BaseModel):
-            fields = {f.alias or name: (name, f) for name, f in type(here).model_fields.items()}
-            name, field = fields[str(step)]
-            here, description = getattr(here, name), field.description or ""
+        if isinstance(here, Table):
+            names = {field.alias or name: name for name, field in type(here).model_fields.items()}
+            units = here.units_of(names[str(step)])
+            here = getattr(here, names[str(step)])
         else:
             here = here[step]
-    units = set(_UNIT.findall(description))
-    # "in N at x, or in N/m along the segment" depends on other keys.
-    return str(units.pop()) if len(units) == 1 else ""
+    if isinstance(here, Table) and here.bare:
+        units = here.units_of(here.bare)
+    return units[0] if len(units) == 1 and units[0] != "1" else ""
 
 
 class Unplaced(Exception):

@@ -12,7 +12,7 @@ from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Joined, StandIn
-from runs.case.limits import Flag, Positive
+from runs.case.limits import Flag, Length
 
 # A dense eigenproblem of more elements is a slip of the pen.
 MOST_ELEMENTS = 5_000
@@ -27,7 +27,7 @@ class FiniteElementTable(BeamTable):
     """Beam finite elements."""
 
     kind: Literal["finite-element"] = Field(description="the kind of model")
-    element_length: Positive = Field(0.5, description="the length of an element in m, at most")
+    element_length: Length = Field(0.5, description="the length of an element in m, at most")
     theory: Literal["euler-bernoulli", "timoshenko"] = Field(
         "euler-bernoulli", description="the beam theory"
     )

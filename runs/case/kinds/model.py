@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
 from pydantic import Field
 
 from beam_model.component import SegmentModel
 from geometry.boom import Boom, BoomError
 from runs.case.contact import ContactTable
-from runs.case.limits import Name, Positive, Table
+from runs.case.limits import In, Name, Positive, Table
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -99,7 +99,7 @@ class ModelTable(Table):
     contact: ContactTable | None = Field(
         None, description="the model's own contact law; the joints' unless given"
     )
-    step: Positive | None = Field(
+    step: Annotated[Positive, In("s")] | None = Field(
         None, description="the model's own step of the integrator in s; the case's unless given"
     )
     kind: str = Field(description="the kind of model")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -13,7 +13,7 @@ from pydantic import Field
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.finite_element import FiniteElementTable
 from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
-from runs.case.limits import ContactTolerance, Count, Modes, Part, Positive
+from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
 if TYPE_CHECKING:
     from shell_model.boom_shell import ShellOptions
@@ -40,7 +40,7 @@ class ShellTable(ModelTable):
     meshed: ClassVar[bool] = True
 
     kind: Literal["shell"] = Field(description="the kind of model")
-    mesh_size: Positive = Field(
+    mesh_size: Length = Field(
         0.1, description="the edge length of the triangles in m, far from all that presses"
     )
     contact_tolerance: ContactTolerance = Field(
@@ -64,7 +64,7 @@ class ShellTable(ModelTable):
         description="where the walls of the segments touch: at the stations near the webs or "
         "across the flanges, or over the surface of the whole overlap",
     )
-    surface_stiffness: Positive | None = Field(
+    surface_stiffness: Annotated[Positive, In("N/m^(n+2)")] | None = Field(
         None,
         description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
         "side; that of all the joint's stations over the area unless given",

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A case in other units becomes one in SI units, number by number, as its tables declare them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from runs.case.limits import Table
+from runs.case.schema import Case
+from runs.case.units import System, scaled
+
+_Table = TypeVar("_Table", bound=Table)
+
+
+def in_si(case: Case) -> Case:
+    """The case in SI units, which shows its numbers in those that it had.
+
+    Defaults, which nobody has given, are in SI units already.
+
+    Args:
+        case: that stands alone, without files.
+    """
+    if case.units == "SI":
+        return case
+    system = System(case.units)
+    laws = [joint.exponent for joint in case.joints]
+    models = []
+    for model in case.models:
+        of_contact = None if model.contact is None else model.contact.exponent
+        exponent = of_contact or next(iter(laws), None) or 2.0
+        models.append(_converted(model, system, exponent))
+    shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
+    return _converted(case, system).model_copy(update=shown)
+
+
+def _converted(table: _Table, system: System, exponent: float = 2.0) -> _Table:
+    changed = {}
+    for key in table.model_fields_set:
+        sizes = [system.size(unit) for unit in table.units_of(key, exponent)]
+        changed[key] = _scaled(getattr(table, key), sizes, system, exponent)
+    return table.model_copy(update=changed)
+
+
+def _scaled(value: Any, sizes: Sequence[Fraction], system: System, exponent: float) -> Any:
+    """A value of a table, all numbers of it; where there are several sizes, those of a row each."""
+    if isinstance(value, Table):
+        return _converted(value, system, exponent)
+    if isinstance(value, dict):
+        return {key: _scaled(item, sizes, system, exponent) for key, item in value.items()}
+    if isinstance(value, tuple) and len(sizes) == len(value) > 1 and isinstance(value[0], float):
+        return tuple(scaled(number, size) for number, size in zip(value, sizes, strict=True))
+    if isinstance(value, tuple):
+        return tuple(_scaled(item, sizes, system, exponent) for item in value)
+    return scaled(value, sizes[0]) if isinstance(value, float) and sizes else value
