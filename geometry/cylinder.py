@@ -63,6 +63,11 @@ class Cylinder:
             (-self.depth - self.ground[1]) / self.length,
         )
 
+    def arm(self, foot: Support) -> float:
+        """Of its line about the pin of a foot in m."""
+        along, up = self.direction
+        return (self.x - foot.x) * up + (self.depth - foot.depth) * along
+
     def check(self, where: str, spatial: bool) -> None:
         """Whether there can be such a cylinder.
 
@@ -133,16 +138,20 @@ class GroundLine(NamedTuple):
     force: str = ""
 
 
+def force_name(number: int) -> str:
+    """What results call the spring force of a cylinder, from 1 on, of two side by side together."""
+    return "cylinder_force" if number == 1 else f"cylinder_force-{number}"
+
+
 def forces(boom: Boom) -> dict[str, str]:
     """What results call the forces of the cylinders' springs, and what they are in words."""
     found = {}
     for number, one in enumerate(boom.cylinders, start=1):
-        suffix = "" if number == 1 else f"-{number}"
+        name = force_name(number)
         where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
-        name = "cylinder_force"
-        found[f"{name}{suffix}"] = f"spring force of the cylinder {where}, positive where pressed"
+        found[name] = f"spring force of the cylinder {where}, positive where pressed"
         if one.spread > 0.0:
-            found[f"{name}_difference{suffix}"] = (
+            found[name.replace("force", "force_difference")] = (
                 f"spring force of the cylinder at positive y {where}, less that of the other"
             )
     return found

@@ -13,6 +13,7 @@ from beam_model.statics import Rest, at_rest
 from dynamics.damping import pressed_modes
 from dynamics.failure import NumericsError
 from geometry.boom import Boom
+from geometry.cylinder import force_name
 from runs.case.build import joined
 from runs.case.schema import Case
 
@@ -30,6 +31,8 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
             held = at_rest(tied, [], [])
             played = at_rest(boom, laws.laws, laws.lateral_laws) if with_play else held
             console.print(_holds(boom, played))
+            if boom.cylinders:
+                console.print(_cylinders(boom, played))
             console.print(_line(played, held), highlight=False)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         console.print("No rest under the loads of t = 0 is found.")
@@ -69,6 +72,22 @@ def _holds(boom: Boom, rest: Rest) -> Table:
             f"{hold.force / KILO:.4g}",
             moment,
             depth,
+        )
+    return table
+
+
+def _cylinders(boom: Boom, rest: Rest) -> Table:
+    """Their lines, and the forces along them: of two side by side together."""
+    table = Table("cylinder of", "x (m)", "length (m)", "arm (m)", "force (kN)")
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        segment = boom.segments[cylinder.segment]
+        force = float(rest.system.observers[force_name(number)].row @ rest.position)
+        table.add_row(
+            segment.name,
+            f"{cylinder.x:g}",
+            f"{cylinder.length:.4g}",
+            "" if segment.foot is None else f"{cylinder.arm(segment.foot):.4g}",
+            f"{force / KILO:.4g}",
         )
     return table
 

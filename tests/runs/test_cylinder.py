@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
-from geometry.boom import Cylinder, Support
+from geometry.boom import Boom, Cylinder, Support
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.toml import dumps
+from runs.pipeline.inferred import print_inferred
 
 LUFFED = """
 title = "A boom on its cylinder"
@@ -92,6 +94,17 @@ def path(tmp_path: Path) -> Path:
     return place
 
 
+def turning(boom: Boom) -> float:
+    """Moment of the weights about the hinge in N·m."""
+    weights = [segment.mass_per_length * segment.length for segment in boom.segments]
+    moment = weights[0] * 4.5 + weights[1] * 11.25 + 1000.0 * 15.0
+    return moment * 9.80665 * float(np.cos(np.radians(30.0)))
+
+
+# From (1.2, −2.4) to (3, −0.5) m, about (0, −0.2) m.
+ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
+
+
 def test_the_boom_is_what_the_case_says(path: Path, tmp_path: Path) -> None:
     """As it is written, and as a run writes it again."""
     again = tmp_path / "again.toml"
@@ -107,11 +120,6 @@ def test_every_model_stands_on_its_cylinder(path: Path) -> None:
     """Reference: analytic, moments about the hinge; at rest nothing moves, and energy is kept."""
     results = run_case(case_file.load(str(path)))
     boom = build_boom(case_file.load(str(path)))
-    weights = [s.mass_per_length * s.length for s in boom.segments]
-    turning = weights[0] * 4.5 + weights[1] * 11.25 + 1000.0 * 15.0
-    turning *= 9.80665 * np.cos(np.radians(30.0))
-    run, rise = 3.0 - 1.2, -0.5 + 2.4
-    arm = (3.0 * rise - (-0.5 + 0.2) * run) / np.hypot(run, rise)
     force = results.trajectories["cylinder_force"]
     assert force.attrs == {
         "units": "N",
@@ -119,18 +127,20 @@ def test_every_model_stands_on_its_cylinder(path: Path) -> None:
     }
     for model in ("elements", "series", "rigid", "tied"):
         pressed = force.sel(model=model).values
-        assert pressed == pytest.approx(np.full(pressed.size, turning / arm), rel=1e-5)
+        assert pressed == pytest.approx(np.full(pressed.size, turning(boom) / ARM), rel=1e-5)
         assert results.summary.models[model].energy_residual < 1e-4
 
 
-def test_check_tells_how_far_its_dashpots_damp(
+def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(
     path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from rich.console import Console
-
-    from runs.pipeline.inferred import print_inferred
-
+    """Reference: analytic, the arm of its line about the pin, and the moment of the weights."""
     print_inferred(case_file.load(str(path)), Console(width=200))
-    out = capsys.readouterr().out
-    ratios = [line for line in out.splitlines() if " % at " in line]
-    assert len(ratios) == 4
+    told = capsys.readouterr().out
+    (row,) = (line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
+    _, x, length, arm, force = (cell.strip() for cell in row.strip("│").split("│"))
+    assert (x, length) == ("3", f"{np.hypot(1.8, 1.9):.4g}")
+    assert float(arm) == pytest.approx(ARM, rel=1e-3)
+    boom = build_boom(case_file.load(str(path)))
+    assert float(force) == pytest.approx(1e-3 * turning(boom) / ARM, rel=1e-3)
+    assert len([line for line in told.splitlines() if " % at " in line]) == 4
