@@ -27,6 +27,9 @@ from geometry.arrays import Array, Indices, Mask
 from geometry.boom import SAME_PLACE, Segment
 from geometry.section import Offset, Plate, Section
 
+# Part of a mesh's extent below which a coordinate is 0.
+_ROUND_OFF = 1.0e-12
+
 
 @dataclass(frozen=True, slots=True)
 class SegmentMesh:
@@ -291,6 +294,8 @@ def _edges(length: float, size: float) -> int:
 def _extract(surfaces: Sequence[Sequence[int]], plates: tuple[str, ...]) -> SegmentMesh:
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
+    # What is held in a mirror's plane must lie in it to the last bit.
+    coordinates[np.abs(coordinates) < _ROUND_OFF * np.ptp(coordinates)] = 0.0
     number = np.zeros(int(tags.max()) + 1, dtype=np.int64)
     number[tags] = np.arange(tags.size)
     triangles, walls = [], []

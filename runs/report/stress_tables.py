@@ -46,8 +46,8 @@ def wall_tables(results: Results) -> list[Table]:
     ]
     means = (
         "Means over the row of elements at x, at a mesh line of that towards the tip. Axial forces "
-        "pull; shear forces act on the part before the section, along z in the webs (right, left) "
-        "and along y in the flanges; moments about the section's y-axis pull at the top."
+        "pull; shear forces act on the part before the section, along each wall, upwards where it "
+        "is steep and else towards larger y; moments about the section's y-axis pull at the top."
     )
     title = "What the walls carry at the instant of the largest stress"
     return [Table(title, columns, (*largest, means), "walls")]

@@ -66,6 +66,8 @@ def test_meshes_are_their_own_images(name: str) -> None:
             mirror[COMPONENT[axis]] = -1.0
             distance, image = cKDTree(mesh.points).query(mesh.points * mirror)
             assert distance.max() < 1e-12
+            across = np.abs(mesh.points[:, COMPONENT[axis]])
+            assert across[across < 1e-9].max() == 0.0
             assert set(map(tuple, np.sort(image[mesh.triangles], axis=1).tolist())) == set(
                 map(tuple, np.sort(mesh.triangles, axis=1).tolist())
             )
