@@ -16,13 +16,14 @@ from geometry.boom import Boom
 from geometry.cylinder import force_name
 from runs.case.build import joined
 from runs.case.schema import Case
+from runs.case.units import System
 
 KILO, MILLI = 1.0e3, 1.0e-3
 
 
 def print_statics(case: Case, boom: Boom, console: Console) -> None:
     """Print masses, and the boom at rest under the loads of t = 0, as beam elements."""
-    console.print(_masses(boom))
+    console.print(_masses(boom, case.system))
     with_play = next((model for model in case.models if not model.play_free), None)
     laws = joined(case, boom, with_play or case.models[0])
     tied = replace(boom, joints=tuple(joint.without_play for joint in boom.joints))
@@ -30,32 +31,41 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
         with np.errstate(all="ignore"):
             held = at_rest(tied, [], [])
             played = at_rest(boom, laws.laws, laws.lateral_laws) if with_play else held
-            console.print(_holds(boom, played))
+            console.print(_holds(boom, played, case.system))
             if boom.cylinders:
-                console.print(_cylinders(boom, played))
+                console.print(_cylinders(boom, played, case.system))
             console.print(_line(played, held), highlight=False)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         console.print("No rest under the loads of t = 0 is found.")
 
 
-def _masses(boom: Boom) -> Table:
+def _masses(boom: Boom, system: System) -> Table:
     """Of each segment with what it carries, and of all."""
-    table = Table("mass", "segment (kg)", "on it (kg)", "middle (m)")
+    kg, m = system.label("kg"), system.label("m")
+    table = Table("mass", f"segment ({kg})", f"on it ({kg})", f"middle ({m})")
+
+    def mass(value: float) -> str:
+        return f"{system.of(value, 'kg'):.4g}"
+
+    def place(value: float) -> str:
+        return f"{system.of(value, 'm'):.5g}"
+
     whole, moment = 0.0, 0.0
     for segment in boom.segments:
         own, carried = segment.mass_per_length * segment.length, segment.masses
         here = own + sum(point.mass for point in carried)
         middle = own * 0.5 * (segment.start + segment.end)
         middle += sum(point.mass * point.x for point in carried)
-        table.add_row(segment.name, f"{own:.4g}", f"{here - own:.4g}", f"{middle / here:.4g}")
+        table.add_row(segment.name, mass(own), mass(here - own), place(middle / here))
         whole, moment = whole + here, moment + middle
-    table.add_row("all", f"{whole:.4g}", "", f"{moment / whole:.4g}")
+    table.add_row("all", mass(whole), "", place(moment / whole))
     return table
 
 
-def _holds(boom: Boom, rest: Rest) -> Table:
+def _holds(boom: Boom, rest: Rest, system: System) -> Table:
     """Forces on the segments where something holds them, and how deep contacts are pressed."""
-    table = Table("holds at rest", "x (m)", "force (kN)", "moment (kN m)", "pressed in (mm)")
+    x = f"x ({system.label('m')})"
+    table = Table("holds at rest", x, "force (kN)", "moment (kN m)", "pressed in (mm)")
     reacting = {(joint.outer, x) for joint in boom.joints for x in joint.stations}
     gaps = rest.system.rows @ rest.position
     pressed = dict.fromkeys(range(len(boom.stations)), 0.0)
@@ -68,7 +78,7 @@ def _holds(boom: Boom, rest: Rest) -> Table:
         depth = f"{deep[hold.x] / MILLI:.3g}" if hold.x in deep else ""
         table.add_row(
             boom.segments[hold.segment].name,
-            f"{hold.x:g}",
+            f"{system.of(hold.x, 'm'):g}",
             f"{hold.force / KILO:.4g}",
             moment,
             depth,
@@ -76,17 +86,19 @@ def _holds(boom: Boom, rest: Rest) -> Table:
     return table
 
 
-def _cylinders(boom: Boom, rest: Rest) -> Table:
+def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
     """Their lines, and the forces along them: of two side by side together."""
-    table = Table("cylinder of", "x (m)", "length (m)", "arm (m)", "force (kN)")
+    lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
+    table = Table("cylinder of", *lengths, "force (kN)")
     for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
         force = float(rest.system.observers[force_name(number)].row @ rest.position)
+        arm = None if segment.foot is None else cylinder.arm(segment.foot)
         table.add_row(
             segment.name,
-            f"{cylinder.x:g}",
-            f"{cylinder.length:.4g}",
-            "" if segment.foot is None else f"{cylinder.arm(segment.foot):.4g}",
+            f"{system.of(cylinder.x, 'm'):g}",
+            f"{system.of(cylinder.length, 'm'):.5g}",
+            "" if arm is None else f"{system.of(arm, 'm'):.5g}",
             f"{force / KILO:.4g}",
         )
     return table

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 NAME = "frequencies"
 MODES = 3
+# Of them in a terminal of 80 columns.
+SHOWN = 2
 JOINTS = ("pressed", "tied")
 
 _NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
@@ -110,19 +112,23 @@ def chart(
 
 
 def table(data: xr.Dataset) -> Table:
-    """The frequencies of each point and model."""
+    """The lowest frequencies of each point and model."""
     stacked = data["frequency"].stack(
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )
     rows = stacked["row"].to_index().to_frame()
-    columns = [Column(str(key), [f"{x:g}" for x in rows[key]]) for key in rows if key != "model"]
+    columns = [
+        Column(str(key).replace(".", ".\n"), [f"{x:g}" for x in rows[key]])
+        for key in rows
+        if key != "model"
+    ]
     columns.insert(0, Column("model", [str(name) for name in rows["model"]]))
     for joints in JOINTS:
-        for mode in data["mode"].values:
+        for mode in data["mode"].values[:SHOWN]:
             of_mode = stacked.sel(joints=joints, mode=mode).values
             cells = [float(f) if np.isfinite(f) else None for f in of_mode]
-            columns.append(Column(f"{joints}\n{mode}, Hz", cells, ".4g"))
-    return Table("First frequencies", columns, name=NAME)
+            columns.append(Column(f"{joints}\nmode {mode}", cells, ".4g"))
+    return Table("First frequencies of the boom in Hz", columns, name=NAME)
 
 
 def write(data: xr.Dataset, folder: Path) -> None:

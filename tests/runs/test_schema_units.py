@@ -212,6 +212,7 @@ def test_check_shows_the_units_of_the_case() -> None:
         assert part in text
     assert "2.183e+08" in text
     assert "stations (mm)" in text
+    assert "segment (t)" in text
     assert "8500, 9700" in text
 
 
