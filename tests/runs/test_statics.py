@@ -26,7 +26,7 @@ def test_masses_forces_and_tips_are_those_of_hand(capsys: pytest.CaptureFixture[
     """
     lines = told(case_file.load(str(CASES / "coarse.toml")), capsys)
     assert "outer 831.6 0 5" in lines
-    assert "all 1382 8.586" in lines
+    assert "all 1382 8.5855" in lines
     for row in (
         "outer 0 4.552",
         "outer 2 -5.934",
