@@ -10,9 +10,10 @@ import numpy as np
 from scipy.linalg import block_diag, null_space
 
 from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
+from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
-from geometry.cylinder import ground_lines
+from geometry.cylinder import GroundLine, ground_lines
 
 # One component of one segment.
 _Part = tuple[int, Motion]
@@ -31,7 +32,8 @@ class BoomModes:
         models: one for each segment.
 
     Attributes:
-        omega2: (num_modes,) ω² in rad²/s², rigid modes exactly 0.
+        omega2: (num_modes,) ω² in rad²/s², rigid modes exactly 0; negative where an axial force
+            tips a segment over.
         load: (num_modes,) the segments' own uniform loads in N/√kg.
         damping: (num_modes,) diagonal of the modal damping matrix in 1/s, exact where the
             damping is proportional to the mass.
@@ -47,6 +49,11 @@ class BoomModes:
         for group in _groups(boom):
             components = [models[i].components[motion] for i, motion in group]
             modes = _group_modes(boom, group, components)
+            geometric = block_diag(*(component.softening for component in components))
+            if geometric.any():
+                taken = modes.shapes.T @ geometric @ modes.shapes
+                softer, combination = softened(modes.omega2, taken)
+                modes = Modes(softer, modes.shapes @ combination)
             columns = slice(first, first + modes.omega2.size)
             first = columns.stop
             sizes = np.cumsum([len(component.load) for component in components])
@@ -114,6 +121,27 @@ class BoomModes:
         return whole
 
 
+def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
+    """Of the axial forces of the play-free boom, see :mod:`dynamics.second_order`.
+
+    Infinite without such forces; None where something moves that nothing holds.
+    """
+    boom = boom.play_free
+    smallest = np.inf
+    for group in _groups(boom):
+        components = [models[i].components[motion] for i, motion in group]
+        geometric = block_diag(*(component.softening for component in components))
+        if not geometric.any():
+            continue
+        if (_group_modes(boom, group, components).omega2 == 0.0).any():
+            return None
+        ties, pulled = _holds(boom, group, components)
+        stiffness, free = _held_stiffness(components, pulled), _free(ties, len(geometric))
+        factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
+        smallest = min(smallest, factor)
+    return smallest
+
+
 def _groups(boom: Boom) -> list[list[_Part]]:
     """What has its modes together: segments that tied joints connect, in each motion.
 
@@ -168,9 +196,10 @@ class _Body:
         )
 
 
-def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
-    """Modes of components side by side that keep ties at zero and pull at cylinders."""
-    apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
+def _holds(
+    boom: Boom, group: Sequence[_Part], components: Sequence[Component]
+) -> tuple[list[Array], list[GroundLine]]:
+    """Of a group: rows (num_dofs,) that ties keep at zero, and the cylinders that pull at it."""
     bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
     ties = [
         bodies[joint.inner].at(motion, x) - bodies[joint.outer].at(motion, x)
@@ -180,9 +209,27 @@ def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Compon
         if (joint.outer, motion) in group
         for x in joint.stations
     ]
-    pulled = [
-        line for line in ground_lines(boom, bodies) if line.stiffness > 0.0 and line.push.any()
-    ]
+    lines = ground_lines(boom, bodies)
+    return ties, [line for line in lines if line.stiffness > 0.0 and line.push.any()]
+
+
+def _held_stiffness(components: Sequence[Component], pulled: Sequence[GroundLine]) -> Array:
+    """(num_dofs, num_dofs) with the springs of cylinders."""
+    stiffness = block_diag(*(c.stiffness for c in components))
+    for line in pulled:
+        stiffness += line.stiffness * np.outer(line.push, line.push)
+    return np.asarray(stiffness)
+
+
+def _free(ties: Sequence[Array], num_dofs: int) -> Array:
+    """(num_dofs, num_free) motions that keep the ties at zero."""
+    return null_space(np.array(ties)) if ties else np.eye(num_dofs)
+
+
+def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
+    """Modes of components side by side that keep ties at zero and pull at cylinders."""
+    apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
+    ties, pulled = _holds(boom, group, components)
     if not ties and not pulled and len(apart) == 1:
         return apart[0]
     rigid = block_diag(
@@ -192,10 +239,8 @@ def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Compon
     held = np.array([*ties, *(line.push for line in pulled)]).reshape(-1, len(rigid)) @ rigid
     bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
     rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
-    stiffness = block_diag(*(c.stiffness for c in components))
-    for line in pulled:
-        stiffness += line.stiffness * np.outer(line.push, line.push)
+    stiffness = _held_stiffness(components, pulled)
     mass = block_diag(*(c.mass for c in components))
-    free = null_space(np.array(ties)) if ties else np.eye(len(mass))
+    free = _free(ties, len(mass))
     modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
     return Modes(modes.omega2, free @ modes.shapes)

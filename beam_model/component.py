@@ -35,6 +35,8 @@ class Component:
         turning: (num_dofs,) the momentum that turning about x = 0 by 1 rad/s gives the mass per
             length and the rotary inertia, in N·s; none of a twist.
         breaks: x in m between which rows are polynomials.
+        geometric: (num_dofs, num_dofs) K_G, what the axial force takes from the stiffness; none
+            where there is no such force.
         rigid_modes: how many motions the supports leave free of strain.
     """
 
@@ -48,6 +50,12 @@ class Component:
     rotation: Callable[[float], Array] | None = None
     turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
+    geometric: Array | None = None
+
+    @property
+    def softening(self) -> Array:
+        """(num_dofs, num_dofs) K_G."""
+        return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 
     def rotation_at(self, x: float) -> Array:
         """(num_dofs,) row that reads the rotation of the cross-section at x in m."""

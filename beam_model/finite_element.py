@@ -52,7 +52,8 @@ def finite_element_segment(
     """Assemble one segment.
 
     Args:
-        segment: a beam; its supports and masses get nodes. With lateral numbers it deflects
+        segment: a beam; its supports and masses get nodes, and so do the ends of the pieces of its
+            axial force. With lateral numbers it deflects
             along y and twists as well.
         element_length: largest length of an element in m.
         breaks: further x in m that get nodes: stations.
@@ -79,7 +80,7 @@ def finite_element_segment(
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
     """The deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
-    stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
+    stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, turning = np.zeros((2, num_dofs))
     points, weights = _GAUSS
     for k, h in enumerate(np.diff(nodes)):
@@ -98,6 +99,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             mass[dofs, dofs] += segment.rotary_inertia * products(theta, weight)
             turning[dofs] += segment.rotary_inertia * theta @ weight
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
+        geometric[dofs, dofs] += products(slope, weight * segment.compression(nodes[k] + h * xi))
         unit_load[dofs] += w @ weight
 
     held = []
@@ -135,6 +137,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         turning=turning[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
+        geometric=geometric[block],
     )
 
 
@@ -174,7 +177,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
     """Equal elements between the places that must be nodes."""
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.masses]
-    inside = [x for x in (*own, *breaks) if segment.holds(x)]
+    inside = [x for x in (*own, *segment.compression.places, *breaks) if segment.holds(x)]
     places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
     places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE * segment.length])]
     spans = [

@@ -10,6 +10,7 @@ all polynomials that the supports admit, whatever the supports are.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -19,6 +20,7 @@ from scipy.linalg import null_space, rq
 from beam_model.component import Component, Motion, SegmentModel, products
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
+from geometry.compression import Compression
 
 Base = Literal["as printed", "pinned", "complete"]
 
@@ -125,7 +127,20 @@ def kantorovich_bending(
         rotation=basis.slope_at,
         turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
+        geometric=_geometric(segment.compression, basis.functions),
     )
+
+
+def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array:
+    """∫ P φ_i′ φ_j′ dx, exact for straight pieces of P."""
+    total = np.zeros((len(functions), len(functions)))
+    slopes = [function.deriv() for function in functions]
+    nodes, weights = np.polynomial.legendre.leggauss(max(f.degree() for f in functions) + 1)
+    for a, b in pairwise(compression.places):
+        x = a + 0.5 * (b - a) * (nodes + 1.0)
+        slope = np.array([function(x) for function in slopes])
+        total += products(slope, 0.5 * (b - a) * weights * compression(x))
+    return total
 
 
 def kantorovich_twist(segment: Segment, terms: int) -> Component:

@@ -8,7 +8,7 @@ are the flat boom and the one in space, which has more components and more pads.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
@@ -66,8 +66,7 @@ def gap_system(
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     """The play-free boom: every joint's segments move alike at its stations."""
-    tied = tuple(joint.without_play for joint in boom.joints)
-    return gap_system(replace(boom, joints=tied), models, ())
+    return gap_system(boom.play_free, models, ())
 
 
 def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:

@@ -25,6 +25,9 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.load import Member
 
+# Of the longest segment, where axial forces soften it.
+COMPRESSED_ELEMENTS = 20
+
 
 class Hold(NamedTuple):
     """What holds a segment at a place, along z in N and towards a larger slope in N·m."""
@@ -66,8 +69,7 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
     """
     known = all(segment.section is not None for segment in boom.segments)
     theory: Theory = "timoshenko" if known else "euler-bernoulli"
-    longest = max(segment.length for segment in boom.segments)
-    models = finite_element_segments(boom, longest, theory, rotary_inertia=False)
+    models = finite_element_segments(boom, _size(boom), theory, rotary_inertia=False)
     system = gap_system(boom, models, laws, lateral_laws).gathered()
     now = np.zeros(1)
     load = system.load + sum(x.history(now)[0] * x.load for x in system.excitations)
@@ -79,6 +81,12 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
         for hold in _holds(boom, number, theory, modes, position)
     ]
     return Rest(system, position, holds)
+
+
+def _size(boom: Boom) -> float:
+    """Of elements in m: the longest are exact in statics but for axial forces."""
+    longest = max(segment.length for segment in boom.segments)
+    return longest / COMPRESSED_ELEMENTS if boom.compressed else longest
 
 
 def _holds(
@@ -93,7 +101,7 @@ def _holds(
     places |= {x for joint in joints for x in joint.stations}
     alone = replace(segment, supports=())
     model = finite_element_segment(
-        alone, segment.length, [*places, *boom.stations_of(number)], theory, rotary_inertia=False
+        alone, _size(boom), [*places, *boom.stations_of(number)], theory, rotary_inertia=False
     )
     component = model.components["z"]
     nodes = component.breaks
@@ -107,7 +115,8 @@ def _holds(
         # What is over by t = 0 has no values.
         if given.segment == number and given.direction == "z" and callable(given.history):
             load += given.history(np.zeros(1))[0] * given.push(_Bare(component))
-    left = (component.stiffness @ np.array(bent) - load).reshape(-1, 2)
+    stiffness = component.stiffness - component.softening
+    left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()])) for x in sorted(places)]
 
 

@@ -70,10 +70,10 @@ def with_ratio(system: GapSystem, ratio: float) -> GapSystem:
         system: of a boom, with its own damping, to which this is added.
         ratio: ζ of the first ``DAMPED_MODES``, or of as many as its segments can bend.
     """
-    rigid = system.omega2 == 0.0
+    rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
     omega, shapes = (part[..., :count] for part in pressed_modes(system))
-    own = np.where(rigid, 0.5 * omega[0], np.sqrt(system.omega2))
+    own = np.where(rigid, 0.5 * omega[0], system.omega)
     bent = np.where(rigid[:, None], 0.0, shapes)
     asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
     found = bent.T @ (own[:, None] * bent)

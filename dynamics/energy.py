@@ -36,7 +36,8 @@ def energy_residual(energies: Array, least: float = 0.0) -> Array:
     initial = float(energies[0, :3].sum())
     # No product of BLAS, whose last bits depend on where in memory the energies lie.
     missing = (energies * signs).sum(axis=1) - initial
-    put_in = max(float(np.abs(work).max()), abs(initial), least)
+    # Axial forces do work as a segment tips over: its strain energy falls below zero.
+    put_in = max(float(np.abs(work).max()), abs(initial), -float(energies[:, 1].min()), least)
     return np.asarray(missing / put_in if put_in > 0.0 else missing)
 
 

@@ -2,7 +2,8 @@
 """Where a gap system comes to rest under a constant load.
 
 Strain and contact energies are convex, so that the rest position is the minimum of the potential
-energy. Dry friction would leave a whole range of rest positions; this is the one without it.
+energy; under axial forces, which let a segment tip within its play, it is a near one. Dry friction
+would leave a whole range of rest positions; this is the one without it.
 """
 
 from __future__ import annotations
@@ -54,8 +55,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     unit = float(np.linalg.norm(scaled_load))
     scaled_load /= unit
     rows = np.ascontiguousarray(solve_triangular(factor, system.rows.T, lower=True).T)
-    half = solve_triangular(factor, np.diag(np.sqrt(system.omega2)), lower=True)
-    stiffness = half @ half.T
+    half = solve_triangular(factor, np.diag(np.sqrt(np.abs(system.omega2))), lower=True)
+    stiffness = (half * np.sign(system.omega2)) @ half.T
 
     y, forces = np.zeros((2, len(system.laws)))
 

@@ -203,6 +203,8 @@ def _march(
 
 def what_hinders(system: GapSystem) -> str | None:
     """What of a system cannot be moved from contact to contact; None if all can."""
+    if (system.omega2 < 0.0).any():
+        return "a segment that tips over under an axial force has no closed form here"
     if system.damped:
         return "a damped system has no closed form from contact to contact"
     if not all(excitation.constant for excitation in system.excitations):

@@ -60,7 +60,8 @@ class GapSystem:
     (1, array([1.]))
 
     Args:
-        omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0.
+        omega2: (num_modes,) ω² in rad²/s²; rigid modes exactly 0, negative where a segment tips
+            over under an axial force.
         load: (num_modes,) modal load in N/√kg, applied at t = 0 and kept.
         rows: (num_rows, num_modes) contact rows B in 1/√kg.
         laws: (num_rows) the contact law of each row.
@@ -139,8 +140,8 @@ class GapSystem:
                 f"station_directions must be one for each of {places} stations, "
                 f"got {len(self.station_directions)}"
             )
-        if (self.omega2 < 0.0).any() or (self.damping < 0.0).any():
-            raise ValueError("omega2 and damping must not be negative")
+        if (self.damping < 0.0).any():
+            raise ValueError("damping must not be negative")
 
     @property
     def num_modes(self) -> int:
@@ -163,9 +164,14 @@ class GapSystem:
         return np.diag(self.damping) + self.dashpots.T @ self.dashpots
 
     @property
+    def omega(self) -> Array:
+        """(num_modes,) ω in rad/s; 0 of modes that do not swing."""
+        return np.asarray(np.sqrt(np.maximum(self.omega2, 0.0)))
+
+    @property
     def frequencies(self) -> Array:
         """(num_modes,) natural frequencies without contact in Hz, rising."""
-        return np.sort(np.sqrt(self.omega2)) / (2.0 * np.pi)
+        return np.sort(self.omega) / (2.0 * np.pi)
 
     @property
     def row_masses(self) -> Array:
@@ -193,6 +199,6 @@ class GapSystem:
         Raises:
             ValueError: the system has rigid modes.
         """
-        if (self.omega2 == 0.0).any():
+        if (self.omega2 <= 0.0).any():
             raise ValueError("a system with rigid modes has no static response")
         return force / self.omega2

@@ -63,4 +63,5 @@ class Motion:
     @property
     def initial_speeds(self) -> Array:
         """(num_modes,) √(v² + ω² a²), the speed that each mode reaches from its initial state."""
-        return np.asarray(np.sqrt(self.velocity**2 + self.system.omega2 * self.position**2))
+        strained = np.maximum(self.system.omega2, 0.0) * self.position**2
+        return np.asarray(np.sqrt(self.velocity**2 + strained))

@@ -71,7 +71,7 @@ def _closing_bounds(
 
     A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
     under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
-    than the change over ω. Rigid modes fall.
+    than the change over ω. Rigid modes fall; those that tip over do so by cosh κt, κ² = −ω².
     """
     reach = np.empty(a.size)
     for i in range(a.size):
@@ -87,8 +87,10 @@ def _closing_bounds(
             if omega2[i] > 0.0:
                 swing += abs(rows[j, i]) * reach[i]
             else:
-                speed += abs(rows[j, i] * v[i])
-                fall += abs(rows[j, i]) * (abs(load[i] + now[i]) + abs(then[i] - now[i]))
+                tips = np.cosh(np.sqrt(-omega2[i]) * duration)
+                pull = abs(load[i] + now[i] - omega2[i] * a[i]) + abs(then[i] - now[i])
+                speed += tips * abs(rows[j, i] * v[i])
+                fall += tips * abs(rows[j, i]) * pull
         bounds[j] = swing + speed + fall * duration
 
 

@@ -28,7 +28,7 @@ def modal_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
     Excitations count with their largest value, as if it came at once. Rigid modes keep their
     initial speed.
     """
-    load, omega = system.largest_load, np.sqrt(system.omega2)
+    load, omega = system.largest_load, system.omega
     return np.asarray(np.divide(load, omega, out=np.zeros(load.size), where=omega > 0.0) + initial)
 
 
@@ -42,7 +42,7 @@ def closing_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
         system: with contact rows.
         initial: (num_modes,) ``Motion.initial_speeds``; at rest unless given.
     """
-    rigid = system.omega2 == 0.0
+    rigid = system.omega2 <= 0.0
     loads = [(system.load, 1.0), *((x.load, x.history.peak) for x in system.excitations)]
     fall = sum(np.abs(system.rows[:, rigid] @ load[rigid]) * peak for load, peak in loads)
     play = np.array([2.0 * max(law.clearance, 0.0) for law in system.laws])
@@ -69,7 +69,7 @@ def sliding_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Arra
     """(num_frictions,) mean ω of the modes in a friction row in rad/s, weighted by their speeds."""
     weights = np.abs(system.friction_rows) * modal_speeds(system, initial)
     total = weights.sum(axis=1)
-    change = weights @ np.sqrt(system.omega2)
+    change = weights @ system.omega
     return np.asarray(np.divide(change, total, out=np.zeros(total.size), where=total > 0.0))
 
 
@@ -95,7 +95,7 @@ def contact_step(
     if system.laws or system.frictions:
         # An impulse every half period of a mode pumps it (García-Archilla et al. 1999): stay well
         # away from that for all modes, however soft the contact.
-        frequencies.append(phase * float(np.sqrt(system.omega2.max())))
+        frequencies.append(phase * float(system.omega.max()))
     if system.dashpots.size:
         frequencies.append(phase / DRAGGED * float(np.linalg.norm(system.dashpots, 2) ** 2))
     fastest = max(frequencies, default=0.0)

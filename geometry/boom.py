@@ -7,7 +7,7 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from geometry.cylinder import Cylinder, forces
@@ -120,6 +120,17 @@ class Boom:
     def spatial(self) -> bool:
         """Whether the segments move along y and twist, too."""
         return any(joint.lateral_clearance is not None for joint in self.joints)
+
+    @property
+    def play_free(self) -> Boom:
+        """The same with all joints tied."""
+        tied = tuple(joint.without_play for joint in self.joints)
+        return replace(self, joints=tied)
+
+    @property
+    def compressed(self) -> bool:
+        """Whether a segment carries an axial force."""
+        return any(segment.compression for segment in self.segments)
 
     @property
     def directions(self) -> tuple[Direction, ...]:
@@ -297,7 +308,7 @@ class Boom:
     def _check_loads(self) -> None:
         for number, load in enumerate(self.loads, start=1):
             for key, x in load.places.items():
-                _check_place(f"load[{number}].{key}", x, self.segments[load.segment])
+                check_place(f"load[{number}].{key}", x, self.segments[load.segment])
             if load.direction == "y" and not self.spatial:
                 raise BoomError(
                     f"load[{number}].direction",
@@ -308,7 +319,7 @@ class Boom:
     def _check_stops(self) -> None:
         for number, stop in enumerate(self.stops, start=1):
             segment = self.segments[stop.segment]
-            _check_place(f"stop[{number}].x", stop.x, segment)
+            check_place(f"stop[{number}].x", stop.x, segment)
             self._check_contact_length(f"stop[{number}]", stop)
             for support in segment.supports:
                 near = SAME_PLACE * segment.length
@@ -329,7 +340,7 @@ class Boom:
                     f"{place.name!r} is the name of another output already; give it its own",
                 )
             own.add(place.name)
-            _check_place(f"{where}.x", place.x, self.segments[place.segment])
+            check_place(f"{where}.x", place.x, self.segments[place.segment])
             if place.quantity in ("lateral", "twist") and not self.spatial:
                 raise BoomError(
                     f"{where}.quantity",
@@ -340,7 +351,7 @@ class Boom:
     def _check_cylinders(self) -> None:
         for number, cylinder in enumerate(self.cylinders, start=1):
             where = f"cylinder[{number}]"
-            _check_place(f"{where}.x", cylinder.x, self.segments[cylinder.segment])
+            check_place(f"{where}.x", cylinder.x, self.segments[cylinder.segment])
             cylinder.check(where, self.spatial)
 
 
@@ -374,6 +385,12 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
     near = SAME_PLACE * outer.length
     if any(right - left <= near for left, right in pairwise(joint.stations)):
         raise BoomError(f"{where}.stations", "must rise from the base to the tip, each given once")
+    if joint.locked_at is not None and not outer.start - near <= joint.locked_at <= end + near:
+        raise BoomError(
+            f"{where}.locked_at",
+            f"{joint.locked_at:g} m is no place at which {inner.name!r} is locked in "
+            f"{outer.name!r}; it must be between {outer.start:g} and {end:g} m",
+        )
     check_room(where, joint, outer, inner)
 
 
@@ -414,7 +431,17 @@ def _check_friction(where: str, joint: Joint, spatial: bool) -> None:
         )
 
 
-def _check_place(where: str, x: float, segment: Segment) -> None:
+def check_place(where: str, x: float, segment: Segment) -> None:
+    """Whether a place is on a segment.
+
+    Args:
+        where: its key.
+        x: m.
+        segment: whose name the message tells.
+
+    Raises:
+        BoomError: it is not.
+    """
     if not segment.holds(x):
         raise BoomError(
             where,

@@ -40,6 +40,9 @@ class Joint:
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
         contact_length: of these in m; a tenth of the overlap unless given.
         dashpot: of each station along each direction in N·s/m, across the play.
+        locked_at: x in m where the inner segment's axial force enters the outer one, at a pin;
+            below the inner segment, the foot of the cylinder that pushes its tail. The tail unless
+            given.
     """
 
     outer: int
@@ -53,6 +56,7 @@ class Joint:
     pad: PadSize | None = None
     contact_length: float | None = None
     dashpot: float = 0.0
+    locked_at: float | None = None
 
     @property
     def without_play(self) -> Joint:

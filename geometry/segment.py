@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, Literal
 
+from geometry.compression import UNPRESSED, Compression
 from geometry.section import Direction, Section
 
 # Two places closer than this part of a segment's length are one: far below any plate, far above
@@ -184,6 +185,7 @@ class Segment:
         lateral: what a boom in space needs.
         collars, diaphragms: what stiffens the plates; beams do not know of them, and the numbers
             above are those of the plain box.
+        compression: the axial force that it carries, see :func:`geometry.axial.with_compression`.
     """
 
     name: str
@@ -201,6 +203,7 @@ class Segment:
     lateral: Lateral | None = None
     collars: tuple[Collar, ...] = ()
     diaphragms: tuple[Diaphragm, ...] = ()
+    compression: Compression = UNPRESSED
 
     @classmethod
     def of_section(

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
     from dynamics.sided_contact import SidedContact as SidedContact
     from dynamics.trajectory import Trajectory as Trajectory
+    from geometry.axial import Thrust as Thrust
+    from geometry.axial import with_compression as with_compression
     from geometry.boom import Boom as Boom
     from geometry.boom import BoomError as BoomError
     from geometry.boom import Cylinder as Cylinder
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from geometry.boom import Load as Load
     from geometry.boom import PadSize as PadSize
     from geometry.boom import Stop as Stop
+    from geometry.compression import Compression as Compression
     from geometry.observation import Observation as Observation
     from geometry.polygon import PolygonSection as PolygonSection
     from geometry.polygon import closed_polygon as closed_polygon
@@ -97,7 +100,9 @@ _HOMES = {
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.trajectory": "Trajectory",
+        "geometry.axial": "Thrust with_compression",
         "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize Stop",
+        "geometry.compression": "Compression",
         "geometry.observation": "Observation",
         "geometry.polygon": "PolygonSection closed_polygon",
         "geometry.profiles": "hexagon octagon u_section",

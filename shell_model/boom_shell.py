@@ -227,6 +227,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
     seen = (place.x for place in boom.observations if place.segment == number)
     breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
+    breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.section, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))

@@ -102,6 +102,8 @@ class ShellForms:
             unless given.
         shear_correction: part of G t that resists transverse shear; a large one is a thin shell
             after Kirchhoff and Love, whatever its thickness.
+        compression: membrane force along x in N/m, constant on each cell, positive where it
+            presses; none unless given.
 
     Attributes:
         loaded: as given; what it is when the load is assembled counts.
@@ -116,9 +118,11 @@ class ShellForms:
         drilling: float = DRILLING,
         loaded: Any | None = None,
         shear_correction: float = SHEAR_CORRECTION,
+        compression: Any | None = None,
     ) -> None:
         self._space, self._thickness, self._material = space, thickness, material
         self._drilling, self._shear_correction = drilling, shear_correction
+        self._compression = compression
         self.loaded = thickness if loaded is None else loaded
         self.load_direction = fem.Constant(space.mesh, np.zeros(3, dtype=PETSc.ScalarType))
 
@@ -152,6 +156,16 @@ class ShellForms:
         (u, theta), (v, eta) = self._trial_and_test()
         inertia = density * (t * ufl.inner(u, v) + t**3 / 12.0 * ufl.inner(theta, eta))
         return fem.form(inertia * ufl.dx(degree=4, domain=self._space.mesh))
+
+    @cached_property
+    def geometric(self) -> Any:
+        """Bilinear, to be assembled (num_dofs, num_dofs), in N/m for u and 0 for θ.
+
+        K_G: twice the work that the membrane forces do as a motion shortens the walls along x.
+        """
+        (u, _), (v, _) = self._trial_and_test()
+        work = self._compression * ufl.dot(ufl.grad(u)[:, 0], ufl.grad(v)[:, 0])
+        return fem.form(work * ufl.dx(degree=2, domain=self._space.mesh))
 
     @cached_property
     def unit_load(self) -> Any:

@@ -11,12 +11,14 @@ import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.mesh import SegmentMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
 from shell_model.contact.local_compliance import compliance, extrapolated_error
+from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
@@ -41,6 +43,8 @@ class ReducedShell:
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
             values for each coordinate), reduction, fields (of displacement and stress), mesh error.
         meshes: of the segments, on rank 0.
+        critical_factor: of the axial forces with the joints pressed, see
+            :func:`dynamics.second_order.buckling_factor`; infinite without any.
     """
 
     system: GapSystem
@@ -51,6 +55,7 @@ class ReducedShell:
     mesh_error: float
     seconds: dict[str, float]
     meshes: Sequence[SegmentMesh]
+    critical_factor: float | None = float("inf")
 
 
 def reduce_boom(
@@ -103,6 +108,7 @@ def reduce_boom(
         mesh_error=_largest(mesh_error),
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
+        critical_factor=_critical_factor(boom, full, reduced),
     )
 
 
@@ -135,6 +141,26 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
             for line in full.lines
         ],
     )
+
+
+def _critical_factor(
+    boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]
+) -> float | None:
+    """Of the boom without play. Collective.
+
+    Raises:
+        NumericsError: it is 1 or less, and the boom buckles.
+    """
+    if not boom.compressed:
+        return float("inf")
+    held = ties(boom.play_free, full.shells)
+    factor = BoomCoordinates(full.comm, full.shells, reduced, held, full.lines).critical_factor
+    if factor is not None and factor <= 1.0:
+        raise NumericsError(
+            f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "
+            "smaller, or the sections larger"
+        )
+    return factor
 
 
 def _compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:

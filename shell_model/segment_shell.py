@@ -36,12 +36,16 @@ _ROUND_OFF = 1.0e-10
 
 
 class Plates(NamedTuple):
-    """What plates are before they are matrices: function space, thickness, forms, supports."""
+    """What plates are before they are matrices: function space, thickness, forms, supports.
+
+    ``compressed``: whether they carry an axial force.
+    """
 
     space: Any
     thickness: Any
     forms: ShellForms
     holds: list[Any]
+    compressed: bool = False
 
 
 class Matrices:
@@ -74,6 +78,11 @@ class Matrices:
     @cached_property
     def mass(self) -> PETSc.Mat:
         return self._assembled(self.plates.forms.mass, 0.0, self._masses)
+
+    @cached_property
+    def geometric(self) -> PETSc.Mat:
+        nothing = Attached(self._masses.rows[:, :0], self._masses.factors[:0])
+        return self._assembled(self.plates.forms.geometric, 0.0, nothing)
 
     def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
         matrix = compat.assemble_matrix(form, self._holds, diagonal)
@@ -119,6 +128,14 @@ class Shell:
         at infinite frequency. Collective.
         """
         return self.matrices.mass
+
+    @property
+    def geometric(self) -> PETSc.Mat | None:
+        """(num_dofs, num_dofs) K_G, what axial forces take from the stiffness; None without any.
+
+        Collective.
+        """
+        return self.matrices.geometric if self.matrices.plates.compressed else None
 
     @property
     def num_dofs(self) -> int:
@@ -305,17 +322,21 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) 
     assert section is not None
     if mesh is not None:
         points, triangles = mesh.points, mesh.triangles
-        thicknesses = plate_thickness(segment, mesh), plain_thickness(section, mesh)
+        plain = plain_thickness(section, mesh)
+        # The plain walls carry the whole axial force, so that it is the same in each section.
+        force = segment.compression(points[triangles, 0].mean(axis=1))
+        of_cells = plate_thickness(segment, mesh), plain, force / section.area * plain
     else:
         points, triangles = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
-        thicknesses = None
+        of_cells = None
     domain = compat.create_triangle_mesh(comm, points, triangles)
-    thickness, plain = (
-        compat.cellwise_function(domain, values) for values in comm.bcast(thicknesses)
+    thickness, loaded, pressed = (
+        compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
     )
     space = compat.shell_space(domain)
-    forms = ShellForms(space, thickness, segment.material, loaded=plain)
-    return Plates(space, thickness, forms, _holds(space, segment, section))
+    forms = ShellForms(space, thickness, segment.material, loaded=loaded, compression=pressed)
+    holds = _holds(space, segment, section)
+    return Plates(space, thickness, forms, holds, bool(segment.compression))
 
 
 def _unheld(held: Array) -> Array:

@@ -38,7 +38,7 @@ class ModalFlow:
     @classmethod
     def over(cls, system: GapSystem, step: float) -> ModalFlow:
         """The flow of ``system`` without contact over ``step`` seconds."""
-        omega = np.sqrt(system.omega2)
+        omega = system.omega
         cosine = np.cos(omega * step)
         # h·sinc and h²·sinc²/2 reach through ω = 0, where the mode is rigid.
         sine = step * np.sinc(omega * step / np.pi)
@@ -47,8 +47,8 @@ class ModalFlow:
         ramp = step**2 * _lag(omega * step)
         mean = 0.125 * step**2 * (1.0 + half) * _lag(0.5 * omega * step)
         rows = np.array([cosine, sine, -system.omega2 * sine, cosine, rise, ramp, mean])
-        for i in np.flatnonzero(system.damping):
-            rows[:, i] = _damped_flow(float(omega[i]), float(system.damping[i]), step)
+        for i in np.flatnonzero((system.damping > 0.0) | (system.omega2 < 0.0)):
+            rows[:, i] = _general_flow(float(system.omega2[i]), float(system.damping[i]), step)
         aa, av, va, vv, rise, ramp, mean = rows
         return cls(aa, av, rise * system.load, va, vv, av * system.load, rise, ramp, mean)
 
@@ -65,16 +65,16 @@ def _lag(x: Array) -> Array:
     return np.asarray(0.5 * half**2 - (sinc + spherical_jn(2, x)) / 3.0)
 
 
-def _damped_flow(omega: float, damping: float, step: float) -> Array:
-    """(7,) aa, av, va, vv, rise, ramp, mean of one damped mode.
+def _general_flow(omega2: float, damping: float, step: float) -> Array:
+    """(7,) aa, av, va, vv, rise, ramp, mean of one damped mode, or of one that tips over.
 
     By the matrix exponential: its closed forms cancel where damping or step is small. Lengths are
     scaled so that both unknowns are velocities.
     """
-    scale = max(omega, 1.0 / step)
+    scale = max(np.sqrt(np.abs(omega2)), 1.0 / step)
     generator = np.zeros((5, 5))
     generator[0, 1] = scale
-    generator[1] = [-(omega**2) / scale, -damping, 1.0, 0.0, 0.0]
+    generator[1] = [-omega2 / scale, -damping, 1.0, 0.0, 0.0]
     generator[2, 3] = generator[3, 4] = 1.0 / step
     (aa, av, rise, ramp, mean), (va, vv, _, _, _), _, _, _ = expm(step * generator)
     return np.array([aa, av / scale, va * scale, vv, rise / scale, ramp / scale, mean / scale])
@@ -89,7 +89,7 @@ def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: floa
     """
     for i in range(omega2.size):
         c, square = damping[i], omega2[i]
-        doublings = max(0.0, np.ceil(np.log2(time * (c + np.sqrt(square)) + 1.0e-300)))
+        doublings = max(0.0, np.ceil(np.log2(time * (c + np.sqrt(abs(square))) + 1.0e-300)))
         t = time / 2.0**doublings
         older, newer = 0.0, t  # terms of x's derivatives at 0
         sine, rise, fall, drift = t, 0.5 * t * t, t * t * t / 6.0, t * t * t * t / 24.0

@@ -6,17 +6,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import cosdg
+from scipy.special import cosdg, sindg
 
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import BoomError, Cylinder, Direction, Segment, Stop
+from geometry.axial import Thrust
+from geometry.boom import BoomError, Cylinder, Direction, Segment, Stop, check_place
 from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
 from runs.case.places import at
-from runs.case.schema import Case, GravityTable, HistoryTable, LoadTable, VelocityTable
+from runs.case.schema import (
+    AxialTable,
+    Case,
+    GravityTable,
+    HistoryTable,
+    LoadTable,
+    PayloadTable,
+    VelocityTable,
+)
 
 STANDARD_GRAVITY = 9.80665
 
@@ -41,9 +50,8 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     ]
     last = len(segments) - 1
     if case.payload is not None and case.gravity is None:
-        gravity = STANDARD_GRAVITY if case.payload.gravity is None else case.payload.gravity
-        if gravity > 0.0:
-            weight = -case.payload.mass * gravity
+        weight = -case.payload.mass * _weighing(case.payload)
+        if weight < 0.0:
             given.append(Load(last, "z", weight, segments[last].end, Step()))
     if case.gravity is not None:
         given += _felt(-across(case.gravity), "z", Step(), segments)
@@ -103,8 +111,64 @@ def _felt(
 
 def across(gravity: GravityTable) -> float:
     """g cos θ in m/s², towards −z."""
-    # That of 90° would be 6e-17.
     return gravity.acceleration * float(cosdg(gravity.angle))
+
+
+def along(gravity: GravityTable) -> float:
+    """g sin θ in m/s², towards the base."""
+    return gravity.acceleration * float(sindg(gravity.angle))
+
+
+def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
+    """The forces along the boom but for weights.
+
+    Raises:
+        BoomError: a name that is no segment, a place that is not on it, a rope that carries
+            nothing, a force given in two ways or none.
+    """
+    return tuple(
+        _thrust(f"axial[{number}]", table, case, segments)
+        for number, table in enumerate(case.axial, start=1)
+    )
+
+
+def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
+    index = len(segments) - 1
+    if table.segment is not None:
+        index = _segment(f"{where}.segment", table.segment, segments)
+    ends = segments[index].start, segments[index].end
+    place = segments[index].end if table.x is None else at(table.x, *ends)
+    check_place(f"{where}.x", place, segments[index])
+    return Thrust(index, place, _pull(where, table, case))
+
+
+def _pull(where: str, table: AxialTable, case: Case) -> float:
+    """What it presses with in N."""
+    if table.force is not None:
+        for key in ("falls", "mass"):
+            if getattr(table, key) is not None:
+                raise BoomError(f"{where}.{key}", "force is given; leave one of them out")
+        return table.force
+    if table.falls is None:
+        raise BoomError(
+            f"{where}.force",
+            "missing; it is the force in N towards the base, or give the falls of a hoist rope",
+        )
+    mass = case.payload.mass if table.mass is None and case.payload is not None else table.mass
+    if mass is None:
+        raise BoomError(
+            f"{where}.mass",
+            "missing, and there is no payload; it is the mass in kg that the rope carries",
+        )
+    gravity = _weighing(case.payload) if case.gravity is None else case.gravity.acceleration
+    return mass * gravity / table.falls
+
+
+def _weighing(payload: PayloadTable | None) -> float:
+    """By how many m/s² a payload weighs by itself."""
+    if payload is None or payload.gravity is None:
+        return STANDARD_GRAVITY
+    return payload.gravity
 
 
 def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dynamics.contact import ContactLaw
 from dynamics.energy import ENERGIES
 from dynamics.trajectory import OF_STATIONS
+from geometry.axial import with_compression
 from geometry.boom import (
     Boom,
     BoomError,
@@ -58,6 +59,8 @@ def build_boom(case: Case) -> Boom:
     segments = tuple(
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
+    along = 0.0 if case.gravity is None else actions.along(case.gravity)
+    segments = with_compression(segments, joints, actions.thrusts(case, segments), along)
     return Boom(
         segments,
         joints,
@@ -176,6 +179,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         pad=None if table.pad is None else table.pad.size,
         contact_length=table.contact_length,
         dashpot=table.dashpot,
+        locked_at=None if table.locked_at is None else at(table.locked_at, tail, head),
     )
 
 

@@ -231,6 +231,12 @@ class JointTable(Table):
         description="the table of the slide pads' size, which shells alone heed; the corners of "
         "the boxes along contact_length unless given",
     )
+    locked_at: Place | None = Field(
+        None,
+        description="the x in m where the inner segment's axial force enters the outer one: of a "
+        "locking pin, or, below the inner segment, of the foot of the cylinder that pushes its "
+        "tail; the tail unless given",
+    )
     contact_length: Length | None = Field(
         None,
         description="the length along x in m on which stations press the corners, as long as a "

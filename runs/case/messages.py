@@ -32,6 +32,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "stop": schema.StopTable,
     "cylinder": schema.CylinderTable,
     "load": schema.LoadTable,
+    "axial": schema.AxialTable,
     "payload": schema.PayloadTable,
     "gravity": schema.GravityTable,
     "base": schema.BaseTable,
@@ -44,7 +45,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
 }
 
 # Keys of the case that are arrays of tables.
-_ARRAYS = ("segment", "joint", "stop", "load", "base", "observe", "model")
+_ARRAYS = ("segment", "joint", "stop", "load", "axial", "base", "observe", "model")
 
 # Names that a message lists of those that would be right.
 MOST_CHOICES = 12

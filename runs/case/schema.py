@@ -22,6 +22,7 @@ from runs.case.limits import (
     MOST_SEGMENTS,
     MOST_STATIONS,
     MOST_TIMES,
+    Count,
     Exponent,
     Few,
     Flag,
@@ -193,6 +194,26 @@ class LoadTable(HistoryTable):
         return super().units_of(key, exponent)
 
 
+class AxialTable(Table):
+    """A force along the boom, constant, that presses it towards the base: a hoist rope, say."""
+
+    segment: str | None = Field(
+        None, description="the name of the segment that it presses; the last one unless given"
+    )
+    x: Place | None = Field(
+        None, description="the x in m where it does; the segment's end unless given"
+    )
+    force: Annotated[Number, In("N")] | None = Field(
+        None, description="the force in N towards the base; that of a hoist rope unless given"
+    )
+    falls: Count | None = Field(
+        None, description="the number of falls of a hoist rope, which share what it carries"
+    )
+    mass: Annotated[Positive, In("kg")] | None = Field(
+        None, description="the mass in kg that the rope carries; the payload's unless given"
+    )
+
+
 class PayloadTable(Table):
     """A mass at the tip."""
 
@@ -350,6 +371,9 @@ class Case(Table):
     )
     loads: Annotated[tuple[LoadTable, ...], Few] = Field(
         (), alias="load", description="the loads that are not uniform or not constant"
+    )
+    axial: Annotated[tuple[AxialTable, ...], Few] = Field(
+        (), description="the forces along the boom, one [[axial]] each"
     )
     payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
     gravity: GravityTable | None = Field(

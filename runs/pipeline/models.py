@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from dynamics.damping import with_ratio
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
@@ -66,7 +68,7 @@ def damped(system: GapSystem, case: Case) -> GapSystem:
     with its joints pressed (:func:`dynamics.damping.with_ratio`).
     """
     table = case.damping
-    rates = system.damping + table.mass + table.stiffness * system.omega2
+    rates = system.damping + table.mass + table.stiffness * np.maximum(system.omega2, 0.0)
     system = replace(system, damping=rates)
     if table.modal == 0.0:
         return system

@@ -24,6 +24,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.places import spans
 from runs.case.schema import Case, Model
+from runs.pipeline.cautions import of_buckling, of_tip
 from runs.pipeline.plausibility import slips
 from runs.pipeline.summary import Summary
 
@@ -131,6 +132,15 @@ class Results:
             for name, model in models
             if (error := model.mesh_error or 0.0) > POOR
         ]
+        boom = build_boom(self.case)
+        bent = [
+            caution
+            for name, model in models
+            for caution in (
+                *of_buckling(name, model.critical_factor),
+                *of_tip(f"in {name}", model.static_tip, boom),
+            )
+        ]
         failed = [f"failed: {name}: {why}" for name, why in self.summary.failures.items()]
         halved = [
             f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
@@ -138,8 +148,9 @@ class Results:
             if (refused := model.refused_steps)
         ]
         return (
-            slips(self.case, build_boom(self.case))
+            slips(self.case, boom)
             + failed
+            + bent
             + far
             + poor
             + coarse

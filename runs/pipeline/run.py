@@ -25,6 +25,7 @@ from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
 from runs.folder.versions import versions
 from runs.pipeline import members
+from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
@@ -198,6 +199,8 @@ def _run_model(
         moving = Stages(model.name, progress)
         moved = finished(kept, content, lambda: _move(built, model, case, cutoff, executor, moving))
     summary, reduced = moved.summary, built.shell
+    if boom.compressed:
+        summary.critical_factor = built.critical_factor
     # Those of a motion that is kept are what it has taken.
     stages.seconds |= summary.seconds
     shell = None
@@ -297,4 +300,5 @@ def _summary(
         },
         peak_contact_force=float(peaks.max()) if peaks.size else None,
         refused_steps=[],
+        static_tip=static_tip(system),
     )

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from rich.console import Console
 from rich.table import Table
@@ -17,6 +15,7 @@ from geometry.cylinder import force_name
 from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.cautions import of_tip
 
 KILO, MILLI = 1.0e3, 1.0e-3
 
@@ -26,15 +25,16 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     console.print(_masses(boom, case.system))
     with_play = next((model for model in case.models if not model.play_free), None)
     laws = joined(case, boom, with_play or case.models[0])
-    tied = replace(boom, joints=tuple(joint.without_play for joint in boom.joints))
     try:
         with np.errstate(all="ignore"):
-            held = at_rest(tied, [], [])
+            held = at_rest(boom.play_free, [], [])
             played = at_rest(boom, laws.laws, laws.lateral_laws) if with_play else held
             console.print(_holds(boom, played, case.system))
             if boom.cylinders:
                 console.print(_cylinders(boom, played, case.system))
             console.print(_line(played, held), highlight=False)
+            for caution in of_tip("as beam elements", played.tip, boom):
+                console.print(caution, markup=False, highlight=False)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         console.print("No rest under the loads of t = 0 is found.")
 

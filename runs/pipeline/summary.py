@@ -124,9 +124,11 @@ class ModelSummary(Entry):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
     ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_halving`` is what half the step
-    changes at the tip, as a part of its range; ``refused_steps`` says why steps were halved. The
-    last four are a shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N,
-    ``mesh_error`` as a part of it.
+    changes at the tip, as a part of its range; ``refused_steps`` says why steps were halved;
+    ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
+    of the axial forces at which the boom with its joints pressed buckles. The last four are a
+    shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N, ``mesh_error`` as a
+    part of it.
     """
 
     kind: str
@@ -146,6 +148,8 @@ class ModelSummary(Entry):
     horizons: Growth | None = None
     steps_for_peaks: StepsForPeaks | None = None
     refused_steps: list[str]
+    static_tip: Known = None
+    critical_factor: Known = None
     reduction_errors: dict[str, Known] = {}
     local_compliance: list[Known] = []
     mesh_error: Known = None

@@ -18,7 +18,13 @@ PERCENT = 100.0
 
 def model_tables(results: Results) -> list[Table]:
     """What each model found, and how, where there is such a thing."""
-    found = (model_table(results), step_table(results), law_table(results), space_table(results))
+    found = (
+        model_table(results),
+        step_table(results),
+        law_table(results),
+        space_table(results),
+        buckling_table(results),
+    )
     return [table for table in found if table is not None]
 
 
@@ -157,6 +163,25 @@ def space_table(results: Results) -> Table | None:
             ),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
+
+
+def buckling_table(results: Results) -> Table | None:
+    """How near axial forces are to those under which the boom buckles; None without any."""
+    models = results.summary.models
+    factors = [model.critical_factor for model in models.values()]
+    if not any(factors):
+        return None
+    columns = (
+        Column("model", list(models)),
+        Column("buckling factor", factors, ".4g"),
+        Column("of the critical\n%", [f and 1.0 / f for f in factors], ".3g", PERCENT),
+        Column("static tip\nmm", [model.static_tip for model in models.values()], ".4g", MILLI),
+    )
+    notes = (
+        "Buckling factor: by what the axial forces would have to grow for the boom to buckle, its "
+        "joints pressed. Static tip: at rest under the constant loads, the second order in it.",
+    )
+    return Table("Axial forces", columns, notes, "buckling")
 
 
 def _first_peak(peak: Peak, duration: float) -> tuple[Cell, Cell]:

@@ -46,6 +46,7 @@ STUDIES = (
     "model_ladder",
     "histories",
     "supports",
+    "second_order",
 )
 
 

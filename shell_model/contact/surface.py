@@ -203,6 +203,7 @@ def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) ->
         reduced,
         omega2=reduced.omega2[:kept],
         shapes=reduced.shapes[:, :kept],
+        geometric=reduced.geometric[:kept, :kept],
         compliance_error=max(reduced.compliance_error, float((lost / above[:, 0]).max())),
         lost_compliance=reduced.lost_compliance
         + np.pad(lost, (0, reduced.lost_compliance.size - lost.size)),

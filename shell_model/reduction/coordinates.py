@@ -8,8 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from mpi4py import MPI
-from scipy.linalg import eigh, null_space
+from scipy.linalg import block_diag, eigh, null_space
 
+from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.cylinder import GroundLine
 from shell_model.cross_section import Reading
@@ -31,7 +32,10 @@ class BoomCoordinates:
         lines: to the ground, of whose springs the shells do not know.
 
     Attributes:
-        omega2: (num_modes,) in rad²/s², rigid motions exactly 0.
+        omega2: (num_modes,) in rad²/s², rigid motions exactly 0; negative where an axial force
+            tips a segment over.
+        critical_factor: of the axial forces, see :func:`dynamics.second_order.buckling_factor`;
+            infinite without any, None where something moves that nothing holds.
     """
 
     def __init__(
@@ -51,6 +55,19 @@ class BoomCoordinates:
             pulled = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
             pulls = np.array(pulled).reshape(-1, self.omega2.size)
             self.omega2, self._combination = comm.bcast(_held_modes(self.omega2, tied, pulls))
+        self.critical_factor: float | None = np.inf
+        geometric = block_diag(*(segment.geometric for segment in reduced))
+        if geometric.any():
+            self._soften(geometric)
+
+    def _soften(self, geometric: Array) -> None:
+        """Go to the modes under the axial forces of the segments."""
+        tied = np.eye(self.omega2.size) if self._combination is None else self._combination
+        taken = tied.T @ geometric @ tied
+        held = not (self.omega2 == 0.0).any()
+        self.critical_factor = buckling_factor(np.diag(self.omega2), taken) if held else None
+        self.omega2, turn = self._comm.bcast(softened(self.omega2, taken))
+        self._combination = tied @ turn
 
     def row(self, reading: Reading) -> Array:
         """(num_modes,) what a reading reads of each mode, the same on every rank."""

@@ -9,6 +9,7 @@ from itertools import chain, repeat
 from typing import NamedTuple
 
 import numpy as np
+from petsc4py import PETSc
 from scipy.linalg import eigh
 
 from dynamics.failure import NumericsError
@@ -70,6 +71,7 @@ class FamilyCoordinates(NamedTuple):
         shapes: (num_rows, num_modes) in 1/√kg.
         compliance_error, reading_error, lost_compliance: see ``ReducedSegment``.
         right: (num_modes,) whether some natural frequency is within 0.1 %.
+        geometric: (num_modes, num_modes) K_G, what axial forces take from diag(ω²).
     """
 
     omega2: Array
@@ -78,6 +80,7 @@ class FamilyCoordinates(NamedTuple):
     reading_error: float
     lost_compliance: Array
     right: Mask
+    geometric: Array
 
 
 def reduce_family(
@@ -112,6 +115,8 @@ def reduce_family(
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
         grown = basis.grow(solve)
+        if done == 1 and shell.geometric is not None:
+            basis.follow(shell.geometric, solve)
         progress(done / stages)
         if not grown or (
             options.tolerance is not None and max(basis.errors(full, rows)) <= options.tolerance
@@ -134,7 +139,10 @@ def reduce_family(
     right = _right(shell, omega2, shapes, solve)
     solve.destroy()
     progress(1.0)
-    return FamilyCoordinates(omega2, shapes, *errors, lost, right)
+    geometric = np.zeros((omega2.size, omega2.size))
+    if shell.geometric is not None:
+        geometric = shapes.T @ times(shell.geometric, shapes)
+    return FamilyCoordinates(omega2, shapes, *errors, lost, right, geometric)
 
 
 class _Full(NamedTuple):
@@ -192,6 +200,10 @@ class _Basis:
         block = self._append(solve(self._pushes))
         self._pushes = times(self._shell.mass, block)
         return bool(block.shape[1])
+
+    def follow(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
+        """Add what axial forces bend further of the motions so far."""
+        self._append(solve(times(geometric, self._vectors)))
 
     def errors(self, full: Sequence[_Full], rows: Array) -> tuple[float, float]:
         """Relative error of the compliance, and of what the readings get."""

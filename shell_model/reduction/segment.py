@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
@@ -46,6 +47,7 @@ class ReducedSegment:
             model at these frequencies, in m/N; no pair of them loses more than the geometric mean
             of both, since the space is a part of the full one (Galerkin).
         frequency_limit: Hz up to which every natural frequency is right within 0.1 %.
+        geometric: (num_modes, num_modes) what axial forces take from diag(ω²).
     """
 
     omega2: Array
@@ -54,6 +56,7 @@ class ReducedSegment:
     reading_error: float
     lost_compliance: Array
     frequency_limit: float
+    geometric: Array
 
 
 def reduce_segment(
@@ -108,6 +111,7 @@ def reduce_segment(
         reading_error=max(part.reading_error for part in parts),
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=_limit(omega2[order], right[order]),
+        geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
     )
 
 

@@ -24,6 +24,8 @@ MODES = {
     "rigid": (0.0, 0.0, 3.0),
     "rigid damped": (0.0, 0.7, 3.0),
     "stiff": (1.0e8, 20.0, 3.0),
+    "tipping over": (-2.25, 0.0, 3.0),
+    "tipping over, damped": (-2.25, 0.7, 3.0),
 }
 
 
@@ -76,7 +78,7 @@ def test_flow_is_the_matrix_exponential(
     """
     flow = flow_over(modes(), step)
     for k, (name, numbers) in enumerate(MODES.items()):
-        omega = np.sqrt(numbers[0])
+        omega = np.sqrt(abs(numbers[0]))
         reach = min(step, 1.0 / omega) if omega > 0.0 else step
         size = {
             "aa": 1.0, "av": reach, "ap": 3.0 * reach**2, "va": omega**2 * reach, "vv": 1.0,

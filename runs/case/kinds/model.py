@@ -65,12 +65,15 @@ class Built:
         system: of all segments.
         num_dofs: before any reduction.
         seconds: wall time of each stage.
+        critical_factor: of the axial forces with the joints pressed, see
+            :func:`dynamics.second_order.buckling_factor`; infinite without any.
         shell: what a reduced shell has beyond its system.
     """
 
     system: GapSystem
     num_dofs: int
     seconds: dict[str, float] = field(default_factory=dict)
+    critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None
 
 
@@ -133,6 +136,14 @@ class ModelTable(Table):
                     f"segment[{number}].section",
                     f"missing, and {self.name!r} needs it; give section or height_to_width",
                 )
+        factor = self.critical_factor(joined.boom)
+        if factor is not None and factor <= 1.0:
+            raise BoomError(
+                where,
+                f"the boom of {self.name!r} buckles under {factor:.3g} times its axial forces, and "
+                "has no motion; it must bear more than all of them: make these smaller, or the "
+                "sections larger",
+            )
 
     @abstractmethod
     def describe(self) -> str:
@@ -149,6 +160,10 @@ class ModelTable(Table):
         Raises:
             BoomError: the boom lacks what the model needs.
         """
+
+    @abstractmethod
+    def critical_factor(self, boom: Boom) -> float | None:
+        """Of the boom's axial forces, as in :class:`Built`, or about that of a meshed one."""
 
     @abstractmethod
     def stand_in(self, boom: Boom) -> StandIn:
@@ -171,7 +186,13 @@ class BeamTable(ModelTable):
             system = tied_system(joined.boom, segments)
         else:
             system = gap_system(joined.boom, segments, joined.laws, joined.lateral_laws)
-        return Built(system, system.num_modes, {"build": perf_counter() - start})
+        factor = self.critical_factor(joined.boom)
+        return Built(system, system.num_modes, {"build": perf_counter() - start}, factor)
+
+    def critical_factor(self, boom: Boom) -> float | None:
+        from beam_model.boom_modes import critical_factor
+
+        return critical_factor(boom, self.segments(boom)) if boom.compressed else float("inf")
 
 
 _Kind = TypeVar("_Kind", bound=ModelTable)

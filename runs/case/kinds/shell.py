@@ -103,7 +103,7 @@ class ShellTable(ModelTable):
             (boom, laws, lateral, options),
             partial(reduce_boom, boom, laws, there, comm, workshop.tell, lateral),
         )
-        return Built(shell.system, shell.num_dofs, shell.seconds, shell)
+        return Built(shell.system, shell.num_dofs, shell.seconds, shell.critical_factor, shell)
 
     def options(self) -> ShellOptions:
         """How a boom becomes such shells."""
@@ -117,6 +117,9 @@ class ShellTable(ModelTable):
             krylov=self._krylov(),
             contact_tolerance=None if self.contact_tolerance == "any" else self.contact_tolerance,
         )
+
+    def critical_factor(self, boom: Boom) -> float | None:
+        return self.stand_in(boom).beam.critical_factor(boom)
 
     def stand_in(self, boom: Boom) -> StandIn:
         padded = any(joint.pad is not None for joint in boom.joints)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Modes whose stiffness constant axial forces soften, and the forces under which they buckle.
+
+In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
+stiffness (physics of the second order, Timoshenko and Gere 1961). A segment that contacts alone
+hold tips over: its rotation has a negative ω².
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import eigh
+
+from dynamics.arrays import Array
+
+# Part of what rigid motions lose most below which one loses nothing.
+_ROUND_OFF = 1.0e-9
+
+
+def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
+    """ω² (num_modes,), rising, and combinations (num_modes, num_modes) of the modes as they were.
+
+    Args:
+        omega2: (num_modes,) without axial forces, rigid motions exactly 0.
+        geometric: (num_modes, num_modes) G.
+    """
+    # The upper triangle leaves the low modes their digits, see ``natural_modes`` of the beams.
+    found, combination = eigh(np.diag(omega2) - geometric, lower=False)
+    # What translates keeps its ω of exactly 0.
+    rigid = omega2 == 0.0
+    lost = np.abs(np.linalg.eigvalsh(geometric[np.ix_(rigid, rigid)]))
+    kept = np.count_nonzero(lost <= _ROUND_OFF * lost.max(initial=0.0))
+    found[np.argsort(np.abs(found))[:kept]] = 0.0
+    return found, combination
+
+
+def buckling_factor(stiffness: Array, geometric: Array) -> float:
+    """The factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
+
+    Infinite where no factor makes it.
+
+    Args:
+        stiffness: (num_dofs, num_dofs) K of a boom that is held, in any coordinates.
+        geometric: (num_dofs, num_dofs) K_G.
+    """
+    last = len(stiffness) - 1
+    if last < 0:
+        return float("inf")
+    # Coordinates may be of different sizes: deflections and rotations.
+    scale = 1.0 / np.sqrt(np.diag(stiffness))
+    scales = np.outer(scale, scale)
+    (largest,) = eigh(
+        geometric * scales, stiffness * scales, eigvals_only=True, subset_by_index=[last, last]
+    )
+    return float(1.0 / largest) if largest > 0.0 else float("inf")

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Forces along the boom, and what each segment carries of them on their way to the base.
+
+All press towards the base. What is outboard of a place presses a segment there; a segment hands
+its sum over where it is locked in the next one, or where the ground holds it, and what is further
+inboard hangs there and pulls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from geometry.compression import UNPRESSED, Compression
+from geometry.joint import Joint
+from geometry.segment import SAME_PLACE, Segment
+
+
+@dataclass(frozen=True, slots=True)
+class Thrust:
+    """A force in N on a segment at x in m towards the base, such as a hoist rope's at the tip.
+
+    >>> rope = pt.Thrust(segment=1, x=14.0, force=12e3)
+    >>> arm, fly = pt.with_compression(boom.segments, boom.joints, [rope])
+    >>> fly.compression.ends, arm.compression.ends
+    (((12000.0, 12000.0),), ((12000.0, 12000.0), (0.0, 0.0)))
+    """
+
+    segment: int
+    x: float
+    force: float
+
+
+def with_compression(
+    segments: Sequence[Segment],
+    joints: Sequence[Joint],
+    thrusts: Sequence[Thrust],
+    gravity: float = 0.0,
+) -> tuple[Segment, ...]:
+    """The segments with the axial forces that they carry.
+
+    Args:
+        segments: from the base to the tip.
+        joints: say where each segment is locked in the next one.
+        thrusts: on the segments.
+        gravity: acceleration towards the base in m/s², by which all masses weigh, collars and
+            diaphragms among them.
+    """
+    passed: list[list[tuple[float, float]]] = [[] for _ in segments]
+    carrying = list(segments)
+    for number in reversed(range(len(segments))):
+        segment = segments[number]
+        points = [(t.x, t.force) for t in thrusts if t.segment == number]
+        points += passed[number] + _weights(segment, gravity)
+        spread = _spread_weights(segment, gravity)
+        joint = _lock(joints, number)
+        held = segment.start if joint is not None or segment.foot is None else segment.foot.x
+        if joint is not None:
+            locked = segment.start if joint.locked_at is None else joint.locked_at
+            total = sum(force for _, force in points)
+            total += sum(each * (end - start) for start, end, each in spread)
+            passed[joint.outer].append((locked, total))
+            held = max(held, locked)
+        carrying[number] = replace(segment, compression=_compression(segment, held, points, spread))
+    return tuple(carrying)
+
+
+def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
+    """Those at one x in m, in N."""
+    found = [(point.x, point.mass * gravity) for point in segment.masses]
+    if segment.section is not None:
+        plate = segment.material.density * segment.section.enclosed_area * gravity
+        found += [(each.x, plate * each.thickness) for each in segment.diaphragms]
+    return found
+
+
+def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
+    """Those between two x in m, in N/m."""
+    found = [(segment.start, segment.end, segment.mass_per_length * gravity)]
+    if segment.section is not None:
+        doubler = segment.material.density * segment.section.perimeter * gravity
+        found += [(each.start, each.end, doubler * each.thickness) for each in segment.collars]
+    return found
+
+
+def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
+    """The joint that takes a segment's axial force: one that says where, else the outermost."""
+    around = [joint for joint in joints if joint.inner == number]
+    return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
+
+
+def _compression(
+    segment: Segment,
+    held: float,
+    points: Sequence[tuple[float, float]],
+    spread: Sequence[tuple[float, float, float]],
+) -> Compression:
+    near = SAME_PLACE * segment.length
+    places = [segment.start]
+    ends = [x for start, end, _ in spread for x in (start, end)]
+    for x in sorted([segment.end, held, *(x for x, _ in points), *ends]):
+        if places[-1] + near < x <= segment.end + near:
+            places.append(x)
+
+    def beyond(x: float) -> float:
+        """What acts at and beyond x."""
+        at_places = sum(force for place, force in points if place >= x - near)
+        return at_places + sum(q * max(0.0, end - max(start, x)) for start, end, q in spread)
+
+    everything = beyond(segment.start)
+    pieces = []
+    for a, b in pairwise(places):
+        at_a = sum(force for place, force in points if abs(place - a) <= near)
+        first, last = beyond(a) - at_a, beyond(b)
+        hangs = everything if b <= held + near else 0.0
+        pieces.append((first - hangs, last - hangs))
+    if not any(force for piece in pieces for force in piece):
+        return UNPRESSED
+    return Compression(tuple(places), tuple(pieces))

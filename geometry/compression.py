@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The axial force that a segment carries, which softens its bending."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Compression:
+    """P(x) in N along a segment, positive where it is pressed: straight in pieces, with jumps.
+
+    >>> column = pt.Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
+    >>> column(np.array([1.0, 5.0]))
+    array([8500., 2000.])
+
+    Args:
+        places: (num_pieces + 1) ends of the pieces, rising x in m; none where P is 0 everywhere.
+        ends: (num_pieces) P at both ends of each.
+    """
+
+    places: tuple[float, ...] = ()
+    ends: tuple[tuple[float, float], ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether there is any."""
+        return bool(self.ends)
+
+    def __call__(self, x: Array) -> Array:
+        """(num_places,) P at x (num_places,) in m; either of both at a jump."""
+        if not self:
+            return np.zeros(x.shape)
+        places, ends = np.array(self.places), np.array(self.ends)
+        piece = np.clip(np.searchsorted(places, x, side="right") - 1, 0, len(ends) - 1)
+        first, last = ends[piece].T
+        part = (x - places[piece]) / (places[piece + 1] - places[piece])
+        return np.asarray(first + part * (last - first))
+
+
+UNPRESSED = Compression()

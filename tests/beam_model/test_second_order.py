@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Beams under axial forces: segments that tip over, both planes, tied and resting booms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+
+from beam_model.boom_modes import critical_factor
+from beam_model.component import Motion, SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
+from beam_model.rigid import rigid_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.equilibrium import equilibrium
+from dynamics.second_order import buckling_factor
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from geometry.section import BoxSection
+
+Build = Callable[[Boom], Sequence[SegmentModel]]
+
+STEEL = Material(2.1e11, 0.3, 7850.0)
+OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+INNER = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
+CLAMP = (Support(0.0, "clamped"),)
+BUILDS: dict[str, Build] = {
+    "elements": lambda boom: finite_element_segments(boom, 0.5, "euler-bernoulli", False),
+    "shear-flexible": lambda boom: finite_element_segments(boom, 0.25, "timoshenko", False),
+    "series": lambda boom: kantorovich_segments(boom, [14] * len(boom.segments), "complete", False),
+}
+
+
+@pytest.fixture(name="build", params=BUILDS.values(), ids=BUILDS)
+def _build(request: pytest.FixtureRequest) -> Build:
+    build: Build = request.param
+    return build
+
+
+def column(section: BoxSection = OUTER, length: float = 10.0, **others: object) -> Segment:
+    return Segment.of_section("column", 0.0, length, STEEL, section, **others)
+
+
+def alone(segment: Segment, thrust: float, gravity: float = 0.0) -> Boom:
+    return Boom(with_compression([segment], [], [Thrust(0, segment.end, thrust)], gravity), ())
+
+
+def telescope(thrust: float, tied: bool = False, **changes: object) -> Boom:
+    """An arm, clamped, and a fly of which 2 m slide in it, with a force at its tip."""
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, OUTER, supports=CLAMP)
+    fly = Segment.of_section("fly", 6.0, 14.0, STEEL, INNER, load=-500.0)
+    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3, tied=tied, **changes)
+    return Boom(with_compression((arm, fly), (joint,), [Thrust(1, 14.0, thrust)]), (joint,))
+
+
+def test_a_segment_that_only_contacts_hold_tips_over(build: Build) -> None:
+    """Reference: analytic. Turned by θ about its middle a free beam gives way by P L θ²/2 against
+    the kinetic energy m̄ L³ θ̇²/24, with the shear and bending that it has besides 1e-3 more.
+    """
+    thrust, boom = 5.0e3, telescope(5.0e3)
+    fly = boom.segments[1]
+    system = gap_system(boom, build(boom), [PowerContact(1e9, 1.0, 5e-3)])
+    tipping = system.omega2[system.omega2 < 0.0]
+    np.testing.assert_allclose(tipping, -12.0 * thrust / (fly.mass_per_length * 8.0**2), rtol=2e-3)
+    # Its fall stays what it was, and the arm has none.
+    assert np.count_nonzero(system.omega2 == 0.0) == 1
+
+
+def test_a_rigid_segment_tips_over_too() -> None:
+    """Reference: analytic, 12 P/(m̄ L²), the rotary inertia in the mass."""
+    boom = telescope(5.0e3)
+    fly = boom.segments[1]
+    system = gap_system(
+        boom, [rigid_segment(s) for s in boom.segments], [PowerContact(1e9, 1.0, 5e-3)]
+    )
+    inertia = fly.mass_per_length * 8.0**3 / 12.0 + fly.rotary_inertia * 8.0
+    np.testing.assert_allclose(system.omega2.min(), -5.0e3 * 8.0 / inertia, rtol=1e-12)
+
+
+def test_both_planes_buckle_each_by_its_own_stiffness(
+    build: Build, request: pytest.FixtureRequest
+) -> None:
+    """Reference: analytic. Euler's π² E J/4L² of either plane, shear by Engesser."""
+    boom = alone(column(supports=CLAMP), 1.0e5)
+    (segment,), (model,) = boom.segments, build(boom)
+    assert segment.lateral is not None
+    planes: tuple[tuple[Motion, Segment], ...] = (("z", segment), ("y", segment.turned()))
+    for motion, bent in planes:
+        component = model.components[motion]
+        factor = buckling_factor(component.stiffness, component.softening)
+        euler = 0.25 * np.pi**2 * bent.bending_stiffness / 10.0**2
+        if request.node.callspec.id == "shear-flexible":
+            assert bent.section is not None
+            euler /= 1.0 + euler / (STEEL.shear_modulus * bent.section.shear_area)
+        assert factor == pytest.approx(euler / 1.0e5, rel=1e-4)
+
+
+def test_a_boom_bears_what_its_stiffer_parts_carry(build: Build) -> None:
+    """Reference: analytic, by order. Locked at the head the stiffer arm carries the force through
+    the overlap, at the tail the fly does; a cylinder from the arm's foot leaves the arm free of it.
+    """
+    factors = [
+        critical_factor(boom, build(boom))
+        for boom in (telescope(1e4, locked_at=at) for at in (6.0, 8.0, 0.0))
+    ]
+    at_tail, at_head, by_cylinder = (factor or np.nan for factor in factors)
+    assert at_tail < at_head
+    assert by_cylinder > 1.05 * at_head
+
+
+def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
+    """Reference: analytic. δ ≈ δ₀/(1 − 1/λ) of a boom whose shape is near its buckling mode
+    (Timoshenko and Gere 1961), to 2 %.
+    """
+    straight = tied_system(telescope(0.0), build(telescope(0.0)))
+    factor = critical_factor(telescope(1e4), build(telescope(1e4)))
+    assert factor is not None
+    boom = telescope(0.25 * factor * 1e4)
+    pressed = tied_system(boom, build(boom))
+    tips = [s.observers["tip"].row @ equilibrium(s, s.load) for s in (straight, pressed)]
+    assert tips[1] / tips[0] == pytest.approx(1.0 / (1.0 - 0.25), rel=0.02)
+
+
+def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
+    """Reference: analytic. A rigid fly whose contacts are stiff leans on both stations as far as
+    its play lets it; the pressed boom's tip is the tied one's and that of the tilt by 2Δ over 2 m.
+    """
+    boom = telescope(2.0e4)
+    system = gap_system(boom, build(boom), [PowerContact(1e12, 1.0, 5e-3)])
+    tied = tied_system(boom, build(boom))
+    tip = float(system.observers["tip"].row @ equilibrium(system, system.load))
+    held = float(tied.observers["tip"].row @ equilibrium(tied, tied.load))
+    tilt = 5e-3 + 5e-3 * 2.0 / 2.0 * 6.0
+    assert tip == pytest.approx(held - tilt, rel=0.03)
+    assert tip < held - tilt
+
+
+def test_weights_of_point_masses_press(build: Build) -> None:
+    """Reference: analytic. Of a mass at the tip Euler's cantilever, of the column's own weight
+    Greenhill's; both add up to 1 (Dunkerley; Timoshenko and Gere 1961), shear apart.
+    """
+    boom = alone(column(supports=CLAMP, masses=(PointMass(10.0, 5.0e4),)), 0.0, gravity=9.80665)
+    (segment,) = boom.segments
+    factor = critical_factor(boom, build(boom))
+    of_mass = 5.0e4 * 9.80665 * 10.0**2 / (0.25 * np.pi**2 * segment.bending_stiffness)
+    own = segment.mass_per_length * 9.80665 * 10.0**3 / (7.8373474 * segment.bending_stiffness)
+    assert factor == pytest.approx(1.0 / (of_mass + own), rel=5e-3)
+
+
+def test_no_force_leaves_every_number_as_it_was(build: Build) -> None:
+    """Reference: non-regression, to the last bit: a force of 0 N is none."""
+    plain = telescope(0.0)
+    assert not plain.compressed
+    systems = [
+        gap_system(boom, build(boom), [PowerContact(1e9, 1.0, 5e-3)])
+        for boom in (plain, Boom(plain.segments, plain.joints))
+    ]
+    np.testing.assert_array_equal(systems[0].omega2, systems[1].omega2)
+    assert (systems[0].omega2 >= 0.0).all()
+    assert critical_factor(plain, build(plain)) == float("inf")

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What each segment carries of the forces along the boom, against sums by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.axial import Thrust, with_compression
+from geometry.boom import (
+    Boom,
+    BoomError,
+    Collar,
+    Diaphragm,
+    Joint,
+    Material,
+    PointMass,
+    Segment,
+    Support,
+)
+from geometry.compression import UNPRESSED
+from geometry.section import BoxSection
+
+STEEL = Material(2.1e11, 0.3, 7850.0)
+OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+INNER = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
+# Of both segments in kg/m.
+HEAVY, LIGHT = 7850.0 * OUTER.area, 7850.0 * INNER.area
+JOINT = Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3)
+
+
+def segments() -> tuple[Segment, Segment]:
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, OUTER, supports=(Support(1.0), Support(3.0)))
+    return arm, Segment.of_section("fly", 6.0, 14.0, STEEL, INNER)
+
+
+def at(segment: Segment, *places: float) -> list[float]:
+    return segment.compression(np.array(places)).tolist()
+
+
+def test_weights_press_what_is_below_them_and_pull_what_hangs_behind_the_support() -> None:
+    """Reference: analytic. The fly hands its weight over at its tail; the arm is held at 1 m."""
+    arm, fly = with_compression(segments(), [JOINT], [], gravity=5.0)
+    assert at(fly, 6.5, 10.0, 13.9) == pytest.approx(
+        [5.0 * LIGHT * length for length in (7.5, 4.0, 0.1)], rel=1e-12
+    )
+    expected = [-0.5 * HEAVY, 7.0 * HEAVY, 2.5 * HEAVY + 8.0 * LIGHT, HEAVY]
+    assert at(arm, 0.5, 6.999999, 5.5, 7.0) == pytest.approx(
+        [5.0 * expected[0], 5.0 * 1.000001 * HEAVY, 5.0 * expected[2], 5.0 * expected[3]], rel=1e-9
+    )
+
+
+def test_a_thrust_goes_by_the_lock_into_the_next_segment() -> None:
+    """Reference: analytic. At the tail unless told; at a pin; at the foot of a cylinder."""
+    rope = [Thrust(1, 14.0, 1000.0)]
+    for locked, of_fly, of_arm in (
+        (None, [1000.0, 1000.0, 1000.0], [1000.0, 0.0, 0.0]),
+        (7.5, [0.0, 0.0, 1000.0], [1000.0, 1000.0, 0.0]),
+        (2.0, [1000.0, 1000.0, 1000.0], [0.0, 0.0, 0.0]),
+    ):
+        joint = replace(JOINT, locked_at=locked)
+        arm, fly = with_compression(segments(), [joint], rope)
+        assert at(fly, 6.5, 7.0, 9.0) == of_fly
+        assert at(arm, 5.0, 7.0, 7.9) == of_arm
+        assert at(arm, 0.5) == [0.0]
+    assert at(arm, 1.5) == [1000.0]
+
+
+def test_masses_collars_and_diaphragms_weigh_along_the_boom() -> None:
+    """Reference: analytic, their masses times the acceleration."""
+    arm, fly = segments()
+    fly = replace(
+        fly,
+        masses=(PointMass(14.0, 300.0), PointMass(10.0, 50.0)),
+        collars=(Collar(8.0, 9.0, 0.01),),
+        diaphragms=(Diaphragm(12.0, 0.02),),
+    )
+    _, pressed = with_compression((arm, fly), [JOINT], [], gravity=2.0)
+    collar, plate = 7850.0 * INNER.perimeter * 0.01, 7850.0 * INNER.enclosed_area * 0.02
+    assert at(pressed, 13.0, 11.0, 8.5, 7.0) == pytest.approx(
+        [
+            2.0 * (LIGHT + 300.0),
+            2.0 * (3.0 * LIGHT + 300.0 + plate),
+            2.0 * (5.5 * LIGHT + 350.0 + plate + 0.5 * collar),
+            2.0 * (7.0 * LIGHT + 350.0 + plate + collar),
+        ],
+        rel=1e-12,
+    )
+
+
+def test_of_three_segments_each_carries_all_that_is_beyond_it() -> None:
+    """Reference: analytic, the sum of the thrusts outboard; a tension pulls."""
+    arm, fly = segments()
+    jib = Segment.of_section("jib", 12.0, 20.0, STEEL, INNER)
+    second = Joint(outer=1, inner=2, stations=(12.0, 14.0), clearance=5e-3)
+    thrusts = [Thrust(2, 20.0, 700.0), Thrust(1, 13.0, -100.0), Thrust(0, 7.0, 10.0)]
+    arm, fly, jib = with_compression((arm, fly, jib), [JOINT, second], thrusts)
+    assert at(jib, 13.0, 19.0) == [700.0, 700.0]
+    assert at(fly, 7.0, 12.5, 13.5) == pytest.approx([600.0, -100.0, 0.0], abs=1e-9)
+    assert at(arm, 5.0, 6.5, 7.5) == pytest.approx([610.0, 10.0, 0.0], abs=1e-9)
+
+
+def test_without_forces_nothing_is_pressed() -> None:
+    alone = with_compression(segments(), [JOINT], [])
+    assert [segment.compression for segment in alone] == [UNPRESSED, UNPRESSED]
+    assert not Boom(alone, (JOINT,)).compressed
+    assert Boom(with_compression(alone, [JOINT], [], 1.0), (JOINT,)).compressed
+    assert at(alone[0], 1.0, 7.0) == [0.0, 0.0]
+
+
+def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
+    with pytest.raises(BoomError) as caught:
+        Boom(segments(), (replace(JOINT, locked_at=9.0),))
+    assert str(caught.value) == (
+        "joint[1].locked_at: 9 m is no place at which 'fly' is locked in 'arm'; it must be between "
+        "0 and 8 m"
+    )

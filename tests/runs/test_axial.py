@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Forces along a boom from the case file on: what they are, what they soften, what is refused."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from geometry.section import BoxSection
+from protractile.cases import run_case
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.pipeline.inferred import print_inferred
+from runs.report.model_tables import buckling_table
+
+LIFT = """
+title = "Lift"
+[time]
+duration = 0.05
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+[[segment]]
+name = "mast"
+span = [0.0, 8.0]
+supports = [{ x = 0.0, kind = "clamped" }]
+section = { height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }
+[[segment]]
+name = "fly"
+span = [6.0, 14.0]
+section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }
+[[joint]]
+outer = "mast"
+inner = "fly"
+stations = [6.0, 8.0]
+play = 0.01
+stiffness = 1e9
+exponent = 1.0
+[[load]]
+segment = "fly"
+x = 14.0
+magnitude = -200.0
+[[model]]
+name = "beam"
+kind = "finite-element"
+"""
+TIED = """
+[[model]]
+name = "tied"
+kind = "finite-element"
+tied = true
+"""
+MAST = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+FLY = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "case.toml"
+    path.write_text(LIFT + text, encoding="utf-8")
+    return path
+
+
+def pressed(folder: Path, text: str) -> list[list[float]]:
+    """P at 3 m and 7 m of the mast, at 7 m and 13 m of the fly."""
+    boom = build_boom(case_file.load(str(written(folder, text))))
+    places = (np.array([3.0, 7.0]), np.array([7.0, 13.0]))
+    return [s.compression(x).tolist() for s, x in zip(boom.segments, places, strict=True)]
+
+
+def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
+    """Reference: analytic, the masses outboard times g sin θ; hanging down they pull."""
+    mast, fly = 7850.0 * MAST.area, 7850.0 * FLY.area
+    text = "[gravity]\nangle = {}\n[payload]\nmass = 300.0\n"
+    for angle, part in ((30.0, 0.5), (90.0, 1.0), (-30.0, -0.5)):
+        g = part * 9.80665
+        expected = [
+            [g * (5.0 * mast + 8.0 * fly + 300.0), g * mast],
+            [g * (7.0 * fly + 300.0), g * (fly + 300.0)],
+        ]
+        found = pressed(tmp_path, text.format(angle))
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+    assert pressed(tmp_path, text.format(0.0)) == [[0.0, 0.0], [0.0, 0.0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "force"),
+    [
+        ("[[axial]]\nforce = 5e3\n", 5e3),
+        ("[[axial]]\nfalls = 4\nmass = 2e3\n", 2e3 * 9.80665 / 4),
+        ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\ngravity = 5.0\n", 600.0 * 5.0 / 2),
+        (
+            "[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n",
+            300.0 * 9.80665,
+        ),
+    ],
+)
+def test_a_rope_presses_the_boom_from_the_tip_to_the_base(
+    tmp_path: Path, text: str, force: float
+) -> None:
+    """Reference: analytic, what it carries over its falls."""
+    np.testing.assert_allclose(pressed(tmp_path, text), [[force, 0.0], [force, force]], rtol=1e-12)
+
+
+def test_a_force_may_act_anywhere_and_pass_at_a_pin(tmp_path: Path) -> None:
+    text = '[[axial]]\nforce = 5e3\nsegment = "fly"\nx = 10.0\n'
+    assert pressed(tmp_path, text) == [[5e3, 0.0], [5e3, 0.0]]
+    path = written(tmp_path, text)
+    locked = path.read_text(encoding="utf-8").replace("play = 0.01", "play = 0.01\nlocked_at = 8.0")
+    path.write_text(locked, encoding="utf-8")
+    mast, fly = build_boom(case_file.load(str(path))).segments
+    assert mast.compression(np.array([7.0])).tolist() == [5e3]
+    assert fly.compression(np.array([7.0, 9.0])).tolist() == [0.0, 5e3]
+
+
+def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
+    """Reference: analytic. The tied tip's δ₀/(1 − 1/λ) to 2 %, with the λ that the run tells."""
+    rest = '[start]\nstate = "equilibrium"\n' + TIED
+    tips = {}
+    for name, text in (("straight", ""), ("pressed", "[[axial]]\nforce = 1.5e5\n")):
+        results = run_case(case_file.load(str(written(tmp_path, text + rest))), models=["tied"])
+        tips[name] = float(results.trajectories["tip"].values[0, -1])
+        summary = results.summary.models["tied"]
+        assert summary.static_tip == pytest.approx(tips[name], rel=1e-6)
+    factor = summary.critical_factor
+    assert factor is not None
+    assert 2.0 < factor < 10.0
+    assert tips["pressed"] / tips["straight"] == pytest.approx(1.0 / (1.0 - 1.0 / factor), rel=0.02)
+    assert summary.energy_residual < 1e-9
+
+
+def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
+    """Reference: what the summary of the run has."""
+    case = case_file.load(str(written(tmp_path, "[[axial]]\nforce = 4e4\n" + TIED)))
+    results = run_case(case)
+    table = buckling_table(results)
+    assert table is not None
+    factor = results.summary.models["tied"].critical_factor
+    assert factor is not None
+    shown = io.StringIO()
+    print_inferred(case, Console(file=shown, width=120))
+    assert f"{factor:.4g}" in shown.getvalue()
+    assert f"{100.0 / factor:.3g} %" in shown.getvalue()
+    assert table.text.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")
+    plain = case_file.load(str(written(tmp_path, TIED)))
+    assert buckling_table(run_case(plain)) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "caution"),
+    [
+        ("", None),
+        ("[[axial]]\nforce = 1e4\n", None),
+        (
+            "[[axial]]\nforce = 3e5\n",
+            "caution: in tied the axial forces are 48",
+        ),
+        (
+            '[[load]]\nsegment = "fly"\nx = 14.0\nmagnitude = -1e5\n',
+            "caution: in tied the tip rests at -1.79 m, 13 %",
+        ),
+    ],
+)
+def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
+    """Each on its slip, none on what is in proportion."""
+    case = case_file.load(str(written(tmp_path, text + TIED)))
+    shown = io.StringIO()
+    print_inferred(case, Console(file=shown, width=200))
+    said = [line for line in shown.getvalue().splitlines() if line.startswith("caution: in tied")]
+    results = run_case(case, models=["tied"])
+    assert results.cautions()[: len(said)] == said
+    if caution is None:
+        assert said == []
+    else:
+        (line,) = said
+        assert line.startswith(caution)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            "[[axial]]\nforce = 1e6\n",
+            "model[1]: the boom of 'beam' buckles under 0.622 times its axial forces, and has no "
+            "motion; it must bear more than all of them: make these smaller, or the sections "
+            "larger",
+        ),
+        (
+            "[[axial]]\nmass = 100.0\n",
+            "axial[1].force: missing; it is the force in N towards the base, or give the falls of "
+            "a hoist rope",
+        ),
+        (
+            "[[axial]]\nforce = 1e3\nfalls = 2\n",
+            "axial[1].falls: force is given; leave one of them out",
+        ),
+        (
+            "[[axial]]\nfalls = 2\n",
+            "axial[1].mass: missing, and there is no payload; it is the mass in kg that the rope "
+            "carries",
+        ),
+        (
+            '[[axial]]\nforce = 1e3\nsegment = "jib"\n',
+            "axial[1].segment: 'jib' is no segment; give 'mast' or 'fly'",
+        ),
+        (
+            "[[axial]]\nforce = 1e3\nx = 3.0\n",
+            "axial[1].x: 3 m lies outside 'fly'; it must be between 6 and 14 m",
+        ),
+        (
+            "[axial]\nforce = 1e3\n",
+            "axial: must be an array of tables, each headed [[axial]], got {'force': 1000.0}",
+        ),
+    ],
+)
+def test_says_what_cannot_press(tmp_path: Path, text: str, line: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(BadInput) as caught:
+        case_file.load(str(path))
+    assert str(caught.value) == f"{path}: {line}"
