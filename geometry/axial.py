@@ -40,6 +40,14 @@ def with_compression(
 ) -> tuple[Segment, ...]:
     """The segments with the axial forces that they carry.
 
+    A boom that stands upright weighs on its base:
+
+    >>> arm, fly = pt.with_compression(boom.segments, boom.joints, [], gravity=9.80665)
+    >>> masses = [segment.mass_per_length * segment.length for segment in (arm, fly)]
+    >>> (foot, _), _ = arm.compression.ends
+    >>> round(foot / 9.80665 - sum(masses), 6)
+    0.0
+
     Args:
         segments: from the base to the tip.
         joints: say where each segment is locked in the next one.
