@@ -158,7 +158,7 @@ def _check_depths(boom: Boom) -> None:
             if support.depth != 0.0 and support is not feet.get(number):
                 raise BoomError(
                     f"segment[{number + 1}].supports[{k}].depth",
-                    "heeded where a cylinder pulls at the segment, by its first support alone; "
+                    "of no use: only the first support of a segment with a cylinder has a depth; "
                     "leave it out",
                 )
 

@@ -55,6 +55,7 @@ class ShellOutput:
             time=("time", trajectory.time, {"units": "s"}),
             **_joints(boom),
             **_stops(boom),
+            **_lugs(boom),
         ).assign_attrs(model=name)
         names = [segment.name for segment in boom.segments]
         shell = ShellStress.of(fields)
@@ -87,6 +88,20 @@ def _stops(boom: Boom) -> dict[str, Any]:
         "stop_x": ("stop", places, {"units": "m"}),
         "stop_side": ("stop", np.array([side for _, side in sides])),
         "stop_clearance": ("stop", clearances, {"units": "m"}),
+    }
+
+
+def _lugs(boom: Boom) -> dict[str, Any]:
+    """Where cylinders meet segments, and the unit vectors from the ground to there."""
+    if not boom.cylinders:
+        return {}
+    along, up = np.array([cylinder.direction for cylinder in boom.cylinders]).T
+    segments = np.array([cylinder.segment for cylinder in boom.cylinders], dtype=np.int32)
+    return {
+        "lug_segment": ("lug", segments),
+        "lug_x": ("lug", np.array([cylinder.x for cylinder in boom.cylinders]), {"units": "m"}),
+        "lug_along": ("lug", along),
+        "lug_up": ("lug", up),
     }
 
 

@@ -14,7 +14,7 @@ from PIL import Image
 
 from geometry.arrays import Array
 from shell_model.pictures import theme as theme
-from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Stop, round_scale
+from shell_model.pictures.deformation import SAME_PLACE, Lug, MovingShell, Stop, round_scale
 from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
 
 # The whole boom: displacements are drawn up to this part of its length, sections so many times
@@ -118,6 +118,7 @@ def draw_boom(
     (now,) = curve.plot([], [], "o", color=theme.FORCE, markersize=13, clip_on=False)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     where, black = ("seen from above; ", "") if shell.from_above else ("", "; black: supports")
+    black += " and cylinders" if shell.lugs else ""
     black += "; grey blocks: stops" if shell.stops else ""
     with Scene(camera.pixels) as scene:
         # A little behind the boom, or it would shine through where that hardly moves.
@@ -128,8 +129,10 @@ def draw_boom(
         for number, held in enumerate([] if shell.from_above else shell.supports()):
             scene.surface(f"support {number}", *_wedge(larger * held), color=theme.INK)
         for number, stop in enumerate(shell.stops):
-            block = _wedge(_stopped(shell, rest, stop), stop.side, view.scale * stop.clearance)
+            block = _wedge(_met(shell, rest, stop), stop.side, view.scale * stop.clearance)
             scene.surface(f"stop {number}", *block, color=theme.FAINT)
+        for number, lug in enumerate(shell.lugs):
+            scene.surface(f"cylinder {number}", *_rod(_met(shell, rest, lug), lug), color=theme.INK)
         for instant in instants:
             moved = shell.displacement(instant.time)
             places = shell.drawn(moved, view.scale, SECTION_DRAWN)
@@ -154,10 +157,32 @@ def draw_boom(
             yield sheet.image()
 
 
-def _stopped(shell: MovingShell, rest: Array, stop: Stop) -> Array:
-    """(num_points, 3) where the section that a stop meets is drawn at rest."""
-    mine = shell.members(stop.segment)
-    return np.asarray(rest[mine[np.abs(shell.points[mine, 0] - stop.x) < SAME_PLACE]])
+def _met(shell: MovingShell, rest: Array, place: Stop | Lug) -> Array:
+    """(num_points, 3) where the section that a stop or a cylinder meets is drawn at rest."""
+    mine = shell.members(place.segment)
+    return np.asarray(rest[mine[np.abs(shell.points[mine, 0] - place.x) < SAME_PLACE]])
+
+
+def _rod(section: Array, lug: Lug) -> tuple[Array, Triangles]:
+    """Points and triangles of a cylinder: a bar from a flange towards the ground, cut where wedges
+    end.
+
+    Args:
+        section: (num_points, 3) in m, the outline at the lug, where it is drawn.
+        lug: the line of the bar.
+    """
+    low, high = section[:, 2].min(), section[:, 2].max()
+    size, line = 0.35 * (high - low), -np.array([lug.along, lug.up])
+    start = np.array([section[:, 0].mean(), low if lug.up > 0.0 else high])
+    # A flat line would not end.
+    end = start + 2.0 * size / max(abs(lug.up), 0.3) * line
+    half = 0.15 * size * np.array([-line[1], line[0]])
+    profile = [start + half, start - half, end - half, end + half]
+    middle, across = section[:, 1].mean(), 0.25 * np.ptp(section[:, 1])
+    points = np.array([[x, y, z] for y in (middle - across, middle + across) for x, z in profile])
+    around = [(k, (k + 1) % 4) for k in range(4)]
+    sides = [part for i, j in around for part in ((i, j, j + 4), (i, j + 4, i + 4))]
+    return points, np.array([(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), *sides], dtype=np.int32)
 
 
 def _wedge(held: Array, side: float = -1.0, gap: float = 0.0) -> tuple[Array, Triangles]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -64,6 +64,24 @@ class Stop(NamedTuple):
     clearance: float
 
 
+class Lug(NamedTuple):
+    """Where a cylinder meets a segment.
+
+    Args:
+        segment: its number.
+        x: m.
+        along, up: the unit vector from the ground to it.
+    """
+
+    segment: int
+    x: float
+    along: float
+    up: float
+
+
+_Kind = TypeVar("_Kind", Stop, Lug)
+
+
 @dataclass(frozen=True, slots=True)
 class MovingShell:
     """A reduced shell and its motion.
@@ -74,6 +92,7 @@ class MovingShell:
         segment: (num_triangles,) of each triangle.
         overlaps: from the base to the tip, where the segments touch along the third direction.
         stops: above and below segments.
+        lugs: of cylinders.
         modes: (num_modes, num_points, 3) in 1/√kg.
         state: (time, mode) modal coordinates.
         motion: trajectories of this shell alone, in which ``tip`` is along the third direction.
@@ -86,6 +105,7 @@ class MovingShell:
     segment: Numbers
     overlaps: Sequence[Overlap]
     stops: Sequence[Stop]
+    lugs: Sequence[Lug]
     modes: npt.NDArray[np.float32]
     state: xr.DataArray
     motion: xr.Dataset
@@ -102,7 +122,8 @@ class MovingShell:
             fields: what ``shell_model.stress.fields`` gathers, ``state`` (time, mode), and the
                 joints: ``joint_outer``, ``joint_inner``, ``clearance`` and ``lateral_clearance``
                 (joint), ``station_joint`` (station); ``stop_segment``, ``stop_x``, ``stop_side``
-                and ``stop_clearance`` (stop). What the boom has none of may be missing.
+                and ``stop_clearance`` (stop); ``lug_segment``, ``lug_x``, ``lug_along`` and
+                ``lug_up`` (lug). What the boom has none of may be missing.
             motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
                 ``contact_force`` and ``contact_force_peak`` in N; coordinate ``direction`` of the
                 stations.
@@ -113,7 +134,8 @@ class MovingShell:
             triangles=fields["triangles"].values,
             segment=fields["segment"].values,
             overlaps=_overlaps(fields, directions, "z"),
-            stops=_stops(fields),
+            stops=_listed(fields, "stop", Stop),
+            lugs=_listed(fields, "lug", Lug),
             modes=fields["modes"].values,
             state=fields["state"].load(),
             motion=motion,
@@ -128,6 +150,7 @@ class MovingShell:
             points=side.points @ _FROM_ABOVE,
             overlaps=sideways,
             stops=[],
+            lugs=[],
             modes=side.modes @ _FROM_ABOVE.astype(np.float32),
             motion=motion.assign(tip=motion["tip_lateral"]),
             from_above=True,
@@ -255,11 +278,12 @@ def _overlaps(fields: xr.Dataset, directions: npt.NDArray[np.str_], along: str) 
     ]
 
 
-def _stops(fields: xr.Dataset) -> list[Stop]:
-    if "stop_segment" not in fields:
+def _listed(fields: xr.Dataset, what: str, kind: type[_Kind]) -> list[_Kind]:
+    """What stands in columns, one for each of its fields."""
+    if f"{what}_segment" not in fields:
         return []
-    columns = [fields[f"stop_{name}"].values.tolist() for name in Stop._fields]
-    return [Stop(*row) for row in zip(*columns, strict=True)]
+    columns = [fields[f"{what}_{name}"].values.tolist() for name in kind._fields]
+    return [kind(*row) for row in zip(*columns, strict=True)]
 
 
 def round_scale(largest: float) -> float:

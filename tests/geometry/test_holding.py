@@ -171,13 +171,13 @@ FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
     ),
     "a depth that nothing reads": (
         "segment[1].supports[2].depth",
-        "heeded where a cylinder pulls at the segment, by its first support alone; leave it out",
+        "of no use: only the first support of a segment with a cylinder has a depth; leave it out",
         [HINGE, Support(2.0, depth=0.1)],
         {"cylinders": (ARM,)},
     ),
     "a depth without a cylinder": (
         "segment[1].supports[1].depth",
-        "heeded where a cylinder pulls at the segment, by its first support alone; leave it out",
+        "of no use: only the first support of a segment with a cylinder has a depth; leave it out",
         [replace(HINGE, depth=0.1), Support(2.0)],
         {},
     ),

@@ -14,7 +14,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from mpi4py import MPI
 
 from dynamics.trajectory import Trajectory
-from geometry.boom import Boom, Stop
+from geometry.boom import Boom, Cylinder, Stop
 from runs.pipeline.shell_output import ShellOutput
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
@@ -34,10 +34,11 @@ def output(boom: Boom) -> ShellOutput:
 
 def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
     """Reference: the boom. Stations along z, then along y, then the stop inside the overlap,
-    which is above the inner segment alone.
+    which is above the inner segment alone; a cylinder is where its lug is.
     """
     stop = Stop(1, 9.5, 0.02, 1.0e9, 0.0, 1.0)
-    left = output(replace(boom_in_space(), stops=(stop,)))
+    cylinder = Cylinder(0, x=4.0, depth=0.25, ground=(1.0, -4.25), stiffness=1.0e7)
+    left = output(replace(boom_in_space(), stops=(stop,), cylinders=(cylinder,)))
     fields = left.fields
     assert fields["station_joint"].values.tolist() == [0, 0, 0, 0, -1]
     expected = {
@@ -47,8 +48,12 @@ def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
         "lateral_clearance": [LATERAL_LAW.clearance],
         "stop_side": [1.0],
         "stop_clearance": [0.02],
+        "lug_segment": [0],
+        "lug_x": [4.0],
+        "lug_along": [0.6],
+        "lug_up": [0.8],
     }
     assert {name: fields[name].values.tolist() for name in expected} == expected
-    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 9.0, 9.5, 10.0]
+    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0]
     assert left.largest.von_mises == 0.0
     assert set(left.meshes) == {"outer", "inner"}

@@ -16,7 +16,7 @@ from dynamics.damping import pressed_ratios
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
-from geometry.boom import Boom, Cylinder, Load, Support
+from geometry.boom import Boom, Cylinder, Load, Stop, Support
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
@@ -116,3 +116,15 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     assert found == pytest.approx(expected, rel=1.5e-2)
     frequencies = [system.frequencies[:2] for system in systems]
     assert frequencies[0] == pytest.approx(frequencies[1], rel=2e-2)
+
+
+@pytest.mark.slow
+def test_a_shell_rests_on_a_hinge_and_a_stop() -> None:
+    """Reference: analytic, the lever rule; nothing else holds the shell, and its weight presses."""
+    stop = Stop(0, 6.0, 1e-2, stiffness=0.0, stiffness_below=1e7, exponent=1.0)
+    segment = replace(luffed().segments[0], supports=(Support(0.0),))
+    boom = replace(luffed(), segments=(segment,), stops=(stop,), cylinders=())
+    system = shell(boom)
+    gaps = system.rows @ equilibrium(system, system.gathered().load)
+    pressed = sum(float(law.force(gap)) for law, gap in zip(system.laws, gaps, strict=True))
+    assert pressed == pytest.approx((-1500.0 * 10.0 * 5.0 - 5.0e3 * 10.0) / 6.0, rel=1e-6)

@@ -104,6 +104,10 @@ def two_joints(fields: xr.Dataset, trajectories: xr.Dataset) -> list[MovingShell
         stop_x=("stop", [9.5]),
         stop_side=("stop", [-1.0]),
         stop_clearance=("stop", [0.02]),
+        lug_segment=("lug", np.int32([0])),
+        lug_x=("lug", [4.0]),
+        lug_along=("lug", [0.6]),
+        lug_up=("lug", [0.8]),
     )
     return MovingShell.views(longer, motion)
 
@@ -116,7 +120,9 @@ def test_each_overlap_gets_its_stations(two_joints: list[MovingShell]) -> None:
     ]
     assert [tuple(overlap) for overlap in above.overlaps] == [(0, 1, [4, 5], 3.0e-3)]
     assert [tuple(stop) for stop in side.stops] == [(1, 9.5, -1.0, 0.02)]
+    assert [tuple(lug) for lug in side.lugs] == [(0, 4.0, 0.6, 0.8)]
     assert not above.stops
+    assert not above.lugs
 
 
 @pytest.mark.parametrize(

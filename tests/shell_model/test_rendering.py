@@ -11,8 +11,8 @@ from PIL import Image
 
 from geometry.arrays import Array
 from shell_model.pictures import rendering
-from shell_model.pictures.boom import BoomView, Instant
-from shell_model.pictures.deformation import MovingShell
+from shell_model.pictures.boom import BoomView, Instant, _rod
+from shell_model.pictures.deformation import Lug, MovingShell
 from shell_model.pictures.overlap import draw_overlap
 from shell_model.pictures.rendering import (
     RenderingUnavailable,
@@ -118,6 +118,21 @@ def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...
         seen = scene.seen_by(camera)
     row, column = (axis.mean() + 0.5 for axis in np.nonzero(seen[..., 0] < 128))
     np.testing.assert_allclose(camera.project(place), [column, 160 - row], atol=0.6)
+
+
+@pytest.mark.parametrize("up", [0.8, -0.8])
+def test_a_cylinder_is_a_bar_along_its_line(up: float) -> None:
+    """Reference: analytic. From the flange that is towards the ground, closed: the divergence
+    theorem gives length × thickness × width, |2 · 0.35 h / s_z| · 0.3 · 0.35 h · b / 2.
+    """
+    section = np.array([[4.0, y, z] for y in (-0.3, 0.3) for z in (-0.5, 0.5)])
+    points, triangles = _rod(section, Lug(0, 4.0, 0.6, up))
+    a, b, c = points[triangles].transpose(1, 0, 2)
+    volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0
+    assert abs(volume) == pytest.approx(2.0 * 0.35 / 0.8 * 0.3 * 0.35 * 0.3)
+    near, far = points[[0, 1, 4, 5]].mean(axis=0), points[[2, 3, 6, 7]].mean(axis=0)
+    assert near == pytest.approx([4.0, 0.0, -0.5 if up > 0.0 else 0.5])
+    assert (far - near) / np.linalg.norm(far - near) == pytest.approx([-0.6, 0.0, -up])
 
 
 @pytest.fixture(scope="module")
