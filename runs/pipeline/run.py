@@ -134,15 +134,17 @@ def run_case(
         models={name: outcome.summary for name, outcome in outcomes.items()},
         failures=failures,
     )
+    # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
+    trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
+    data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather(
         {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
     )
     if ensembles is not None and case.ensemble is not None:
         summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
         ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
-    # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
-    trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
-    data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
+        for name, values in ensembles.data_vars.items():
+            values.attrs.update(data[name].attrs)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Run(Results(case, data, summary, ensembles), shells)
 

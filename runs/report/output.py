@@ -18,6 +18,7 @@ from runs.case.user_files import check_left
 from runs.folder.files import beside, whole
 from runs.pipeline.results import (
     CASE,
+    CONVENTIONS,
     ENSEMBLES,
     FIELDS,
     SUMMARY,
@@ -97,7 +98,9 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         prefix = f"{name}-" if several else ""
         fields[f"{prefix}{FIELDS}"] = shell.fields
         shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
-        shell.stresses.to_netcdf(folder / f"{prefix}{STRESSES}", engine="scipy")
+        shell.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
+            folder / f"{prefix}{STRESSES}", engine="scipy"
+        )
         # Of names joined by a hyphen two may be the same.
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):

@@ -70,8 +70,16 @@ def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str
     dims = ("time", "segment", "place")
     return xr.Dataset(
         {
-            "von_mises": (dims, largest, {"units": "Pa"}),
-            "von_mises_patch": (dims, patched, {"units": "Pa"}),
+            "von_mises": (
+                dims,
+                largest,
+                {"units": "Pa", "long_name": "largest von Mises stress near the place"},
+            ),
+            "von_mises_patch": (
+                dims,
+                patched,
+                {"units": "Pa", "long_name": "largest mean of it over a patch"},
+            ),
         },
         coords={
             "time": ("time", shell.time, {"units": "s"}),

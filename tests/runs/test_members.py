@@ -120,6 +120,16 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
     assert slow_below(boom, case.time) is None
 
 
+def test_ensembles_say_what_they_are(run: Run) -> None:
+    """As the trajectories of the same places do."""
+    ensembles = run.results.ensembles
+    assert ensembles is not None
+    assert ensembles.attrs["Conventions"] == "CF-1.8"
+    for name, values in ensembles.data_vars.items():
+        assert values.attrs == run.results.trajectories[name].attrs
+        assert set(values.attrs) == {"units", "long_name"}
+
+
 def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
     results = Results.load(folder)
     assert results.ensembles is not None
