@@ -29,7 +29,7 @@ poissons_ratio = 0.3
 density = 7850.0
 
 [gravity]
-angle = 30.0
+acceleration = 9.80665
 
 [start]
 state = "equilibrium"
@@ -98,7 +98,7 @@ def turning(boom: Boom) -> float:
     """Moment of the weights about the hinge in N·m."""
     weights = [segment.mass_per_length * segment.length for segment in boom.segments]
     moment = weights[0] * 4.5 + weights[1] * 11.25 + 1000.0 * 15.0
-    return moment * 9.80665 * float(np.cos(np.radians(30.0)))
+    return moment * 9.80665
 
 
 # From (1.2, −2.4) to (3, −0.5) m, about (0, −0.2) m.
