@@ -20,7 +20,7 @@ import numpy as np
 from runs.case.limits import MOST_TIMES
 from runs.case.messages import BadInput, choices
 from runs.case.units import Unit
-from runs.case.user_files import read_text
+from runs.case.user_files import read_any_text
 from runs.process.shown import shown
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
@@ -96,7 +96,7 @@ def read_pairs(
     )
     place, name = Path(path).parent / file, f"'{shown(file)}'"
     try:
-        rows = _rows(read_text(place))
+        rows = _rows(read_any_text(place))
         if len(rows) > MOST_TIMES:
             raise _Unfit(f"has {len(rows)} lines; give {MOST_TIMES} at most")
         headings = [rows.pop(0) for _ in range(2) if rows and not any(map(_is_number, rows[0]))]

@@ -48,9 +48,9 @@ _SYMBOLS: dict[str, tuple[str, Dimension]] = {
     "GPa": ("1.0e9", _PRESSURE),
 }
 
-# m^2, m2, N/m^1.5.
-_POWER = re.compile(r"([^\^0-9]+|1)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|([0-9]))?")
-_PLAIN = str.maketrans("²³⁴μ·*", "234µ  ")
+# m^2, m2, m-2, N/m^1.5.
+_POWER = re.compile(r"([^\^0-9-]+|1|-)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|(-?[0-9]))?")
+_PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ class Unit:
         Raises:
             ValueError: no such unit is known.
         """
-        above, *below = text.translate(_PLAIN).split("/")
+        above, *below = text.replace("**", "^").translate(_PLAIN).split("/")
         # Decimal sizes are exact fractions: a density in t/mm³ is to be exactly 1e12 kg/m³.
         size: Fraction | float = Fraction(1)
         exponents = [0.0, 0.0, 0.0]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import codecs
 import errno
 import os
 import stat
@@ -50,9 +51,28 @@ def read_text(path: Path) -> str:
         OSError: it cannot be read, is no regular file, or a too large one.
         ValueError: it is not UTF-8, or no path.
     """
+    return _read(path).decode("utf-8-sig")
+
+
+def read_any_text(path: Path) -> str:
+    """As :func:`read_text`, but also in the encodings in which spreadsheets save.
+
+    These are UTF-16, which begins with its mark, and where it is not UTF-8 the Western one of
+    Windows.
+    """
+    data = _read(path)
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252")
+
+
+def _read(path: Path) -> bytes:
     check_regular(path)
     with path.open("rb") as file:
         data = file.read(LARGEST + 1)
     if len(data) > LARGEST:
         raise OSError(errno.EFBIG, f"larger than {LARGEST // 1_000_000} MB", str(path))
-    return data.decode("utf-8-sig")
+    return data

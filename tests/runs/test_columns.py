@@ -61,6 +61,18 @@ def test_a_file_s_columns_are_what_they_say(csv: str, keys: str) -> None:
         assert pair == pytest.approx(expected, rel=1e-15)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_files_are_read_as_spreadsheets_save_them(encoding: str) -> None:
+    """Reference: analytic, the same pairs; the names and the unit have letters beyond ASCII."""
+    csv = "Zeit (s);Erregung für Süd (m/s²)\r\n0;0,5\r\n0,25;-1500\r\n"
+    keys = 'columns = ["Zeit", "Erregung für Süd"]'
+    case_of("0,0\n1,1\n", "acceleration = 1.0", "base")
+    text = Path("case.toml").read_text(encoding="utf-8").replace("acceleration = 1.0", keys)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    Path("gust.csv").write_bytes(csv.encode(encoding))
+    assert reading.load("case.toml").base[0].table == TABLE
+
+
 @pytest.mark.parametrize(
     ("unit", "factor"), [("g", 9.80665), ("cm/s2", 0.01), ("mm/s²", 0.001), ("m/s^2", 1.0)]
 )
@@ -211,6 +223,9 @@ def test_what_happens_beyond_a_series_is_said(times: tuple[float, float], note: 
         ("N s/m²", 1.0, (-1.0, 1.0, -1.0)),
         ("kN·m", 1.0e3, (2.0, 1.0, -2.0)),
         ("1/s", 1.0, (0.0, 0.0, -1.0)),
+        ("mm s⁻²", 1.0e-3, (1.0, 0.0, -2.0)),
+        ("m/s**2", 1.0, (1.0, 0.0, -2.0)),
+        ("-", 1.0, (0.0, 0.0, 0.0)),
         ("μm", 1.0e-6, (1.0, 0.0, 0.0)),
     ],
 )
