@@ -36,13 +36,17 @@ _BENT = 5.0e-3
 _ROUND_OFF = 1.0e-9
 
 
-def pressed_modes(system: GapSystem) -> tuple[Array, Array]:
+def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes) with the joints pressed.
 
-    Rows that press at rest under the constant loads have the stiffness that they have there. Where
-    none does at a station between segments, all of it are tied.
+    Rows that press at rest have the stiffness that they have there. Where none does at a station
+    between segments, all of it are tied.
+
+    Args:
+        system: of a boom.
+        rest: (num_modes,) its rest in √kg·m; that under the constant loads unless given.
     """
-    stiffness = _stiffness_at_rest(system)
+    stiffness = _stiffness_at_rest(system, rest)
     pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
     tied = system.rows[~pressed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(tied) if tied.size else np.eye(system.num_modes)
@@ -54,12 +58,13 @@ def pressed_modes(system: GapSystem) -> tuple[Array, Array]:
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
 
 
-def _stiffness_at_rest(system: GapSystem) -> Array:
-    """(num_rows,) F'(y) of each row in N/m at rest under the constant loads; 0 where none is."""
+def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
+    """(num_rows,) F'(y) of each row in N/m at rest; 0 where none is."""
     try:
-        gaps = system.rows @ equilibrium(system, system.load)
+        rest = equilibrium(system, system.load) if rest is None else rest
     except NumericsError:
         return np.zeros(len(system.laws))
+    gaps = system.rows @ rest
     return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
 
 

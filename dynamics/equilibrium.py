@@ -8,14 +8,15 @@ would leave a whole range of rest positions; this is the one without it.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, contact_terms
+from dynamics.contact import ContactLaw, Terms, contact_terms, term_energy, term_force, term_slope
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.contact_kicks import contact_energy, contact_forces, contact_slopes
 
 # Unbalanced force, as a part of the load, at which a system counts as at rest; the minimiser aims
 # at a hundredth of it.
@@ -51,6 +52,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
         )
     except LinAlgError:
         raise NumericsError("nothing holds the boom: it has no static equilibrium") from None
+    if not system.laws:
+        return np.asarray(load / system.omega2)
     scaled_load = solve_triangular(factor, load, lower=True)
     unit = float(np.linalg.norm(scaled_load))
     scaled_load /= unit
@@ -58,18 +61,16 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     half = solve_triangular(factor, np.diag(np.sqrt(np.abs(system.omega2))), lower=True)
     stiffness = (half * np.sign(system.omega2)) @ half.T
 
-    y, forces = np.zeros((2, len(system.laws)))
-
     def energy(x: Array) -> float:
-        contact = contact_energy(unit * rows @ x, terms) / unit**2
+        contact = _of_rows(term_energy, unit * rows @ x, terms).sum() / unit**2
         return float(0.5 * x @ stiffness @ x - scaled_load @ x + contact)
 
     def unbalanced(x: Array) -> Array:
-        contact_forces(unit * x, rows, terms, y, forces)
+        forces = _of_rows(term_force, unit * rows @ x, terms)
         return np.asarray(stiffness @ x - scaled_load + rows.T @ forces / unit)
 
     def tangent(x: Array) -> Array:
-        slopes = contact_slopes(unit * rows @ x, terms)
+        slopes = _of_rows(term_slope, unit * rows @ x, terms)
         return np.asarray(stiffness + (rows.T * slopes) @ rows)
 
     from scipy.optimize import minimize
@@ -85,3 +86,14 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     if not np.linalg.norm(found.jac) < BALANCE:
         raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
     return np.asarray(unit * solve_triangular(factor, found.x, lower=True, trans=1))
+
+
+def _of_rows(of_term: Any, y: Array, terms: Terms) -> Array:
+    """(num_rows,) what the terms of each row say of its gap.
+
+    Finding a rest takes less time than numba does to load the loop over many.
+    """
+    total = np.zeros(y.size)
+    for term in terms:
+        total[term["row"]] += of_term.py_func(term, y[term["row"]])
+    return total

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms, term_energy, term_force, term_slope
+from dynamics.contact import Limits, Terms, term_energy, term_force
 from dynamics.kernels.compiled import SUMS
 
 
@@ -26,16 +26,6 @@ def contact_forces(a: Array, rows: Array, terms: Terms, y: Array, force: Array) 
         force[j] += term_force(terms[t], y[j])
         touching = touching or force[j] != 0.0
     return touching
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def contact_slopes(y: Array, terms: Terms) -> Array:
-    """(num_rows,) dF/dy of every row in N/m."""
-    stiffness = np.zeros(y.size)
-    for t in range(terms.size):
-        j = terms[t]["row"]
-        stiffness[j] += term_slope(terms[t], y[j])
-    return stiffness
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -105,7 +105,10 @@ def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
 
 
 def _line(played: Rest, tied: Rest) -> str:
-    hertz = [float(pressed_modes(rest.system)[0][0]) / (2.0 * np.pi) for rest in (played, tied)]
+    hertz = [
+        float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi)
+        for rest in (played, tied)
+    ]
     return (
         f"At rest the tip is at {played.tip / MILLI:.4g} mm, without play at "
         f"{tied.tip / MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the joints "
