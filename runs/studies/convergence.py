@@ -47,6 +47,7 @@ STUDIES = (
     "histories",
     "supports",
     "second_order",
+    "sections",
 )
 
 

@@ -12,8 +12,7 @@ from mpi4py import MPI
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import gap_system, tied_system
-from dynamics.contact import PowerContact
+from beam_model.segment_model import tied_system
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
@@ -31,8 +30,8 @@ from geometry.boom import (
 )
 from geometry.contact_places import ContactLine, Stretch
 from geometry.polygon import PolygonSection
-from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
+from runs.studies import sections
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints
@@ -42,40 +41,12 @@ from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
-from tests.shell_model.conftest import compliance
 
 Shells = Callable[..., SegmentShell]
 
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
-HEXAGON = hexagon(0.50, 0.45, 0.25, 0.0065, 0.0065, 0.0065)
-INNER_HEXAGON = hexagon(0.46, 0.40, 0.22, 0.005, 0.005, 0.005)
-OCTAGON = octagon(0.50, 0.36, 0.08, 0.008, 0.008, 0.006)
-INNER_OCTAGON = octagon(0.46, 0.31, 0.07, 0.006, 0.006, 0.005)
-U = u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006)
-INNER_U = u_section(0.46, 0.29, 0.125, 3, top=0.006, bottom=0.005, web=0.005)
+LINEAR = sections.LAW
+(HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
 SECTIONS = {"hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
-
-
-def boom_of(outer: Section, inner: Section) -> Boom:
-    """The paper's spans, supports and play, loaded by the segments' weight at 1 m/s²."""
-    loads = [STEEL.density * one.area for one in (outer, inner)]
-    return replace(
-        flat_boom(),
-        segments=(
-            box_segment("outer", 0.0, 10.0, outer, loads[0], HELD),
-            box_segment("inner", 9.0, 19.0, inner, loads[1]),
-        ),
-    )
-
-
-def collared(boom: Boom, thickness: float) -> Boom:
-    """With collars around both segments at both stations."""
-    outer, inner = boom.segments
-    at = {
-        "outer": (Collar(8.85, 9.15, thickness), Collar(9.85, 10.0, thickness)),
-        "inner": (Collar(9.0, 9.15, thickness), Collar(9.85, 10.15, thickness)),
-    }
-    return replace(boom, segments=tuple(replace(s, collars=at[s.name]) for s in (outer, inner)))
 
 
 def reduced(boom: Boom, size: float, line: ContactLine = "near webs") -> ReducedShell:
@@ -170,47 +141,16 @@ def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Sh
     assert found[1] == pytest.approx(found[0], rel=1e-6, abs=1e-3)
 
 
-def _frame_compliance(section: Section, length: float) -> float:
-    """Of a ring's bottom and top against each other under forces on their corners, in m/N.
-
-    Plates as straight bars that stretch and bend without shear, rigidly joined, by their stiffness
-    matrices (Przemieniecki 1968).
-    """
-    count = len(section.plates)
-    stiffness = np.zeros((3 * count, 3 * count))
-    for n, plate in enumerate(section.plates):
-        long, area = plate.length, length * plate.thickness
-        axial = STEEL.youngs_modulus * area / long
-        bend = STEEL.youngs_modulus * area * plate.thickness**2 / 12.0 / long**3
-        t = plate.tangent
-        # Stretch, and the turns of both ends against the chord.
-        turns = np.array([-t[1], t[0]]) / long
-        strains = np.zeros((3, 6))
-        strains[0] = [*-t, 0.0, *t, 0.0]
-        strains[1] = [*turns, 1.0, *-turns, 0.0]
-        strains[2] = [*turns, 0.0, *-turns, 1.0]
-        own = np.diag([axial, 0.0, 0.0])
-        own[1:, 1:] = bend * long**2 * np.array([[4.0, 2.0], [2.0, 4.0]])
-        dofs = [3 * n, 3 * n + 1, 3 * n + 2, *(3 * ((n + 1) % count) + np.arange(3))]
-        stiffness[np.ix_(dofs, dofs)] += strains.T @ own @ strains
-    force = np.zeros(3 * count)
-    for side in (1, -1):
-        plate = section.face("z", side).plate
-        force[[3 * plate + 1, 3 * ((plate + 1) % count) + 1]] = 0.5 * side
-    return float(force @ np.linalg.lstsq(stiffness, force, rcond=1e-12)[0])
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
-def test_a_ring_that_is_pressed_unfolds_as_a_frame(box_shell: Shells, name: str) -> None:
+def test_a_ring_that_is_pressed_unfolds_as_a_frame(name: str) -> None:
     """Reference: other code, a plane frame of bars. A ring of 20 mm bends as bars do; one of 80 mm
     is 3 % stiffer, since its folds keep it from bending across.
     """
-    shell = box_shell(0.01, length=0.02, section=SECTIONS[name])
-    stretch = Stretch.on(shell.segment, 0.01, 0.02)
-    top, bottom = (CornerLines(shell).deflection(stretch, "z", 0.0, side) for side in (1, -1))
-    expected = _frame_compliance(SECTIONS[name], 0.02)
-    assert compliance(shell, top - bottom) == pytest.approx(expected, rel=2e-3)
+    section = SECTIONS[name]
+    expected = sections.ring_of_bars(section, 0.02)
+    assert sections.ring_of_shell(section, 0.02, 0.01) == pytest.approx(expected, rel=2e-3)
+    assert sections.ring_of_shell(section, 0.08, 0.02) < 0.98 * sections.ring_of_bars(section, 0.08)
 
 
 @pytest.mark.slow
@@ -227,9 +167,7 @@ def test_a_box_written_as_a_polygon_is_the_box() -> None:
         for box in boxes
     ]
     assert polygons[0].shear_area != boxes[0].shear_area
-    box, polygon = (
-        replace(flat_boom(), segments=_segments(*sections)) for sections in (boxes, polygons)
-    )
+    box, polygon = (replace(flat_boom(), segments=_segments(*pair)) for pair in (boxes, polygons))
     first, second = (reduced(boom, 0.5).system for boom in (box, polygon))
     assert second.omega2 == pytest.approx(first.omega2, rel=1e-9, abs=1e-6)
     assert _compliance(second) == pytest.approx(_compliance(first), rel=1e-9)
@@ -254,22 +192,14 @@ def test_a_hexagonal_boom_with_collars_follows_its_beam() -> None:
     """Reference: other code, Timoshenko elements. Without collars at its stations the hexagons
     unfold under the pads, and the first peak is 9 % higher; the box is 0.1 % apart without any.
     """
-    plain = boom_of(HEXAGON, INNER_HEXAGON)
-    beam = gap_system(plain, finite_element_segments(plain, 0.25, "timoshenko", True), [LINEAR])
-    options = ShellOptions(0.1, contact_tolerance=0.01)
-    shell = reduce_boom(collared(plain, 0.010), [LINEAR], options, MPI.COMM_WORLD)
-    assert _peak(shell.system) == pytest.approx(_peak(beam), rel=0.015)
-
-
-def _peak(system: GapSystem) -> float:
-    """The largest deflection of the tip within 0.8 s, in m."""
-    tip = integrate(Motion(system, 0.8, output_step=1e-3)).data["tip"].values
-    return float(np.abs(tip).max())
+    plain = sections.boom_of(HEXAGON, INNER_HEXAGON)
+    shell = sections.shell_peak(sections.collared(plain, 0.010))
+    assert shell == pytest.approx(sections.beam_peak(plain), rel=0.015)
 
 
 def _spatial(outer: Section, inner: Section) -> Boom:
     """In space, pushed sideways by 0.3 of what pushes it along z."""
-    boom = boom_of(outer, inner)
+    boom = sections.boom_of(outer, inner)
     segments = [
         replace(s, lateral=replace(s.lateral, load=0.3 * s.load))
         for s in boom.segments
@@ -320,7 +250,7 @@ def _of_walls(system: GapSystem, direction: str) -> Array:
 @pytest.mark.slow
 def test_a_mirrored_boom_moves_the_other_way() -> None:
     """Reference: symmetry. Upside down, under forces upside down: what pressed up presses down."""
-    upright = collared(boom_of(U, INNER_U), 0.006)
+    upright = sections.collared(sections.boom_of(U, INNER_U), 0.006)
     mirrored = replace(
         upright,
         segments=tuple(
@@ -347,10 +277,10 @@ def _upside_down(section: PolygonSection) -> PolygonSection:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sections", [(HEXAGON, INNER_HEXAGON), (U, INNER_U)], ids=["hexagon", "u"])
-def test_a_pressed_boom_rests_as_its_beams_do(sections: tuple[Section, Section]) -> None:
+@pytest.mark.parametrize("pair", [(HEXAGON, INNER_HEXAGON), (U, INNER_U)], ids=["hexagon", "u"])
+def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section]) -> None:
     """Reference: other code, tied Timoshenko elements; boxes are 0.25 % apart without collars."""
-    plain = boom_of(*sections)
+    plain = sections.boom_of(*pair)
     system = reduced(plain, 0.25).system
     pressed = np.diag(system.omega2) + 1.0e12 * system.rows.T @ system.rows
     rest = np.linalg.solve(pressed, system.load)
@@ -364,15 +294,15 @@ def test_a_pressed_boom_rests_as_its_beams_do(sections: tuple[Section, Section])
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across", "surface"])
 @pytest.mark.parametrize(
-    "sections",
+    "pair",
     [(HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U)],
     ids=["hexagon", "octagon", "u"],
 )
-def test_all_that_a_segment_may_have(sections: tuple[Section, Section], line: ContactLine) -> None:
+def test_all_that_a_segment_may_have(pair: tuple[Section, Section], line: ContactLine) -> None:
     """Reference: analytic. Collars, diaphragms, masses, springs, pads and stops are read on any
     outline: the masses of a rigid motion along z are those of all parts.
     """
-    boom = _laden(boom_of(*sections), line)
+    boom = _laden(sections.boom_of(*pair), line)
     options = ShellOptions(
         0.5, contact_line=line, contact_tolerance=0.3, krylov=KrylovOptions(moments=1)
     )
