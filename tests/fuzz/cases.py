@@ -26,6 +26,8 @@ _TABLES = (
     '[[stop]]\nsegment = "inner"\nx = 18.0\nplay = 0.1\nstiffness = {}\n',
     '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, {}]\nstiffness = 1e7\n',
     '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, -2.0]\nstiffness = {}\n',
+    "[gravity]\nacceleration = {}\nangle = 60.0\n", "[gravity]\nangle = {}\n",
+    "[[axial]]\nforce = {}\n", "[[axial]]\nfalls = 2\nmass = {}\n",
     "[ensemble]\nmembers = {}\n", "[ensemble]\nmembers = 3\nrelative = {}\n",
     "[ensemble]\nmembers = 3\nseed = {}\n",
     '[[load]]\nsegment = "inner"\nfrom = 12.0\nto = {}\nmagnitude = -10.0\n',

@@ -10,6 +10,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
+import numpy as np
 from pydantic import Field
 
 from beam_model.component import SegmentModel
@@ -192,7 +193,14 @@ class BeamTable(ModelTable):
     def critical_factor(self, boom: Boom) -> float | None:
         from beam_model.boom_modes import critical_factor
 
-        return critical_factor(boom, self.segments(boom)) if boom.compressed else float("inf")
+        if not boom.compressed:
+            return float("inf")
+        try:
+            with np.errstate(all="ignore"):
+                return critical_factor(boom, self.segments(boom))
+        except (ArithmeticError, np.linalg.LinAlgError, ValueError):
+            # Numbers out of proportion: the run ends with them, and says so.
+            return None
 
 
 _Kind = TypeVar("_Kind", bound=ModelTable)
