@@ -5,14 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
-from dolfinx import fem
 from mpi4py import MPI
-from petsc4py import PETSc
-from scipy.linalg import block_diag, null_space, qr
 
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Direction, Segment, Support
@@ -23,9 +20,7 @@ from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
 from shell_model.forms import ShellForms
 from shell_model.reduction.products import times
-
-# Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
-ON_LINE = 1.0e-7
+from shell_model.shell import Matrices, Plates, Shell, free_rows, hold, owned_nodes
 
 # What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
 # segment can tell it from a rigid hold.
@@ -33,146 +28,6 @@ RIGID_TURN = 1.0e5
 
 # Part of the largest value below which a value of a load is round-off.
 _ROUND_OFF = 1.0e-10
-
-
-class Plates(NamedTuple):
-    """What plates are before they are matrices: function space, thickness, forms, supports.
-
-    ``compressed``: whether they carry an axial force.
-    """
-
-    space: Any
-    thickness: Any
-    forms: ShellForms
-    holds: list[Any]
-    compressed: bool = False
-
-
-class Matrices:
-    """Matrices of plates with springs and masses, assembled when they are asked for. Collective.
-
-    Args:
-        comm: the ranks that share them.
-        plates: their forms.
-        holds: Dirichlet conditions.
-        springs, masses: what is attached.
-        copies: of the plates.
-    """
-
-    def __init__(
-        self,
-        comm: MPI.Comm,
-        plates: Plates,
-        holds: list[Any],
-        springs: Attached,
-        masses: Attached,
-        copies: float = 1.0,
-    ) -> None:
-        self._comm, self.plates, self._holds, self._copies = comm, plates, holds, copies
-        self._springs, self._masses = springs, masses
-
-    @cached_property
-    def stiffness(self) -> PETSc.Mat:
-        return self._assembled(self.plates.forms.stiffness, 1.0, self._springs)
-
-    @cached_property
-    def mass(self) -> PETSc.Mat:
-        return self._assembled(self.plates.forms.mass, 0.0, self._masses)
-
-    @cached_property
-    def geometric(self) -> PETSc.Mat:
-        nothing = Attached(self._masses.rows[:, :0], self._masses.factors[:0])
-        return self._assembled(self.plates.forms.geometric, 0.0, nothing)
-
-    def _assembled(self, form: Any, diagonal: float, attached: Attached) -> PETSc.Mat:
-        matrix = compat.assemble_matrix(form, self._holds, diagonal)
-        matrix.scale(self._copies)
-        attached.add_to(self._comm, matrix)
-        return matrix
-
-
-@dataclass(frozen=True, slots=True)
-class Shell:
-    """K u = f and M ü, distributed by rows.
-
-    Args:
-        comm: the ranks that share it.
-        matrices: K and M.
-        free: (num_owned,) False in held rows.
-        springs: of the supports.
-        nodes: (num_owned_nodes, 3) places of the displacement nodes in m.
-        node_dofs: (num_owned_nodes, 3) global rows of their displacements.
-        rotation_nodes: (num_owned_rotation_nodes, 3) places of the rotation nodes in m.
-        rotation_dofs: (num_owned_rotation_nodes, 3) global rows of their rotations.
-        space: the function space, which owns the communicator that the matrices live on.
-    """
-
-    comm: MPI.Comm
-    matrices: Matrices
-    free: Mask
-    springs: Attached
-    nodes: Array
-    node_dofs: Indices
-    rotation_nodes: Array
-    rotation_dofs: Indices
-    space: Any
-
-    @property
-    def stiffness(self) -> PETSc.Mat:
-        """(num_dofs, num_dofs), decoupled and positive in held rows. Collective."""
-        return self.matrices.stiffness
-
-    @property
-    def mass(self) -> PETSc.Mat:
-        """(num_dofs, num_dofs), 0 on the diagonal of held rows, which puts these degrees of freedom
-        at infinite frequency. Collective.
-        """
-        return self.matrices.mass
-
-    @property
-    def geometric(self) -> PETSc.Mat | None:
-        """(num_dofs, num_dofs) K_G, what axial forces take from the stiffness; None without any.
-
-        Collective.
-        """
-        return self.matrices.geometric if self.matrices.plates.compressed else None
-
-    @property
-    def num_dofs(self) -> int:
-        """Number of degrees of freedom over all ranks."""
-        return int(self.space.dofmap.index_map.size_global)
-
-    @property
-    def owned(self) -> tuple[int, int]:
-        """First and past-the-last global row of this rank."""
-        first, last = self.space.dofmap.index_map.local_range
-        return int(first), int(last)
-
-    def rigid_motions(self) -> Array:
-        """(num_owned, num_free) rigid motions that the supports leave, six for a free segment.
-
-        Displacement nodes get ω × (x − middle), rotation nodes ω itself; combinations that
-        move a held row or stretch a spring drop out. Collective.
-        """
-        first, _ = self.owned
-        motions = np.zeros((self.free.size, 6))
-        ends = self.comm.allgather((self.nodes[:, 0].min(), self.nodes[:, 0].max()))
-        middle = 0.5 * (min(low for low, _ in ends) + max(high for _, high in ends))
-        for i, axis in enumerate(np.eye(3)):
-            motions[self.node_dofs - first, i] = axis
-            motions[:, 3 + i] = self.turn(axis, middle)
-        held = np.concatenate(self.comm.allgather(motions[~self.free]))
-        held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
-        # One rank decides on the basis of what is left, for all.
-        return np.asarray(motions @ self.comm.bcast(_unheld(held)))
-
-    def turn(self, axis: Array, x: float) -> Array:
-        """(num_owned,) motion of turning by 1 rad about an axis (3,) through x in m."""
-        first, _ = self.owned
-        motion = np.zeros(self.free.size)
-        motion[self.node_dofs - first] = np.cross(axis, self.nodes - [x, 0.0, 0.0])
-        motion[self.rotation_dofs - first] = axis
-        return motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -339,29 +194,6 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) 
     return Plates(space, thickness, forms, holds, bool(segment.compression))
 
 
-def _unheld(held: Array) -> Array:
-    """(6, num_free) orthonormal combinations of rigid motions that leave all of ``held`` at zero.
-
-    Args:
-        held: (num_held, 6) what each motion does to it. Where none slides along x the slide comes
-            first and by itself, since nothing pushes it.
-    """
-    slides = 0 if held[:, 0].any() else 1
-    if held.size == 0:
-        return np.eye(6)
-    others = null_space(qr(held[:, slides:], mode="r")[0][:6])
-    return np.asarray(block_diag(np.eye(slides), others))
-
-
-def free_rows(space: Any, holds: list[Any]) -> Mask:
-    """(num_owned,) False in the rows of a space that are held."""
-    free = np.ones(space.dofmap.index_map.size_local, dtype=bool)
-    for bc in holds:
-        held, _ = bc.dof_indices()
-        free[held[held < free.size]] = False
-    return free
-
-
 def _outline(
     comm: MPI.Comm,
     nodes: Array,
@@ -454,30 +286,3 @@ def _held_components(support: Support) -> list[tuple[int, int]]:
 
 def _is_clamped(support: Support) -> bool:
     return support.holds_slope("z") and support.holds_slope("y")
-
-
-def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:
-    """Dirichlet condition: zero.
-
-    Args:
-        space: of displacements and rotations.
-        part: 0 for the displacement, 1 for the rotation.
-        component: of it.
-        where: tells of places (num_places, 3) in m which are held.
-    """
-    held = space.sub(part).sub(component)
-    collapsed, _ = held.collapse()
-    dofs = fem.locate_dofs_geometrical((held, collapsed), lambda points: where(points.T))
-    function = fem.Function(collapsed)
-    function.x.array[:] = PETSc.ScalarType(0.0)
-    return fem.dirichletbc(function, dofs, held)
-
-
-def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
-    """Places of a vector part's nodes on this rank, and the global rows of their components."""
-    collapsed, to_parent = space.sub(part).collapse()
-    index_map = space.dofmap.index_map
-    local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
-    places = compat.node_places(collapsed)[: len(local)]
-    owned = local[:, 0] < index_map.size_local
-    return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)

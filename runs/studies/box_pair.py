@@ -30,7 +30,7 @@ from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
-from shell_model.segment_shell import Shell
+from shell_model.shell import Shell
 from shell_model.verification.lone_segment import shell_alone
 from shell_model.verification.plates import STEEL
 from shell_model.verification.solid import assemble_solid

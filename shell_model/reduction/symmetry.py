@@ -35,15 +35,8 @@ from shell_model.reduction.mirror import (
     quarter_mesh,
     quarter_of,
 )
-from shell_model.segment_shell import (
-    Matrices,
-    SegmentShell,
-    Shell,
-    assemble_plates,
-    free_rows,
-    hold,
-    owned_nodes,
-)
+from shell_model.segment_shell import SegmentShell, assemble_plates
+from shell_model.shell import Matrices, Shell, free_rows, hold, owned_nodes
 
 _Found = TypeVar("_Found")
 

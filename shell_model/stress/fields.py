@@ -12,7 +12,8 @@ import xarray as xr
 from scipy.spatial import cKDTree
 
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment_shell import ON_LINE, SegmentShell
+from shell_model.segment_shell import SegmentShell
+from shell_model.shell import ON_LINE
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import COMPONENTS, Modes
 

@@ -27,7 +27,7 @@ from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
 from shell_model.reduction.mirror import Family, on_plane
-from shell_model.segment_shell import ON_LINE, Matrices, Shell
+from shell_model.shell import ON_LINE, Matrices, Shell
 from shell_model.verification.solid_mesh import SolidMesh
 
 
@@ -116,6 +116,10 @@ class SolidMatrices(Matrices):
     @cached_property
     def mass(self) -> PETSc.Mat:
         return self._decoupled(self._forms.mass, 0.0)
+
+    @cached_property
+    def geometric(self) -> None:
+        return None
 
     def _decoupled(self, form: Any, diagonal: float) -> PETSc.Mat:
         matrix = compat.assemble_matrix(form, [], diagonal)

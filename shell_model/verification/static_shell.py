@@ -23,7 +23,7 @@ from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.reduction.products import times
-from shell_model.segment_shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
+from shell_model.shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
 
 # Part of the load that may be left over.
 _UNBALANCED = 1.0e-3

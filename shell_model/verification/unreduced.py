@@ -114,6 +114,8 @@ def _check(full: BoomShell) -> None:
         raise BoomError("joint", "the unreduced shell takes contacts without damping")
     if full.rows.dashpots:
         raise BoomError("joint", "the unreduced shell takes joints without dashpots")
+    if any(shell.segment.compression for shell in full.shells):
+        raise BoomError("axial", "the unreduced shell takes no axial forces")
     if full.lines:
         raise BoomError("cylinder", "the unreduced shell takes neither cylinders nor dashpots")
     if any(friction.law.pressed_by for friction in full.rows.frictions):
