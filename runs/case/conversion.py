@@ -21,6 +21,9 @@ def in_si(case: Case) -> Case:
 
     Args:
         case: that stands alone, without files.
+
+    Raises:
+        OverflowError: a number has none in SI units.
     """
     if case.units == "SI":
         return case

@@ -53,6 +53,9 @@ def load(path: str) -> Case:
         case = in_si(_read_tables(Case.model_validate(_read(path)), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
+    except OverflowError:
+        what = "a number is too large for SI units; look for one that is out of proportion"
+        raise BadInput(path, "units", what) from None
     check(case, path)
     return case
 

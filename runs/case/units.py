@@ -129,5 +129,9 @@ class System:
 
 
 def scaled(value: float, size: Fraction) -> float:
-    """Value times size as decimals are: 9.7 mm are 0.0097 m to the last bit."""
+    """Value times size as decimals are: 9.7 mm are 0.0097 m to the last bit.
+
+    Raises:
+        OverflowError: no number can be so large.
+    """
     return float(Fraction(repr(float(value))) * size)

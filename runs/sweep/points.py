@@ -124,11 +124,14 @@ def _in_units_of(system: System, variation: Variation, case: Case) -> Variation:
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
     """The case with some of its numbers set, as its author would write it."""
     changed = deepcopy(tables)
-    for variation, value in settings:
-        for place in variation.places:
-            place.put(changed, value)
     try:
+        for variation, value in settings:
+            for place in variation.places:
+                place.put(changed, value)
         return Case.model_validate(changed)
+    except OverflowError:
+        what = "a value is too large for SI units; give smaller ones"
+        raise BadInput(file, f"--vary {_label(settings)}", what) from None
     except ValidationError as error:
         fault = BadInput.from_validation(file, error)
     for variation, _ in settings:

@@ -50,6 +50,18 @@ def test_it_accepts_supports_and_modes_in_all_their_forms() -> None:
         assert faults(case) == []
 
 
+def test_it_accepts_places_in_all_their_forms() -> None:
+    case = data((CASES / "coarse.toml").read_text(encoding="utf-8"))
+    case["segment"][1] |= {"length": 10.0}
+    del case["segment"][1]["span"]
+    case["segment"][0]["supports"] = ["tail", {"x": {"tail": 2.0}}]
+    case["joint"][0] |= {"extension": 9, "stations": ["tail", {"head": 0.2}, 10]}
+    case["units"] = "N-mm"
+    assert faults(case) == []
+    case["joint"][0]["stations"] = ["tip"]
+    assert faults(case) == ["$.joint[0].stations[0]"]
+
+
 @pytest.mark.parametrize(
     ("place", "value", "fault"),
     [

@@ -250,6 +250,23 @@ def test_a_change_in_python_is_in_si_units() -> None:
     assert change(in_mm(), **{"joint.play": 0.02}).joints[0].play == 0.02
 
 
+def test_what_no_number_can_hold_is_refused() -> None:
+    text = written('units = "mm-t-s"', IN_MM).replace("7.85e-9", "7.85e299")
+    with pytest.raises(BadInput) as refused:
+        case_of(text)
+    assert str(refused.value) == (
+        "crane.toml: units: a number is too large for SI units; look for one that is out of "
+        "proportion"
+    )
+    in_mm()
+    with pytest.raises(BadInput) as refused:
+        plan("crane.toml", ["material.density=1e-9,1e300"], None, None)
+    assert str(refused.value) == (
+        "crane.toml: --vary material.density=1e+300: a value is too large for SI units; give "
+        "smaller ones"
+    )
+
+
 def test_other_systems_are_refused() -> None:
     with pytest.raises(BadInput) as refused:
         in_mm("inch-lbf-s")
