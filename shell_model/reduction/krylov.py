@@ -115,13 +115,15 @@ def reduce_family(
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
         grown = basis.grow(solve)
-        if done == 1 and shell.geometric is not None:
-            basis.follow(shell.geometric, solve)
         progress(done / stages)
         if not grown or (
             options.tolerance is not None and max(basis.errors(full, rows)) <= options.tolerance
         ):
             break
+    if shell.geometric is not None:
+        # Behind the others, whose moments go from block to block.
+        solve.move(order[0])
+        basis.follow(shell.geometric, solve)
     if options.tolerance is None:
         full = [_Full.at(frequency, solve, forces, rows) for frequency in tests]
     errors = basis.errors(full, rows)
@@ -190,6 +192,7 @@ class _Basis:
         self._append(rigid)
         self._rigid = self.size
         self._pushes = forces
+        self._pushed = forces.shape[1]
 
     @property
     def size(self) -> int:
@@ -202,8 +205,11 @@ class _Basis:
         return bool(block.shape[1])
 
     def follow(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
-        """Add what axial forces bend further of the motions so far."""
-        self._append(solve(times(geometric, self._vectors)))
+        """Add what axial forces bend further of the rigid motions and of the first block."""
+        pushes = times(geometric, self._vectors[:, : self._rigid + self._pushed])
+        sizes = np.linalg.norm(pushes, axis=0)
+        # What translates or twists is pushed by round-off alone.
+        self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_Full], rows: Array) -> tuple[float, float]:
         """Relative error of the compliance, and of what the readings get."""

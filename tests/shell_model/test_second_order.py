@@ -103,6 +103,13 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     assert found == pytest.approx(float(row @ moved), rel=1e-5)
 
 
+def test_what_axial_forces_add_to_the_basis_takes_nothing_from_it() -> None:
+    """Reference: other code path, solves of all degrees of freedom at the test frequencies."""
+    errors = shell().errors
+    assert errors["contact_compliance"] < 1e-6
+    assert errors["readings"] < 1e-4
+
+
 def test_a_shell_that_contacts_hold_tips_over_as_a_beam() -> None:
     """Reference: analytic, ∫P dx over the inertia about the middle; 1 % for what the walls bend."""
     boom = telescope(THRUST)
