@@ -18,6 +18,9 @@ from geometry.walls import trapezoids
 # Places closer than this part of a section's size are one.
 _SAME = 1.0e-9
 
+# In m, so that no product overflows.
+_LARGEST = 1.0e6
+
 # Turns of a corner in rad: below the first it is inwards, beyond the second a plate folds back.
 _LEAST_TURN, _MOST_TURN = -1.0e-9, np.radians(170.0)
 
@@ -41,9 +44,8 @@ class PolygonSection(Section):
             cell.
 
     Raises:
-        SectionError: fewer than three corners, numbers that are not positive and finite, a plate
-            without length, corners that turn inwards or run around more than once, walls that fill
-            the cell.
+        SectionError: fewer than three corners, sizes that are no section's, a plate without length,
+            corners that turn inwards or run around more than once, walls that fill the cell.
     """
 
     corners: tuple[Offset, ...]
@@ -186,11 +188,14 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
             f"{len(corners)} corners have as many plates between them, got {len(thicknesses)} "
             "thicknesses; give one for each plate, the last one from the last corner to the first"
         )
-    if not np.isfinite(corners).all():
-        raise SectionError("corners must be numbers of m")
+    for place in (number for corner in corners for number in corner):
+        if not abs(place) < _LARGEST:
+            raise SectionError(f"corners must be numbers of m below {_LARGEST:g}, got {place}")
     for thickness in thicknesses:
-        if not (np.isfinite(thickness) and thickness > 0.0):
-            raise SectionError(f"thicknesses must be positive numbers of m, got {thickness}")
+        if not 0.0 < thickness < _LARGEST:
+            raise SectionError(
+                f"thicknesses must be numbers of m above 0 and below {_LARGEST:g}, got {thickness}"
+            )
     places = np.array(corners)
     if _twice_enclosed(places) < 0.0:
         places = places * [-1.0, 1.0]

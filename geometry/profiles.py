@@ -75,12 +75,15 @@ def u_section(
         height: of the bottom from the top.
         width: of the webs from each other.
         radius: of the bends; half the width makes one round of both.
-        facets: flat plates in each bend, between the level bottom and the web.
+        facets: flat plates in each bend, between the level bottom and the web; one at least.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
 
     Raises:
-        SectionError: the bends are larger than the section, or as :class:`PolygonSection`.
+        SectionError: the bends are larger than the section or have no facet, or as
+            :class:`PolygonSection`.
     """
+    if facets < 1:
+        raise SectionError(f"a bend has one facet at least, got {facets}")
     most = min(0.5 * width, height)
     if not 0.0 < radius <= most:
         raise SectionError(

@@ -108,7 +108,7 @@ class UTable(_FoldedTable):
 
     shape: Literal["U"] = Field(description="the shape of the section")
     radius: Length = Field(description="the radius of the bottom's two bends in m")
-    facets: Annotated[int, Field(strict=True, ge=0, le=MOST_FACETS)] = Field(
+    facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = Field(
         3, description="the number of flat plates in each bend, which touch its circle"
     )
 

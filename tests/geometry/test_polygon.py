@@ -209,11 +209,15 @@ def test_sizes_of_the_short_forms() -> None:
             "3 corners have as many plates between them, got 2 thicknesses; give one for each "
             "plate, the last one from the last corner to the first",
         ),
-        (((0, 0), (1, np.inf), (0, 1)), (0.01,) * 3, "corners must be numbers of m"),
+        (
+            ((0, 0), (1, np.inf), (0, 1)),
+            (0.01,) * 3,
+            "corners must be numbers of m below 1e+06, got inf",
+        ),
         (
             ((0, 0), (1, 0), (0, 1)),
             (0.01, 0.0, 0.01),
-            "thicknesses must be positive numbers of m, got 0.0",
+            "thicknesses must be numbers of m above 0 and below 1e+06, got 0.0",
         ),
         (((0, 0), (1, 0), (0, 1), (0, 0)), (0.01,) * 4, "corners 4 and 1 are one; give each once"),
         (
@@ -256,3 +260,5 @@ def test_refuses_what_is_no_short_form() -> None:
     message = "radius must be above 0 and not above half the width and the height, 0.2 m, got 0.3"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         u_section(0.5, 0.4, 0.3, 2, 0.01, 0.01, 0.01)
+    with pytest.raises(ValueError, match=r"^a bend has one facet at least, got 0$"):
+        u_section(0.5, 0.4, 0.1, 0, 0.01, 0.01, 0.01)

@@ -77,16 +77,16 @@ def boom_of(sections: Sequence[str]) -> Boom:
             u_section(0.6, 0.5, 0.1, 3, 0.008, 0.007, 0.006),
         ),
         (
-            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, facets = 0, top = 0.008, "
+            "{ shape = 'U', height = 0.6, width = 0.5, radius = 0.1, facets = 1, top = 0.008, "
             "bottom = 0.007, web = 0.006 }",
-            u_section(0.6, 0.5, 0.1, 0, 0.008, 0.007, 0.006),
+            u_section(0.6, 0.5, 0.1, 1, 0.008, 0.007, 0.006),
         ),
         (
             polygon(0.6, 0.5, (0.01, 0.006, 0.008, 0.006)),
             UnequalBox(0.6, 0.5, 0.008, 0.01, 0.006, 0.006),
         ),
     ],
-    ids=["hexagon", "octagon", "U", "U with one fold", "polygon"],
+    ids=["hexagon", "octagon", "U", "U with one facet", "polygon"],
 )
 def test_a_table_is_its_section(table: str, section: Section) -> None:
     """Reference: other code, the section made in Python."""
