@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Polygons beside finite elements over the section (the program sectionproperties), if it is here.
 
-pip install sectionproperties
+pip install '.[reference]'
 """
 
 from __future__ import annotations
