@@ -270,17 +270,18 @@ def frequencies(
     from runs.sweep import run as sweep_runs
 
     plan = points.plan(case, vary, _names(models), mesh_size)
-    comm = _enter_mpi(plan.points[0].case, case)
+    cases = [point.case for point in plan.points]
+    comm = _enter_mpi(cases[0], case)
     cache = None if no_cache else Cache.of_user()
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                charts.chart(plan, comm, Path(), _silence, cache)
+                charts.measure(cases, comm, Path(), _silence, cache)
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
         with beside(folder) as scratch, _progress_bars() as tell:
-            data = charts.chart(plan, comm, scratch, tell, cache)
+            data = charts.gather(plan, charts.measure(cases, comm, scratch, tell, cache))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
         charts.table(data).text.show(Terminal())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a case file may say. SI units throughout; an unknown key is an error.
+"""What a case file may say, in SI units unless it says others; an unknown key is an error.
 
 The descriptions are what the JSON Schema shows, and what the message for a missing key quotes.
 """

@@ -67,7 +67,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     """Draw frequencies over one key, a panel for each mode.
 
     Args:
-        data: of :func:`runs.sweep.frequencies.chart`.
+        data: of :func:`runs.sweep.frequencies.gather`.
         path: of the PNG file.
     """
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))

@@ -7,7 +7,7 @@ rest under its loads (:func:`dynamics.damping.pressed_modes`), and those with it
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,33 +72,41 @@ def first_frequencies(
     return found
 
 
-def chart(
-    plan: Plan,
+def measure(
+    cases: Sequence[Case],
     comm: MPI.Intracomm | None,
     scratch: Path,
     tell: Callable[[str, str, float], None],
     cache: Cache | None,
-) -> xr.Dataset:
-    """The first frequencies at all points. Collective.
+) -> Array:
+    """(num_cases, num_models, 2, MODES) first frequencies in Hz. Collective.
+
+    Args:
+        cases: checked ones, of the same models.
+        comm, cache: as of :func:`first_frequencies`.
+        scratch: where gmsh's files go.
+        tell: told how far it is.
+    """
+    found = []
+    for number, case in enumerate(cases, start=1):
+        folder = scratch / f"{number}"
+        found.append(
+            [first_frequencies(case, m, comm, folder / m.name, cache) for m in case.models]
+        )
+        tell(NAME, f"{len(cases)} points", number / len(cases))
+    return np.array(found)
+
+
+def gather(plan: Plan, found: Array) -> xr.Dataset:
+    """Label the first frequencies of all points.
 
     Returns:
         dims: the varied keys, in the unit of the case, ``model``, ``joints`` and ``mode``.
     """
-    found = []
-    for number, point in enumerate(plan.points, start=1):
-        found.append(
-            [
-                first_frequencies(
-                    point.case, model, comm, scratch / f"{number}" / model.name, cache
-                )
-                for model in point.case.models
-            ]
-        )
-        tell("frequencies", f"{len(plan.points)} points", number / len(plan.points))
     keys = [variation.key for variation in plan.variations]
     models = [model.name for model in plan.points[0].case.models]
     shape = [len(variation.values) for variation in plan.variations]
-    values = np.array(found).reshape(*shape, len(models), len(JOINTS), MODES)
+    values = found.reshape(*shape, *found.shape[1:])
     attributes = {"units": "Hz", "long_name": "natural frequency"}
     return xr.Dataset(
         {"frequency": ([*keys, "model", "joints", "mode"], values, attributes)},
