@@ -19,7 +19,7 @@ from runs.case.build import build_boom, contact_laws
 from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
-from runs.pipeline.cautions import of_buckling
+from runs.pipeline.axial_forces import print_axial_forces
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
 from runs.pipeline.plausibility import slips
@@ -41,7 +41,7 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(_joints(case, boom))
     console.print(_models(case))
     if boom.compressed:
-        _print_axial_forces(case, boom, console)
+        print_axial_forces(case, boom, console)
     ratios = _damping_ratios(case, boom)
     if ratios.rows:
         console.print(ratios)
@@ -143,24 +143,6 @@ def _models(case: Case) -> Table:
         contact = "tied" if model.play_free else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, model.describe(), contact)
     return table
-
-
-def _print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
-    """How near they are to those under which the boom buckles."""
-    table = Table("axial forces", "buckling factor", "of the critical forces")
-    cautions: list[str] = []
-    for model in case.models:
-        # A shell would have to be computed first.
-        name = f"{model.name}, as beam elements" if model.meshed else model.name
-        factor = model.critical_factor(boom)
-        cautions += of_buckling(name, factor)
-        row = "unknown", "unknown"
-        if factor is not None:
-            row = f"{factor:.4g}", f"{100.0 / factor:.3g} %"
-        table.add_row(name, *row)
-    console.print(table)
-    for caution in cautions:
-        console.print(caution, markup=False)
 
 
 def _damping_ratios(case: Case, boom: Boom) -> Table:

@@ -144,6 +144,8 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     assert factor is not None
     shown = io.StringIO()
     print_inferred(case, Console(file=shown, width=120))
+    words = [line.replace("│", " ").split() for line in shown.getvalue().splitlines()]
+    assert ["mast", "40", f"{0.04 / MAST.area:.4g}"] in words
     assert f"{factor:.4g}" in shown.getvalue()
     assert f"{100.0 / factor:.3g} %" in shown.getvalue()
     assert table.text.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")

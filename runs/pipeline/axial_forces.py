@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What each segment carries along the boom, and how near that is to what makes the boom buckle."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.table import Table
+
+from geometry.boom import Boom
+from runs.case.schema import Case
+from runs.pipeline.cautions import of_buckling
+
+KILO, MEGA = 1.0e3, 1.0e6
+
+
+def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
+    """Print the largest force of each segment, and the buckling factor of each model."""
+    carried = Table("axial force, pressing", "largest (kN)", "over the plain area (MPa)")
+    for segment in boom.segments:
+        force, section = segment.compression.largest, segment.section
+        stress = "unknown" if section is None else f"{force / section.area / MEGA:.4g}"
+        carried.add_row(segment.name, f"{force / KILO:.4g}", stress)
+    console.print(carried)
+    buckling = Table("joints pressed", "buckling factor", "of the critical forces")
+    cautions: list[str] = []
+    for model in case.models:
+        # A shell would have to be computed first.
+        name = f"{model.name}, as beam elements" if model.meshed else model.name
+        factor = model.critical_factor(boom)
+        cautions += of_buckling(name, factor)
+        row = "unknown", "unknown"
+        if factor is not None:
+            row = f"{factor:.4g}", f"{100.0 / factor:.3g} %"
+        buckling.add_row(name, *row)
+    console.print(buckling)
+    for caution in cautions:
+        console.print(caution, markup=False)
