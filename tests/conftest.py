@@ -93,21 +93,8 @@ def paper_law() -> PowerContact:
 
 
 @pytest.fixture
-def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs draw one figure, where a test is about none: drawing takes longer than beams move."""
-    from runs.report import figures
-
-    monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
-
-
-@pytest.fixture
 def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Runs a Python program with its arguments on a number of ranks in an empty folder."""
-    return ranks_in(tmp_path)
-
-
-def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """What runs a Python program with its arguments on a number of ranks in a folder."""
     if shutil.which("mpirun") is None:
         pytest.skip("several ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
@@ -118,15 +105,13 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        # A rank that waits leaves its core to the other tests.
-        "OMPI_MCA_mpi_yield_when_idle": "1",
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
         launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"]
         return subprocess.run(
             [*launcher, sys.executable, "-c", program, *arguments],
-            cwd=folder,
+            cwd=tmp_path,
             env=environment,
             capture_output=True,
             text=True,

@@ -62,11 +62,7 @@ def memory(*arguments: str) -> int:
     ("edits", "options", "members"),
     [
         ((("output_step = 1e-3", "output_step = 1e-5"),), SERIES, 20),
-        (
-            (("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.1")),
-            ("--models", "shell"),
-            None,
-        ),
+        ((("mesh_size = 0.25", "mesh_size = 0.1"),), ("--models", "shell"), None),
     ],
     ids=["outputs and members", "mesh"],
 )

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs.report import figures
 from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
 
 pytestmark = pytest.mark.slow
@@ -19,16 +18,15 @@ pytestmark = pytest.mark.slow
 
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
-# The command, with pictures and most figures left out for the sake of time.
+# The command, with pictures left out for the sake of time.
 COMMAND = """
 from runs import cli
-from runs.report import figures, output
+from runs.report import output
 
 def refuse(*arguments):
     raise output.RenderingUnavailable("left out")
 
 output.render_snapshots = refuse
-figures.FIGURES = figures.FIGURES[-1:]
 cli.main()
 """
 
@@ -65,7 +63,6 @@ def test_two_ranks_run_a_shell_as_one_does(
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
     monkeypatch.setattr("runs.report.snapshots.render_snapshots", lambda *arguments: [])
-    monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
     options = ("--models", models, "--no-cache", "--out")
     assert protractile("run", case, *options, tmp_path / "one") == 0
     answer = two_ranks(COMMAND, "run", "case.toml", *options, "two")

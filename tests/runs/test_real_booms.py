@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The crane, the arm and the lift that come along rest where a calculation by hand puts them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from beam_model.statics import Rest, at_rest
+from geometry.boom import Boom, Segment
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom, joined
+from runs.case.schema import Case
+
+GRAVITY = 9.80665
+
+
+@dataclass
+class Pushed:
+    """A segment with what pushes it up: N at x, N/m along it, N·m at x towards a larger slope."""
+
+    segment: Segment
+    along: float
+    forces: list[tuple[float, float]] = field(default_factory=list)
+    moments: list[tuple[float, float]] = field(default_factory=list)
+
+    def turn(self, x: float) -> float:
+        """Of all about x in N·m."""
+        middle = 0.5 * (self.segment.start + self.segment.end)
+        pushed = sum(f * (at - x) for at, f in self.forces) + sum(m for _, m in self.moments)
+        return pushed + self.along * self.segment.length * (middle - x)
+
+    @property
+    def total(self) -> float:
+        return self.along * self.segment.length + sum(f for _, f in self.forces)
+
+    def beyond(self, x: float) -> tuple[float, float]:
+        """Moment and shear force that the part beyond x gives to the cut there."""
+        rest = self.segment.end - x
+        far = [(at, f) for at, f in self.forces if at > x]
+        moment = sum(f * (at - x) for at, f in far) + sum(m for at, m in self.moments if at > x)
+        return moment + 0.5 * self.along * rest**2, self.along * rest + sum(f for _, f in far)
+
+
+def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[float]]:
+    """Lever rule from the tip to the base; forces of the cylinders.
+
+    Args:
+        boom: level, of segments that are held at two places each, or clamped.
+        weight: in m/s², downwards.
+        tip: a force at the tip in N, upwards.
+    """
+    pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]
+    for one in pushed:
+        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.masses]
+    pushed[-1].forces.append((boom.tip, tip))
+    for joint in reversed(boom.joints):
+        inner, (first, last) = pushed[joint.inner], joint.stations
+        head = -inner.turn(first) / (last - first)
+        tail = -inner.total - head
+        inner.forces += [(first, tail), (last, head)]
+        pushed[joint.outer].forces += [(first, -tail), (last, -head)]
+    presses = []
+    for jack in boom.cylinders:
+        base, (along, up) = pushed[jack.segment], jack.direction
+        press = -base.turn(0.0) / (up * jack.x + along * jack.depth)
+        base.forces.append((jack.x, up * press))
+        base.moments.append((jack.x, along * jack.depth * press))
+        presses.append(press)
+    return pushed, presses
+
+
+def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
+    """Deflection of the tip in m under the weights: the work of a unit force there."""
+    (real, presses), (unit, ones) = by_hand(boom, GRAVITY, 0.0), by_hand(boom, 0.0, 1.0)
+    points, weights = np.polynomial.legendre.leggauss(3)
+    found = 0.0
+    for own, virtual in zip(real, unit, strict=True):
+        segment = own.segment
+        assert segment.section is not None
+        shear = segment.material.shear_modulus * segment.section.shear_area
+        places = {segment.start, segment.end, *(x for x, _ in (*own.forces, *own.moments))}
+        for a, b in pairwise(sorted(places)):
+            for point, part in zip(points, weights, strict=True):
+                x = 0.5 * (a + b + point * (b - a))
+                (moment, force), (of_one, with_one) = own.beyond(x), virtual.beyond(x)
+                bent = moment * of_one / segment.bending_stiffness + force * with_one / shear
+                found += 0.5 * (b - a) * part * bent
+    for joint, k in zip(boom.joints, stiffness, strict=True):
+        inner, virtual = dict(real[joint.inner].forces), dict(unit[joint.inner].forces)
+        for x in joint.stations:
+            # The inner segment gives way against what pushes it, by the clearance and by F/k.
+            way = np.sign(inner[x]) * joint.clearance + inner[x] / k
+            found += virtual[x] * way
+    for jack, press, one in zip(boom.cylinders, presses, ones, strict=True):
+        found += press * one / jack.stiffness
+    return found
+
+
+def level(name: str) -> Case:
+    """The case under its weights alone, level: without forces along the boom, but for cylinders."""
+    case = case_file.load(str(CASES / f"{name}.toml"))
+    assert case.gravity is not None
+    gravity = case.gravity.model_copy(update={"angle": 0.0})
+    return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
+
+
+def rest_of(case: Case, boom: Boom) -> tuple[Rest, list[float]]:
+    """At rest, and the stiffness of each joint's contacts along z."""
+    model = next(model for model in case.models if not model.play_free)
+    found = joined(case, boom, model)
+    stiffness = [law.terms[0].stiffness for law in found.laws]
+    return at_rest(boom, found.laws, found.lateral_laws), stiffness
+
+
+@pytest.mark.parametrize("name", ["crane", "inspection-arm", "lift"])
+def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
+    """Reference: analytic. Lever rule, unit-load method with the play's turns, 0.1 %."""
+    case = level(name)
+    boom = build_boom(case)
+    rest, stiffness = rest_of(case, boom)
+    pushed, _ = by_hand(boom, GRAVITY, 0.0)
+    for hold in rest.holds:
+        given = dict(pushed[hold.segment].forces)
+        if hold.segment > 0:
+            assert hold.force == pytest.approx(given[hold.x], rel=1e-3)
+    stations = {x for joint in boom.joints for x in joint.stations}
+    ground = sum(hold.force for hold in rest.holds if hold.segment == 0 and hold.x not in stations)
+    masses = [s.mass_per_length * s.length + sum(m.mass for m in s.masses) for s in boom.segments]
+    assert ground == pytest.approx(GRAVITY * sum(masses), rel=1e-3)
+    assert rest.tip == pytest.approx(tip_by_hand(boom, stiffness), rel=1e-3)
