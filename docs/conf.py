@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from typing import get_type_hints
 
 from docutils import nodes
 from latex2mathml.converter import convert
@@ -59,6 +60,15 @@ def write_block(writer: HTML5Translator, node: nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
+def resolve_fields(app: Sphinx, of: object, bound: bool) -> None:
+    """The types of a NamedTuple's fields, from its module: what its `__new__` says are bare names,
+    which may be those of classes in two modules.
+    """
+    for made in tuple.__subclasses__():
+        if made.__new__ is of:
+            of.__annotations__ = get_type_hints(made)
+
+
 def name_arrays(
     app: Sphinx, what: str, name: str, of: object, options: object, arguments: str, result: str
 ) -> tuple[str, str]:
@@ -80,5 +90,6 @@ def read_formulas(
 def setup(app: Sphinx) -> None:
     """Tell Sphinx of the functions above."""
     app.add_html_math_renderer("mathml", (write_inline, None), (write_block, None))
+    app.connect("autodoc-before-process-signature", resolve_fields)
     app.connect("autodoc-process-signature", name_arrays)
     app.connect("autodoc-process-docstring", read_formulas)
