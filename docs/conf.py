@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import re
 import tomllib
+from inspect import getdoc
 from pathlib import Path
 from typing import get_type_hints
 
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx
+from sphinx.ext.napoleon import GoogleDocstring
 from sphinx.writers.html5 import HTML5Translator
 
 import protractile
@@ -77,6 +79,15 @@ def name_arrays(
     return tuple(text and array.sub("Array", text) for text in (arguments, result))
 
 
+def read_properties(
+    app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]
+) -> None:
+    """A property's text as a method's: its first line may have a colon, before which is no type."""
+    if what == "property" and lines:
+        text = getdoc(of) or ""
+        lines[:] = GoogleDocstring(text, app.config, app, "method", name, of, options).lines()
+
+
 def read_formulas(
     app: Sphinx, what: str, name: str, of: object, options: object, lines: list[str]
 ) -> None:
@@ -92,4 +103,5 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (write_inline, None), (write_block, None))
     app.connect("autodoc-before-process-signature", resolve_fields)
     app.connect("autodoc-process-signature", name_arrays)
+    app.connect("autodoc-process-docstring", read_properties)
     app.connect("autodoc-process-docstring", read_formulas)
