@@ -93,8 +93,21 @@ def paper_law() -> PowerContact:
 
 
 @pytest.fixture
+def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs draw one figure, where a test is about none: drawing takes longer than beams move."""
+    from runs.report import figures
+
+    monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
+
+
+@pytest.fixture
 def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Runs a Python program with its arguments on a number of ranks in an empty folder."""
+    return ranks_in(tmp_path)
+
+
+def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """What runs a Python program with its arguments on a number of ranks in a folder."""
     if shutil.which("mpirun") is None:
         pytest.skip("several ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
@@ -111,7 +124,7 @@ def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"]
         return subprocess.run(
             [*launcher, sys.executable, "-c", program, *arguments],
-            cwd=tmp_path,
+            cwd=folder,
             env=environment,
             capture_output=True,
             text=True,

@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from geometry.arrays import Array, Indices
-from geometry.mesh import SegmentMesh
 from shell_model.stress.summary import WallForces
+
+if TYPE_CHECKING:
+    # gmsh takes long to load, and a run of beams makes no mesh.
+    from geometry.mesh import SegmentMesh
 
 Modes = npt.NDArray[np.float32]
 

@@ -13,12 +13,19 @@ import sys
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 from runs import cli
 from runs.case import reading as case_file
 from runs.pipeline import estimates
 from runs.process.shown import LONGEST
+
+# What commands import when they are given, which each process would do by itself.
+for name in ("pipeline.inferred", "pipeline.run", "report.output", "paper.rules", "sweep.run"):
+    import_module(f"runs.{name}")
+for name in ("optimize", "signal"):
+    import_module(f"scipy.{name}")
 
 MOST_MEMORY = 4.0e9
 MOST_CPU = 60

@@ -15,6 +15,8 @@ import pytest
 
 from runs import cli
 
+pytestmark = pytest.mark.usefixtures("few_figures")
+
 ROOT = Path(__file__).parents[2]
 COARSE = (ROOT / "runs" / "cases" / "coarse.toml").read_text(encoding="utf-8")
 SERIES = "--models", "kantorovich-4,kantorovich-5"

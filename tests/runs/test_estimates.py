@@ -22,6 +22,8 @@ ROOT = Path(__file__).parents[2]
 PROGRAM = """
 import resource, sys
 from runs.cli import main
+from shell_model.pictures import rendering
+rendering.FRAMES = 3  # one after the other, which takes time alone
 try:
     main(sys.argv[1:])
 except SystemExit as end:
@@ -62,7 +64,11 @@ def memory(*arguments: str) -> int:
     ("edits", "options", "members"),
     [
         ((("output_step = 1e-3", "output_step = 1e-5"),), SERIES, 20),
-        ((("mesh_size = 0.25", "mesh_size = 0.1"),), ("--models", "shell"), None),
+        (
+            (("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.1")),
+            ("--models", "shell"),
+            None,
+        ),
     ],
     ids=["outputs and members", "mesh"],
 )

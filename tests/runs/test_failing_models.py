@@ -21,6 +21,8 @@ from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile, trajectories
 
+pytestmark = pytest.mark.usefixtures("few_figures")
+
 RUN = "run", "case.toml", "--models", "kantorovich-4,kantorovich-5", "--out", "out"
 # Of kantorovich-4, whose contacts last for less.
 TOO_LONG, A_BIT_LONG = "1e-3", "5e-4"

@@ -16,7 +16,7 @@ from runs.benchmarks.scaling import STAGES, STEPS, Sizes, scaling
 pytestmark = pytest.mark.slow
 
 
-SIZES = Sizes(meshes=(0.5, 0.3), default=0.5, ranks=(1,), duration=0.2)
+SIZES = Sizes(meshes=(1.0, 0.5), default=1.0, ranks=(1,), duration=0.2)
 
 
 def test_every_stage_is_measured(tmp_path: Path) -> None:
@@ -37,4 +37,4 @@ def test_every_stage_is_measured(tmp_path: Path) -> None:
     motions = data["scaling-motion"]
     assert [motion["step s"] for motion in motions] == 2 * list(STEPS)
     assert all(motion["energy residual"] < 1.0e-2 for motion in motions[1::2])
-    assert "| 0.3 |" in (tmp_path / "scaling.md").read_text(encoding="utf-8")
+    assert "| 0.5 |" in (tmp_path / "scaling.md").read_text(encoding="utf-8")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,6 +17,7 @@ from PIL import Image
 
 from runs.case.build import build_boom
 from runs.pipeline.results import Results
+from shell_model.pictures import rendering
 from shell_model.pictures.rendering import RenderingUnavailable, require_opengl
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests.system.run_folder import (
@@ -31,6 +33,14 @@ pytestmark = pytest.mark.slow
 
 
 BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _short_film() -> Iterator[None]:
+    """The film itself is what the tests of rendering look at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rendering, "FRAMES", 3)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +151,7 @@ def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
     assert np.abs(moved - tip).max() < 1e-3 * np.abs(tip).max()
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_snapshots_of_given_times_join_the_others(whole: Path, tmp_path: Path) -> None:
     again = tmp_path / "out"
     shutil.copytree(whole, again)
@@ -177,6 +188,7 @@ def test_fields_of_another_version_are_one_line(
     )
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_a_run_without_opengl_says_so_and_goes_on(
     whole: Path,
     tmp_path: Path,
@@ -200,6 +212,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     )
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_two_shells_of_a_case_keep_their_files_apart(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

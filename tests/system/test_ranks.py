@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from runs.report import figures
 from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
 
 pytestmark = pytest.mark.slow
@@ -18,15 +19,17 @@ pytestmark = pytest.mark.slow
 
 Ranks = Callable[..., subprocess.CompletedProcess[str]]
 
-# The command, with pictures left out for the sake of time.
+# The command, with pictures and most figures left out for the sake of time.
 COMMAND = """
 from runs import cli
-from runs.report import output
+from runs.report import figures, snapshots
+from shell_model.pictures.rendering import RenderingUnavailable
 
 def refuse(*arguments):
-    raise output.RenderingUnavailable("left out")
+    raise RenderingUnavailable("left out")
 
-output.render_snapshots = refuse
+snapshots.render_snapshots = refuse
+figures.FIGURES = figures.FIGURES[-1:]
 cli.main()
 """
 
@@ -63,7 +66,8 @@ def test_two_ranks_run_a_shell_as_one_does(
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
     monkeypatch.setattr("runs.report.snapshots.render_snapshots", lambda *arguments: [])
-    options = ("--models", models, "--no-cache", "--out")
+    monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
+    options = ("--models", models, "--mesh-size", "1", "--no-cache", "--out")
     assert protractile("run", case, *options, tmp_path / "one") == 0
     answer = two_ranks(COMMAND, "run", "case.toml", *options, "two")
     assert (answer.returncode, complaints(answer)) == (0, [])
@@ -116,9 +120,8 @@ def test_numerics_that_fail_on_one_rank_do_not_keep_the_other(
     base = 'base = "as printed"'
     text = text.replace("duration = 0.6", "duration = 0.3").replace(base, f"{base}\nstep = 1e-3")
     (tmp_path / "case.toml").write_text(text, encoding="utf-8")
-    answer = two_ranks(
-        COMMAND, "run", "case.toml", "--models", "kantorovich-4,shell", "--out", "out"
-    )
+    models = "--models", "kantorovich-4,shell", "--mesh-size", "1"
+    answer = two_ranks(COMMAND, "run", "case.toml", *models, "--out", "out")
     assert answer.returncode == 3
     (line,) = complaints(answer)
     assert line.startswith("protractile: case.toml: model[1]: the energy residual is ")

@@ -41,10 +41,9 @@ def run(change: float) -> Results:
 
 def test_verdicts_are_the_same_for_any_round_off() -> None:
     """Reference: the case itself, which a relative change of E of 1e-12 makes another sample of."""
-    one, *others = (run(change) for change in (0.0, 1.0e-12, -1.0e-12))
+    one, other = (run(change) for change in (0.0, 1.0e-12))
     assert {v.id: v.verdict for v in judge(one) if v.id in DECIDED} == DECIDED
     tip = one.trajectories["tip"].sel(model="kantorovich-5").values
-    for other in others:
-        assert [v.verdict for v in judge(other)] == [v.verdict for v in judge(one)]
-        apart = other.trajectories["tip"].sel(model="kantorovich-5").values - tip
-        assert np.abs(apart).max() > 0.1 * np.ptp(tip)
+    assert [v.verdict for v in judge(other)] == [v.verdict for v in judge(one)]
+    apart = other.trajectories["tip"].sel(model="kantorovich-5").values - tip
+    assert np.abs(apart).max() > 0.1 * np.ptp(tip)

@@ -25,7 +25,8 @@ Row = tuple[str, int, int, str]
 
 _ROOT = Path(__file__).parents[2]
 _COARSE = CASES / "coarse.toml"
-_SEED = 60
+# The first moment of all is late in a command, where it writes.
+_SEED = 76
 # In the names of all that is not whole yet.
 _IN_THE_MAKING = "protractile-"
 _COMMAND = sys.executable, "-m", "runs"

@@ -16,9 +16,9 @@ TINY = Sizes(
     plays=(14.0e-3,),
     loads=(1.0, 10.0),
     pads=(),
-    in_space=(Point(4.0e-3, 10.0),),
+    in_space=(Point(2.0e-3, 40.0),),
     duration=0.9,
-    spatial_duration=0.3,
+    spatial_duration=0.07,
     peaks=1,
 )
 
@@ -65,6 +65,10 @@ def test_a_mesh_errs_more_under_more_load() -> None:
     assert [proof.what for proof in found.proofs] == [
         "first tip peak, near webs, worst of 2 points (14 mm, load × 10)",
         "tip, part of its range, near webs, worst of 2 points (14 mm, load × 10)",
-        "tip, part of its range, in space, near webs, worst of 1 points (4 mm, load × 10)",
+        "tip, part of its range, in space, near webs, worst of 1 points (2 mm, load × 40)",
     ]
     assert found.proofs[1].value == pytest.approx(0.01 * heavy[change])
+    (pressed,) = found.data["points-in-space"]
+    assert pressed[force] > 10.0
+    assert found.proofs[2].value == pytest.approx(0.01 * pressed[change])
+    assert 0.0 < pressed[change] < 10.0
