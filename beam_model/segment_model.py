@@ -86,7 +86,7 @@ def _observed(boom: Boom, modes: BoomModes) -> dict[str, Observed[Array]]:
 
 def _row(place: Observation, modes: BoomModes) -> Array:
     """(num_modes,) that reads a quantity, or what it is the derivative of."""
-    match place.quantity:
+    match place.kind.read:
         case "rotation":
             return modes.rotation(place.segment, place.x, "z")
         case "twist":
@@ -95,7 +95,7 @@ def _row(place: Observation, modes: BoomModes) -> Array:
             return modes.displacement(place.segment, place.x, "y")
         case "distortion":
             raise ValueError("the cross-section of a beam keeps its shape")
-        case _:
+        case "deflection":
             return modes.displacement(place.segment, place.x, "z")
 
 

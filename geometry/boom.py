@@ -15,7 +15,7 @@ from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
 from geometry.joint import Joint, PadSize, Stop
 from geometry.load import Load
-from geometry.observation import KINDS, Observation, Quantity
+from geometry.observation import IN_SPACE, KINDS, Observation, Quantity
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
@@ -341,7 +341,7 @@ class Boom:
                 )
             own.add(place.name)
             check_place(f"{where}.x", place.x, self.segments[place.segment])
-            if place.quantity in ("lateral", "twist") and not self.spatial:
+            if place.kind.read in IN_SPACE and not self.spatial:
                 raise BoomError(
                     f"{where}.quantity",
                     "the boom is flat, and nothing moves along 'y' or twists; give another "

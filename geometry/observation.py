@@ -12,23 +12,31 @@ Quantity = Literal[
 ]
 
 
+# What a row can read of a cross-section.
+Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
+
+# Those that move in space alone.
+IN_SPACE: tuple[Read, ...] = ("lateral", "twist")
+
+
 class Kind(NamedTuple):
-    """A quantity's unit, how often it is derived by time, and what it is in words."""
+    """A quantity's unit, what is read, how often that is derived by time, and the words for it."""
 
     unit: str
+    read: Read
     derivative: Literal[0, 1, 2]
     title: str
 
 
 KINDS: Mapping[Quantity, Kind] = {
-    "deflection": Kind("m", 0, "deflection along z"),
-    "rotation": Kind("rad", 0, "rotation of the cross-section, the slope along z"),
-    "distortion": Kind("m", 0, "how much taller the cross-section has become"),
-    "lateral": Kind("m", 0, "deflection along y"),
-    "twist": Kind("rad", 0, "turn about x"),
-    "velocity": Kind("m/s", 1, "velocity along z"),
+    "deflection": Kind("m", "deflection", 0, "deflection along z"),
+    "rotation": Kind("rad", "rotation", 0, "rotation of the cross-section, the slope along z"),
+    "distortion": Kind("m", "distortion", 0, "how much taller the cross-section has become"),
+    "lateral": Kind("m", "lateral", 0, "deflection along y"),
+    "twist": Kind("rad", "twist", 0, "turn about x"),
+    "velocity": Kind("m/s", "deflection", 1, "velocity along z"),
     "acceleration": Kind(
-        "m/s2", 2, "acceleration along z, mean of the output interval that ends then"
+        "m/s2", "deflection", 2, "acceleration along z, mean of the output interval that ends then"
     ),
 }
 

@@ -22,7 +22,7 @@ from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.observation import Quantity
+from geometry.observation import Quantity, Read
 from geometry.spots import spots
 from shell_model.contact.local_compliance import full_compliance, local_compliance
 from shell_model.contact.rows import gap_rows, ties
@@ -252,14 +252,14 @@ def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[
         at = place.segment, place.x
         if at not in outlines:
             outlines[at] = shells[place.segment].outline(place.x)
-        row = _READ.get(place.quantity, Outline.mean_deflection)(outlines[at])
         kind = place.kind
+        row = _READ[kind.read](outlines[at])
         observed[place.name] = Observed(Reading({place.segment: row}), kind.unit, kind.derivative)
     return observed
 
 
-# Other quantities are read as the deflection, of which they may be derivatives.
-_READ: Mapping[Quantity, Callable[[Outline], Row]] = {
+_READ: Mapping[Read, Callable[[Outline], Row]] = {
+    "deflection": Outline.mean_deflection,
     "rotation": Outline.rotation,
     "distortion": Outline.distortion,
     "lateral": partial(Outline.mean_deflection, direction="y"),

@@ -28,6 +28,9 @@ from runs.pipeline.statics import print_statics
 # Modes whose damping is shown.
 SHOWN_MODES = 3
 
+# A damping ratio below it is none.
+_ROUND_OFF = 1.0e-12
+
 
 def print_inferred(case: Case, console: Console) -> None:
     """Print a checked case's segments, joints and models."""
@@ -168,5 +171,8 @@ def _ratios(case: Case, boom: Boom, model: Model) -> list[str]:
             found = pressed_ratios(system)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         return ["cannot be computed"]
-    both = zip(*found, strict=True)
+    # What stations that nothing presses leave of a dashpot between them is round-off.
+    both = (
+        (hertz, ratio if ratio > _ROUND_OFF else 0.0) for hertz, ratio in zip(*found, strict=True)
+    )
     return [f"{100.0 * ratio:.3g} % at {hertz:.3g} Hz" for hertz, ratio in both]
