@@ -12,9 +12,9 @@ from shell_model.shell import Shell
 
 # MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
 # little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an
-# option alone: what is set on a factor matrix before it is analysed is lost.
-_PREFIX = "shifted_"
-PETSc.Options(_PREFIX)["mat_mumps_icntl_7"] = 2
+# option alone: what is set on a factor matrix before it is analysed is lost. It tells of options
+# that are left when a process ends, so this one is gone before.
+_PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
 class ShiftedSolver:
@@ -39,7 +39,10 @@ class ShiftedSolver:
         self._factors.setOperators(self._matrix)
         self._factors.setType(PETSc.PC.Type.CHOLESKY)
         self._factors.setFactorSolverType("mumps")
+        options = PETSc.Options(_PREFIX)
+        options[_ORDERING] = 2
         self._factors.setUp()
+        options.delValue(_ORDERING)
 
     def move(self, frequency: float) -> None:
         """Go to another frequency; what was analysed of the matrix's structure is kept."""

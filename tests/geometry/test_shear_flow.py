@@ -49,7 +49,7 @@ def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction)
     found = section.carriers(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)
     assert forces == pytest.approx([1.0, 0.0] if direction == "y" else [0.0, 1.0], abs=1e-12)
-    arms = [np.cross(section.plates[n].middle, section.plates[n].tangent) for n, _ in found]
+    arms = [np.linalg.det([section.plates[n].middle, section.plates[n].tangent]) for n, _ in found]
     assert sum(f * arm for (_, f), arm in zip(found, arms, strict=True)) == pytest.approx(
         0.0, abs=1e-15
     )
