@@ -56,7 +56,7 @@ convergence: $(READY) ## what proves the models: benchmarks, refinements, other 
 	$(BIN)/python -m runs.studies.convergence
 
 test: $(READY) ## all tests
-	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 
 fuzz: $(READY) ## a thousand slips in cases, loads' files and command lines; fails if one is not told in a line
 	$(BIN)/python -m tests.fuzz
