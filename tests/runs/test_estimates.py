@@ -81,8 +81,11 @@ def test_memory_is_not_above_the_estimate_and_not_far_below(
     write(*edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
-    used = memory(*options, "--members", str(members or 0))
-    assert used <= of_run(case).memory <= 4.0 * used
+    told, arguments = of_run(case).memory, (*options, "--members", str(members or 0))
+    used = memory(*arguments)
+    if used > told:  # by a run that had to compile; a later one has not
+        used = memory(*arguments)
+    assert used <= told <= 4.0 * used
 
 
 @pytest.mark.parametrize(
