@@ -96,6 +96,17 @@ class ContactLaw(ABC):
     def behind(self, clearance: float) -> ContactLaw:
         """The same law behind another clearance in m."""
 
+    @property
+    def play(self) -> float:
+        """From one side to the other in m; twice the clearance where there is but one."""
+        onsets = self._onset(1.0), self._onset(-1.0)
+        whole = sum(onsets) if np.isfinite(onsets).all() else 2.0 * min(onsets)
+        return max(whole, 0.0)
+
+    def _onset(self, side: float) -> float:
+        """Of the first term of a side in m; infinite where there is none."""
+        return min((term.onset for term in self.terms if term.side == side), default=np.inf)
+
     def force(self, y: Array) -> Array:
         """Elastic force in N that the outer segment feels; the inner one feels its opposite.
 
@@ -238,10 +249,7 @@ def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
 def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
     """Where rows touch, for the compiled loops; infinite on a side where one never does."""
 
-    def onset(law: ContactLaw, side: float) -> float:
-        return min((term.onset for term in law.terms if term.side == side), default=np.inf)
-
-    return np.array([(-onset(law, -1.0), onset(law, 1.0), law.damping) for law in laws], LIMITS)
+    return np.array([(-law._onset(-1.0), law._onset(1.0), law.damping) for law in laws], LIMITS)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")

@@ -45,7 +45,7 @@ def closing_speeds(system: GapSystem, initial: Array | float = 0.0) -> Array:
     rigid = system.omega2 <= 0.0
     loads = [(system.load, 1.0), *((x.load, x.history.peak) for x in system.excitations)]
     fall = sum(np.abs(system.rows[:, rigid] @ load[rigid]) * peak for load, peak in loads)
-    play = np.array([2.0 * max(law.clearance, 0.0) for law in system.laws])
+    play = np.array([law.play for law in system.laws])
     swing = np.abs(system.rows) @ modal_speeds(system, initial)
     return np.asarray(swing + np.sqrt(2.0 * fall * play))
 

@@ -29,6 +29,13 @@ def test_each_side_follows_its_own_law() -> None:
     assert (limits["low"], limits["high"]) == (-10.0e-3, 4.0e-3)
 
 
+def test_the_play_is_that_of_both_sides() -> None:
+    """Reference: by hand; a rigid segment falls across all of it."""
+    assert pytest.approx(14.0e-3) == LAW.play
+    assert NEAR.play == NEAR.upper().play == 8.0e-3
+    assert replace(NEAR, clearance=-1.0e-3).play == 0.0
+
+
 def test_parts_are_those_of_its_laws() -> None:
     y = np.linspace(-0.02, 0.02, 41)
     above, below = LAW.one_sided(1), LAW.one_sided(-1)
