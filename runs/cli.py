@@ -55,6 +55,18 @@ NoCache = Annotated[
 Large = Annotated[
     bool, typer.Option("--large", help="Start even what may take more than 4 GB or an hour.")
 ]
+Vary = Annotated[
+    list[str],
+    typer.Option(
+        metavar="KEY=VALUES",
+        help="What takes which values: joint.play=0:0.02:11 (start, stop, count), "
+        "segment[2].load=20,40,60. May be repeated; all combinations are taken.",
+    ),
+]
+SweepFolder = Annotated[
+    str | None,
+    typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
+]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
@@ -193,18 +205,8 @@ def snapshot(
 @app.command()
 def sweep(
     case: CaseFile,
-    vary: Annotated[
-        list[str],
-        typer.Option(
-            metavar="KEY=VALUES",
-            help="What takes which values: joint.play=0:0.02:11 (start, stop, count), "
-            "segment[2].load=20,40,60. May be repeated; all combinations are run.",
-        ),
-    ],
-    out: Annotated[
-        str | None,
-        typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
-    ] = None,
+    vary: Vary,
+    out: SweepFolder = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
@@ -246,18 +248,8 @@ def sweep(
 @app.command()
 def frequencies(
     case: CaseFile,
-    vary: Annotated[
-        list[str],
-        typer.Option(
-            metavar="KEY=VALUES",
-            help="What takes which values: joint.extension=1:8:15 (start, stop, count). May be "
-            "repeated.",
-        ),
-    ],
-    out: Annotated[
-        str | None,
-        typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
-    ] = None,
+    vary: Vary,
+    out: SweepFolder = None,
     models: ModelNames = None,
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,

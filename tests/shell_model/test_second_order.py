@@ -25,8 +25,6 @@ from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.segment_shell import assemble_segment
 from tests.shell_model.booms import STEEL
 
-pytestmark = pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="matrices of one rank are read")
-
 # Walls so thick that they do not buckle by themselves.
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.016, web=0.012)
 INNER = BoxSection(height=0.33, width=0.23, flange=0.012, web=0.010)
@@ -47,7 +45,7 @@ def telescope(thrust: float, lateral: float | None = None) -> Boom:
 @cache
 def shell(lateral: float | None = None) -> ReducedShell:
     laws = [PowerContact(1e9, 1.0, lateral)] if lateral is not None else []
-    return reduce_boom(telescope(THRUST, lateral), [LAW], OPTIONS, MPI.COMM_WORLD, None, laws)
+    return reduce_boom(telescope(THRUST, lateral), [LAW], OPTIONS, MPI.COMM_SELF, None, laws)
 
 
 def sparse(matrix: PETSc.Mat) -> csr_array:
@@ -62,7 +60,7 @@ def test_walls_give_way_to_a_turn_by_the_whole_axial_force() -> None:
     fly = replace(telescope(0.0).segments[1], collars=(Collar(7.0, 8.0, 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
-    shell_of = assemble_segment(MPI.COMM_WORLD, pressed, mesh)
+    shell_of = assemble_segment(MPI.COMM_SELF, pressed, mesh)
     geometric = shell_of.geometric
     assert geometric is not None
     motions = np.zeros((shell_of.free.size, 2))
@@ -91,9 +89,9 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     of the critical force, where the second order is two thirds of the first.
     """
     boom = column(0.4)
-    full = assemble_segment(MPI.COMM_WORLD, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
+    full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
     assert full.geometric is not None
-    reduced = reduce_boom(boom, [], OPTIONS, MPI.COMM_WORLD)
+    reduced = reduce_boom(boom, [], OPTIONS, MPI.COMM_SELF)
     assert reduced.critical_factor == pytest.approx(2.5, rel=5e-3)
     system = reduced.system
     found = system.observers["tip"].row @ system.static_response(system.load)
@@ -135,7 +133,7 @@ def test_a_tied_shell_buckles_where_its_beam_does(lateral: float | None) -> None
 
 def test_a_shell_that_buckles_says_so() -> None:
     with pytest.raises(NumericsError) as caught:
-        reduce_boom(column(1.25), [], OPTIONS, MPI.COMM_WORLD)
+        reduce_boom(column(1.25), [], OPTIONS, MPI.COMM_SELF)
     assert str(caught.value) == (
         "the shell of the boom buckles under 0.798 times its axial forces; make these smaller, or "
         "the sections larger"
