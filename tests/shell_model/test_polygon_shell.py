@@ -41,6 +41,7 @@ from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
 from shell_model.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
+from tests.shell_model.conftest import UNEQUAL
 
 Shells = Callable[..., SegmentShell]
 
@@ -85,10 +86,9 @@ def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SECTIONS)
-def test_contacts_read_the_true_faces(box_shell: Shells, name: str) -> None:
+@pytest.mark.parametrize("section", [*SECTIONS.values(), UNEQUAL], ids=[*SECTIONS, "unequal box"])
+def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> None:
     """Reference: analytic. A displacement u_z = z, u_y = y is read as the place of each face."""
-    section = SECTIONS[name]
     shell = box_shell(0.5, section=section)
     field = np.zeros(shell.num_dofs)
     field[shell.node_dofs[:, 1:]] = shell.nodes[:, 1:]

@@ -15,13 +15,9 @@ from beam_model.finite_element import finite_element_segment, finite_element_seg
 from beam_model.segment_model import tied_system
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Support
-from geometry.contact_places import Stretch
 from geometry.section import Section
 from geometry.unequal_box import UnequalBox
 from shell_model.boom_shell import ShellOptions
-from shell_model.contact.corner_lines import CornerLines
-from shell_model.contact.wall_points import Wall, WallPoints
-from shell_model.cross_section import Row
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
 from shell_model.segment_shell import SegmentShell
@@ -57,27 +53,6 @@ def test_its_frequencies_are_as_far_from_its_beam_as_those_of_a_box(
         _apart(box_shell(0.25, supports=supports, section=one)) for one in (BOX, UNEQUAL)
     )
     assert unequal == pytest.approx(equal, abs=2.0e-3)
-
-
-def _read(row: Row, field: Array) -> float:
-    return sum(weight * field[dof] for dof, weight in row.items())
-
-
-@pytest.mark.slow
-def test_contacts_read_the_true_faces(box_shell: Shells) -> None:
-    """Reference: analytic. A displacement u_z = z, u_y = y is read as the place of each plate."""
-    shell = box_shell(0.5, section=UNEQUAL)
-    field = np.zeros(shell.num_dofs)
-    field[shell.node_dofs[:, 1:]] = shell.nodes[:, 1:]
-    corners, walls = CornerLines(shell), WallPoints(shell)
-    stretch = Stretch.on(shell.segment, 5.0, 0.7)
-    for face in UNEQUAL.faces:
-        offsets = (0.0, face.side) if face.direction == "z" else (face.side, 0.0)
-        row = corners.deflection(stretch, face.direction, *offsets)
-        assert _read(row, field) == pytest.approx(face.offset, rel=1.0e-9)
-        place = np.array([[5.03, 0.5 * (face.low + face.high) + 0.011]])
-        (row,) = walls.rows(Wall(face.direction, face.side), place, face.direction)
-        assert _read(row, field) == pytest.approx(face.offset, rel=1.0e-9)
 
 
 def _boom(outer: Section, inner: Section) -> Boom:
