@@ -117,6 +117,11 @@ class Boom:
         return self.segments[-1].end
 
     @property
+    def length(self) -> float:
+        """From the start of the first segment to the tip in m."""
+        return self.tip - self.segments[0].start
+
+    @property
     def spatial(self) -> bool:
         """Whether the segments move along y and twist, too."""
         return any(joint.lateral_clearance is not None for joint in self.joints)

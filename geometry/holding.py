@@ -98,10 +98,6 @@ class _RigidBody(Member):
         return f"segment[{self.number + 1}]"
 
     @property
-    def _length(self) -> float:
-        return self.boom.tip - self.boom.segments[0].start
-
-    @property
     def motions(self) -> slice:
         """Its own ones: along z, then along y and about the axis."""
         count = _SPATIAL if self.boom.spatial else _FLAT
@@ -121,13 +117,13 @@ class _RigidBody(Member):
 
     def force(self, x: float, direction: Direction) -> Array:
         middle = 0.5 * (self.segment.start + self.segment.end)
-        return self._row(0 if direction == "z" else 2, 1.0, (x - middle) / self._length)
+        return self._row(0 if direction == "z" else 2, 1.0, (x - middle) / self.boom.length)
 
     def moment(self, x: float, direction: Direction) -> Array:
-        return self._row(1 if direction == "z" else 3, 1.0 / self._length)
+        return self._row(1 if direction == "z" else 3, 1.0 / self.boom.length)
 
     def torque(self, x: float) -> Array:
-        return self._row(4, 1.0 / self._length)
+        return self._row(4, 1.0 / self.boom.length)
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         start, end = span or (self.segment.start, self.segment.end)

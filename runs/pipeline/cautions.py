@@ -50,10 +50,10 @@ def of_tip(where: str, tip: float | None, boom: Boom) -> list[str]:
         tip: in m, NaN or None where there is no rest.
         boom: from whose first end to its tip is its length.
     """
-    long = boom.tip - min(segment.start for segment in boom.segments)
-    if tip is None or not abs(tip) > FAR * long:
+    if tip is None or not abs(tip) > FAR * boom.length:
         return []
     return [
-        f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / long:.2g} % of the "
-        "boom's length and more than 5 %: small displacements do not hold; check units and loads"
+        f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} % of "
+        "the boom's length and more than 5 %: small displacements do not hold; check units and "
+        "loads"
     ]

@@ -22,7 +22,6 @@ from runs.case import toml
 from runs.case.actions import series_notes
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
-from runs.case.places import spans
 from runs.case.schema import Case, Model
 from runs.pipeline.cautions import of_buckling, of_tip
 from runs.pipeline.plausibility import slips
@@ -110,15 +109,14 @@ class Results:
 
     def cautions(self) -> list[str]:
         """What the results are not worth, a line each."""
-        places = [x for span in spans(self.case.segments, self.case.joints) for x in span]
-        length = max(places) - min(places)
+        boom = build_boom(self.case)
         largest = np.abs(self.trajectories["tip"].values).max(axis=1)
         models = self.summary.models.items()
         far = [
             f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
             "boom's length: small displacements do not hold; check units and loads"
             for name, move in zip(self.trajectories["model"].values, largest, strict=True)
-            if move > 0.1 * length
+            if move > 0.1 * boom.length
         ]
         poor = [
             f"caution: the {model.modes} coordinates of {name} err by {100.0 * error:.2g} % "
@@ -132,7 +130,6 @@ class Results:
             for name, model in models
             if (error := model.mesh_error or 0.0) > POOR
         ]
-        boom = build_boom(self.case)
         bent = [
             caution
             for name, model in models
