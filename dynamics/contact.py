@@ -11,17 +11,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from dynamics.arrays import Array
 
 # (num_terms,) of TERM; (num_rows,) of LIMITS.
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]
+
+# What a term says of a gap.
+OfTerm = Callable[[np.void, float], float]
 
 # A term of the law of a row.
 TERM = np.dtype(
@@ -113,15 +116,15 @@ class ContactLaw(ABC):
         Args:
             y: relative displacement u − w in m, any shape.
         """
-        return self._sum(term_force, y)
+        return self._sum(force_of, y)
 
     def energy(self, y: Array) -> Array:
         """Potential of :meth:`force` in J. Shape of ``y``."""
-        return self._sum(term_energy, y)
+        return self._sum(energy_of, y)
 
     def slope(self, y: Array) -> Array:
         """dF/dy in N/m. Shape of ``y``."""
-        return self._sum(term_slope, y)
+        return self._sum(slope_of, y)
 
     def slope_where(self, measure: Callable[[ContactLaw, Array], Array], value: float) -> float:
         """dF/dy in N/m where a measure of the law has come to a value, on its stiffer side.
@@ -150,13 +153,13 @@ class ContactLaw(ABC):
         depth = brentq(excess, high, high - up) if up * excess(high) > 0.0 else high
         return float(self.slope(np.array(side * np.exp(depth))))
 
-    def _sum(self, of_term: Any, y: Array) -> Array:
+    def _sum(self, of_term: OfTerm, y: Array) -> Array:
         gaps, terms = np.asarray(y, dtype=np.float64), contact_terms([self])
         if gaps.ndim == 0:
             # One gap takes less time than numba does to compile the loop over many.
-            return np.array(sum(of_term.py_func(term, float(gaps)) for term in terms))
+            return np.array(sum(of_term(term, float(gaps)) for term in terms))
         total = np.zeros(gaps.size)
-        _add_terms(of_term, terms, gaps.ravel(), total)
+        _compiled(_add_terms)(_inlined(of_term), terms, gaps.ravel(), total)
         return total.reshape(gaps.shape)
 
 
@@ -252,8 +255,7 @@ def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
     return np.array([(-law._onset(-1.0), law._onset(1.0), law.damping) for law in laws], LIMITS)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def term_force(term: np.void, y: float) -> float:
+def force_of(term: np.void, y: float) -> float:
     """Force in N of a term at the gap y in m."""
     depth = term["side"] * y - term["onset"]
     if depth <= 0.0:
@@ -263,8 +265,7 @@ def term_force(term: np.void, y: float) -> float:
     return float(term["side"] * term["stiffness"] * power)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def term_energy(term: np.void, y: float) -> float:
+def energy_of(term: np.void, y: float) -> float:
     """Potential in J of a term at the gap y in m."""
     depth = term["side"] * y - term["onset"]
     if depth <= 0.0:
@@ -273,8 +274,7 @@ def term_energy(term: np.void, y: float) -> float:
     return float(term["stiffness"] * depth ** (n + 1.0) / (n + 1.0))
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def term_slope(term: np.void, y: float) -> float:
+def slope_of(term: np.void, y: float) -> float:
     """dF/dy in N/m of a term at the gap y in m."""
     depth = term["side"] * y - term["onset"]
     if depth <= 0.0:
@@ -283,14 +283,35 @@ def term_slope(term: np.void, y: float) -> float:
     return float(n * term["stiffness"] * depth ** (n - 1.0))
 
 
-@njit(nogil=True, error_model="numpy")
-def _add_terms(
-    of_term: Callable[[np.void, float], float], terms: Terms, y: Array, total: Array
-) -> None:
+def _add_terms(of_term: OfTerm, terms: Terms, y: Array, total: Array) -> None:
     """Add to ``total`` (num_gaps,) what each term of one law says of each gap."""
     for t in range(terms.size):
         for i in range(y.size):
             total[i] += of_term(terms[t], y[i])
+
+
+@cache
+def _compiled(function: Any, **options: Any) -> Any:
+    from dynamics.kernels import njit
+
+    return njit(nogil=True, error_model="numpy", **options)(function)
+
+
+def _inlined(of_term: OfTerm) -> Any:
+    return _compiled(of_term, cache=True, inline="always")
+
+
+def __getattr__(name: str) -> Any:
+    """``term_force`` and ``term_energy``, compiled into the loops that import them.
+
+    numba takes longer to load than a case to check.
+    """
+    if name not in _OF_LOOPS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return _inlined(_OF_LOOPS[name])
+
+
+_OF_LOOPS = {"term_force": force_of, "term_energy": energy_of}
 
 
 def restitution_damping(restitution: float, speed: float) -> float:

@@ -8,13 +8,19 @@ would leave a whole range of rest positions; this is the one without it.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, Terms, contact_terms, term_energy, term_force, term_slope
+from dynamics.contact import (
+    ContactLaw,
+    OfTerm,
+    Terms,
+    contact_terms,
+    energy_of,
+    force_of,
+    slope_of,
+)
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
@@ -62,15 +68,15 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     stiffness = (half * np.sign(system.omega2)) @ half.T
 
     def energy(x: Array) -> float:
-        contact = _of_rows(term_energy, unit * rows @ x, terms).sum() / unit**2
+        contact = _of_rows(energy_of, unit * rows @ x, terms).sum() / unit**2
         return float(0.5 * x @ stiffness @ x - scaled_load @ x + contact)
 
     def unbalanced(x: Array) -> Array:
-        forces = _of_rows(term_force, unit * rows @ x, terms)
+        forces = _of_rows(force_of, unit * rows @ x, terms)
         return np.asarray(stiffness @ x - scaled_load + rows.T @ forces / unit)
 
     def tangent(x: Array) -> Array:
-        slopes = _of_rows(term_slope, unit * rows @ x, terms)
+        slopes = _of_rows(slope_of, unit * rows @ x, terms)
         return np.asarray(stiffness + (rows.T * slopes) @ rows)
 
     from scipy.optimize import minimize
@@ -88,12 +94,12 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     return np.asarray(unit * solve_triangular(factor, found.x, lower=True, trans=1))
 
 
-def _of_rows(of_term: Any, y: Array, terms: Terms) -> Array:
+def _of_rows(of_term: OfTerm, y: Array, terms: Terms) -> Array:
     """(num_rows,) what the terms of each row say of its gap.
 
     Finding a rest takes less time than numba does to load the loop over many.
     """
     total = np.zeros(y.size)
     for term in terms:
-        total[term["row"]] += of_term.py_func(term, y[term["row"]])
+        total[term["row"]] += of_term(term, y[term["row"]])
     return total

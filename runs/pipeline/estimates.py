@@ -23,7 +23,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
 from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.motion import asked
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0
@@ -102,7 +102,7 @@ def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
     stand_in = model.stand_in(boom)
     before = Cost(stand_in.memory, stand_in.seconds)
     try:
-        motion = Plan.of(build(case, boom, stand_in.beam).system, case, stand_in.beam).motion
+        motion, _ = asked(build(case, boom, stand_in.beam).system, case, stand_in.beam)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
         # The run ends with it, and says so.
         return before

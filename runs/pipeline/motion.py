@@ -12,8 +12,8 @@ import numpy as np
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, Splitting, by_splitting, suited
 from dynamics.motion import Motion
+from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.schema import Case, EnsembleTable, Model
@@ -22,6 +22,8 @@ from runs.pipeline.summary import Growth
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from dynamics.integrators import Events, Splitting
 
 Progress = Callable[[float], None]
 
@@ -46,22 +48,12 @@ class Plan:
 
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: Model) -> Plan:
-        """Of a model of a case.
+        """Of a model of a case; raises what :func:`asked` raises."""
+        from dynamics.integrators import Splitting, suited
 
-        Raises:
-            NumericsError: there is no equilibrium to start from, or it would take days.
-        """
-        system, position, velocity = actions.start(system, case)
-        time = case.time
-        motion = Motion(damped(system, case), time.duration, time.output_step, position, velocity)
-        given = model.step or time.step
-        step = given or by_splitting(motion).step
-        if time.duration / step > MOST_STEPS:
-            raise NumericsError(
-                f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make the contact "
-                "softer or the step longer"
-            )
-        return cls(motion, suited(motion) if given is None else Splitting(given))
+        motion, step = asked(system, case, model)
+        given = model.step or case.time.step
+        return cls(motion, Splitting(step) if given else suited(motion))
 
     def finer(self) -> Plan:
         """The same in half the step."""
@@ -125,3 +117,25 @@ class Plan:
             step_change=found.step_change,
             limits=list(found.limits),
         )
+
+
+def asked(system: GapSystem, case: Case, model: Model) -> tuple[Motion, float]:
+    """The motion that a case asks of one of its models, and the step that would do.
+
+    Raises:
+        NumericsError: there is no equilibrium to start from, or it would take days.
+    """
+    system, position, velocity = actions.start(system, case)
+    time = case.time
+    motion = Motion(damped(system, case), time.duration, time.output_step, position, velocity)
+    step = (
+        model.step
+        or time.step
+        or contact_step(motion.system, time.output_step, motion.initial_speeds)
+    )
+    if time.duration / step > MOST_STEPS:
+        raise NumericsError(
+            f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make the contact "
+            "softer or the step longer"
+        )
+    return motion, step

@@ -15,10 +15,10 @@ from runs import CASES
 
 ROOT = Path(__file__).parents[2]
 OF_RUNS = {
-    "basix", "dolfinx", "gmsh", "matplotlib", "mpi4py", "pandas", "petsc4py", "pyvista",
+    "basix", "dolfinx", "gmsh", "matplotlib", "mpi4py", "numba", "pandas", "petsc4py", "pyvista",
     "scipy.signal", "scipy.stats", "ufl", "vtkmodules", "xarray",
 }  # fmt: skip
-OF_CHECKS = {"numba", "numpy", "pydantic", "scipy"}
+OF_CHECKS = {"numpy", "pydantic", "scipy"}
 PROGRAM = """
 import sys
 from runs import cli
