@@ -281,12 +281,28 @@ def frequencies(
 
 
 @app.command()
-def check(case: CaseFile) -> int:
+def check(
+    case: CaseFile,
+    picture: Annotated[
+        str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
+    ] = None,
+) -> int:
     """Check a case file, and print what follows from it."""
+    from runs.case.messages import BadInput
     from runs.case.reading import load
     from runs.pipeline.inferred import print_inferred
 
-    print_inferred(load(case), Terminal())
+    if picture is not None and Path(picture).suffix.lower() != ".png":
+        raise BadInput(case, f"--picture {picture}", "must end in .png")
+    checked = load(case)
+    print_inferred(checked, Terminal())
+    if picture is not None:
+        from runs.folder.files import whole
+        from runs.report.boom_drawing import draw_boom_of
+
+        with whole(Path(picture)) as part:
+            draw_boom_of(checked, part)
+        print(printable(picture))
     return 0
 
 

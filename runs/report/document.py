@@ -38,12 +38,13 @@ def render(
     """
     models = _texts([*model_tables(results), *pad_tables(results), *wall_tables(results)])
     known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
-    motion, knowledge = (
-        [figure for figure in figures if figure.part == part] for part in ("motion", "knowledge")
+    case, motion, knowledge = (
+        [figure for figure in figures if figure.part == part]
+        for part in ("case", "motion", "knowledge")
     )
     shown = [
         *_numbered("Table", chain(models, known, compared, readings)),
-        *_numbered("Figure", chain(motion, knowledge, snapshots)),
+        *_numbered("Figure", chain(case, motion, knowledge, snapshots)),
     ]
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
@@ -60,6 +61,7 @@ def render(
         ],
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
+        case=case,
         models=models,
         motion=motion,
         known=known,

@@ -38,7 +38,7 @@ class Figure:
     title: str
     caption: str
     statements: Sequence[str] = ()
-    part: Literal["motion", "knowledge"] = "motion"
+    part: Literal["case", "motion", "knowledge"] = "motion"
 
     @property
     def anchor(self) -> str:

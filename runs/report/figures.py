@@ -10,6 +10,7 @@ import matplotlib
 
 from runs.pipeline.results import Results
 from runs.report import theme
+from runs.report.boom_drawing import boom
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
 from runs.report.energy_figures import energies, residuals
@@ -18,6 +19,7 @@ from runs.report.horizon_figures import horizons, slow_peaks
 from runs.report.stress_figures import stress_history
 
 FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
+    boom,
     tip,
     close_up,
     heads,

@@ -69,6 +69,14 @@ def test_check_prints_what_was_inferred(protractile: Protractile) -> None:
         assert part in answer.out
 
 
+def test_check_draws_the_boom(protractile: Protractile) -> None:
+    """Reference: a PNG file's first bytes (W3C 2003), and nothing else in the folder."""
+    answer = protractile("check", "case.toml", "--picture", "boom.png")
+    assert (answer.status, answer.out.splitlines()[-1]) == (0, "boom.png")
+    assert Path("boom.png").read_bytes().startswith(b"\x89PNG")
+    assert sorted(contents(Path.cwd())) == ["boom.png", "case.toml"]
+
+
 def test_check_prints_the_ratios_that_modes_get(protractile: Protractile) -> None:
     """Reference: analytic, the ratio asked for, and nothing where no damping is."""
     assert " % at" not in protractile("check", "case.toml").out
@@ -141,6 +149,10 @@ def test_a_bad_case_is_one_line_and_no_folder(protractile: Protractile, command:
             ["run", "case.toml", *SERIES, "--out", "."],
             "case.toml: --out .: holds files that are not a run's; give a new folder or an "
             "earlier run's",
+        ),
+        (
+            ["check", "case.toml", "--picture", "boom.pdf"],
+            "case.toml: --picture boom.pdf: must end in .png",
         ),
         (["report", "nowhere"], "nowhere: folder: does not exist; give the folder of a run"),
         (
