@@ -101,6 +101,11 @@ class BoomModes:
         rotation = self._component(segment, direction).rotation_at(x)
         return self._expand(segment, direction, rotation)
 
+    def curvature(self, segment: int, x: float, direction: Direction) -> Array:
+        """(num_modes,) row that reads the curvature of a segment at x in m."""
+        curvature = self._component(segment, direction).curvature_at(x)
+        return self._expand(segment, direction, curvature)
+
     def turning(self, segment: int, direction: Direction) -> Array:
         """(num_modes,) modal momentum of a segment that turns about x = 0 by 1 rad/s."""
         return self._expand(segment, direction, self._component(segment, direction).turning)

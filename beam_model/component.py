@@ -32,6 +32,8 @@ class Component:
         at: x in m → (num_dofs,) row that reads the deflection or twist there.
         rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
             slope of a beam that is rigid in shear; none of a twist.
+        curvature: x in m → (num_dofs,) row that reads θ′ of that rotation there; none of a twist,
+            and of what does not bend.
         turning: (num_dofs,) the momentum that turning about x = 0 by 1 rad/s gives the mass per
             length and the rotary inertia, in N·s; none of a twist.
         breaks: x in m between which rows are polynomials.
@@ -48,6 +50,7 @@ class Component:
     at: Callable[[float], Array]
     rigid_modes: int
     rotation: Callable[[float], Array] | None = None
+    curvature: Callable[[float], Array] | None = None
     turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
     geometric: Array | None = None
@@ -61,6 +64,11 @@ class Component:
         """(num_dofs,) row that reads the rotation of the cross-section at x in m."""
         assert self.rotation is not None
         return self.rotation(x)
+
+    def curvature_at(self, x: float) -> Array:
+        """(num_dofs,) row that reads θ′ at x in m."""
+        assert self.curvature is not None
+        return self.curvature(x)
 
     def uniform_load(self, start: float, end: float) -> Array:
         """(num_dofs,) a uniform load of 1 N/m between two x in m."""

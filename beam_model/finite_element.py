@@ -118,11 +118,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         mass[dof, dof] += point.mass
     free = np.setdiff1d(np.arange(num_dofs), held)
 
-    def read(shapes: _Shapes, x: float) -> Array:
+    def read(shapes: _Shapes, order: int, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        values, _ = shapes(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
-        row[2 * k : 2 * k + 4] = values
+        values = shapes(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
+        row[2 * k : 2 * k + 4] = values[order]
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
@@ -132,8 +132,9 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping=damping[block],
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
-        at=partial(read, _deflection),
-        rotation=partial(read, _rotation),
+        at=partial(read, _deflection, 0),
+        rotation=partial(read, _rotation, 0),
+        curvature=partial(read, _rotation, 1),
         turning=turning[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,

@@ -125,6 +125,7 @@ def kantorovich_bending(
         unit_load=basis.integral,
         at=basis.at,
         rotation=basis.slope_at,
+        curvature=basis.curvature_at,
         turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
         geometric=_geometric(segment.compression, basis.functions),
@@ -271,6 +272,10 @@ class _Basis:
     def slope_at(self, x: float) -> Array:
         """(num_functions,) slopes at one place in m."""
         return np.array([function.deriv()(x) for function in self.functions])
+
+    def curvature_at(self, x: float) -> Array:
+        """(num_functions,) second derivatives at one place in m."""
+        return np.array([function.deriv(2)(x) for function in self.functions])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:

@@ -5,6 +5,8 @@ way.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from beam_model.component import Component, Motion, SegmentModel
@@ -36,9 +38,12 @@ def _moving(segment: Segment) -> Component:
     motions = freedom(segment)
     if motions == 0:
         return _held()
-    return kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
+    straight = kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
+    return replace(straight, curvature=None)
 
 
 def _held() -> Component:
     none, empty = np.zeros(0), np.zeros((0, 0))
-    return Component(empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, none)
+    return Component(
+        empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, turning=none
+    )

@@ -24,7 +24,8 @@ from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
 from runs.folder.versions import versions
-from runs.pipeline import members
+from runs.pipeline import answering, members
+from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
@@ -103,6 +104,7 @@ def run_case(
     first_rank = comm is None or comm.rank == 0
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
     outcomes: dict[str, Finished] = {}
+    answered: dict[str, ModelAnswers] = {}
     shells: dict[str, ShellOutput] = {}
     failures: dict[str, str] = {}
     first_failure = None
@@ -120,7 +122,7 @@ def run_case(
         except _SharedFailure as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         if outcome is not None:
-            outcomes[model.name], shell = outcome
+            outcomes[model.name], shell, answered[model.name] = outcome
             if shell is not None:
                 shells[model.name] = shell
     if not first_rank:
@@ -145,6 +147,7 @@ def run_case(
         ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
         for name, values in ensembles.data_vars.items():
             values.attrs.update(data[name].attrs)
+    summary.answers = answering.of_run(boom, case, answered)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Run(Results(case, data, summary, ensembles), shells)
 
@@ -177,7 +180,7 @@ def _run_model(
     progress: Progress,
     cache: Cache | None,
     kept: Cache | None,
-) -> tuple[Finished, ShellOutput | None] | None:
+) -> tuple[Finished, ShellOutput | None, ModelAnswers] | None:
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
@@ -213,8 +216,10 @@ def _run_model(
         with stages.stage("stress"):
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
+    with stages.stage("answers"):
+        answers = answering.of_model(boom, case, model, built)
     summary.seconds = stages.seconds
-    return moved, shell
+    return moved, shell, answers
 
 
 def _move(

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from rich.console import Console
 from rich.table import Table
@@ -15,28 +17,77 @@ from geometry.cylinder import force_name
 from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.answers import Reaction
 from runs.pipeline.cautions import of_tip
 
 KILO, MILLI = 1.0e3, 1.0e-3
 
 
-def print_statics(case: Case, boom: Boom, console: Console) -> None:
-    """Print masses, and the boom at rest under the loads of t = 0, as beam elements."""
-    console.print(_masses(boom, case.system))
+class Statics(NamedTuple):
+    """The boom at rest under the loads of t = 0, as beam elements, and the same without play."""
+
+    played: Rest
+    tied: Rest
+
+
+def statics(case: Case, boom: Boom) -> Statics | None:
+    """None where no rest is found."""
     with_play = next((model for model in case.models if not model.play_free), None)
     laws = joined(case, boom, with_play or case.models[0])
     try:
         with np.errstate(all="ignore"):
-            held = at_rest(boom.play_free, [], [])
-            played = at_rest(boom, laws.laws, laws.lateral_laws) if with_play else held
-            console.print(_holds(boom, played, case.system))
-            if boom.cylinders:
-                console.print(_cylinders(boom, played, case.system))
-            console.print(_line(played, held), highlight=False)
-            for caution in of_tip("as beam elements", played.tip, boom):
-                console.print(caution, markup=False, highlight=False)
+            tied = at_rest(boom.play_free, [], [])
+            return Statics(at_rest(boom, laws.laws, laws.lateral_laws) if with_play else tied, tied)
     except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+        return None
+
+
+def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
+    """What holds the boom, joints left out."""
+    joined_at = {
+        (number, x)
+        for joint in boom.joints
+        for number in (joint.outer, joint.inner)
+        for x in joint.stations
+    }
+    stopped = {(stop.segment, stop.x) for stop in boom.stops}
+    deep = _depths(boom, rest)
+    return [
+        Reaction(
+            boom.segments[number].name,
+            x,
+            force,
+            moment,
+            deep[x] if (number, x) in stopped else None,
+        )
+        for number, x, force, moment in rest.holds
+        if (number, x) not in joined_at
+    ]
+
+
+def print_statics(case: Case, boom: Boom, console: Console) -> None:
+    """Print masses, and the boom at rest."""
+    console.print(_masses(boom, case.system))
+    found = statics(case, boom)
+    if found is None:
         console.print("No rest under the loads of t = 0 is found.")
+        return
+    console.print(_holds(boom, found.played, case.system))
+    if boom.cylinders:
+        console.print(_cylinders(boom, found.played, case.system))
+    console.print(_line(found), highlight=False)
+    for caution in of_tip("as beam elements", found.played.tip, boom):
+        console.print(caution, markup=False, highlight=False)
+
+
+def _depths(boom: Boom, rest: Rest) -> dict[float, float]:
+    """How far in m each station along z is pressed in, by its x in m."""
+    gaps = rest.system.rows @ rest.position
+    pressed = dict.fromkeys(range(len(boom.stations)), 0.0)
+    for station, law, gap in zip(rest.system.station_of_row, rest.system.laws, gaps, strict=True):
+        beyond = max(0.0, float(abs(gap)) - law.clearance)
+        pressed[int(station)] = max(pressed[int(station)], beyond)
+    return {x: pressed[k] for k, (x, way) in enumerate(boom.stations) if way == "z"}
 
 
 def _masses(boom: Boom, system: System) -> Table:
@@ -67,12 +118,7 @@ def _holds(boom: Boom, rest: Rest, system: System) -> Table:
     x = f"x ({system.label('m')})"
     table = Table("holds at rest", x, "force (kN)", "moment (kN m)", "pressed in (mm)")
     reacting = {(joint.outer, x) for joint in boom.joints for x in joint.stations}
-    gaps = rest.system.rows @ rest.position
-    pressed = dict.fromkeys(range(len(boom.stations)), 0.0)
-    for station, law, gap in zip(rest.system.station_of_row, rest.system.laws, gaps, strict=True):
-        beyond = max(0.0, float(abs(gap)) - law.clearance)
-        pressed[int(station)] = max(pressed[int(station)], beyond)
-    deep = {x: pressed[k] for k, (x, way) in enumerate(boom.stations) if way == "z"}
+    deep = _depths(boom, rest)
     for hold in (hold for hold in rest.holds if hold[:2] not in reacting):
         moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
         depth = f"{deep[hold.x] / MILLI:.3g}" if hold.x in deep else ""
@@ -104,13 +150,12 @@ def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
     return table
 
 
-def _line(played: Rest, tied: Rest) -> str:
+def _line(found: Statics) -> str:
     hertz = [
-        float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi)
-        for rest in (played, tied)
+        float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi) for rest in found
     ]
     return (
-        f"At rest the tip is at {played.tip / MILLI:.4g} mm, without play at "
-        f"{tied.tip / MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the joints "
-        f"pressed, {hertz[1]:.4g} Hz without play."
+        f"At rest the tip is at {found.played.tip / MILLI:.4g} mm, without play at "
+        f"{found.tied.tip / MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
+        f"joints pressed, {hertz[1]:.4g} Hz without play."
     )

@@ -16,6 +16,7 @@ import numpy as np
 from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
 
 from runs.case.schema import EnsembleTable
+from runs.pipeline.answers import Answers
 from shell_model.stress.summary import StressSummary
 
 
@@ -230,6 +231,7 @@ class Summary(Entry):
     models: dict[str, ModelSummary]
     failures: dict[str, str]
     ensemble: Ensembles | None = None
+    answers: Answers | None = None
     comparisons: Comparisons | None = None
     snapshots: Snapshots = Snapshots(written=[], skipped=None)
 

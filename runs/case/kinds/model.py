@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
+    from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
 
@@ -167,6 +168,14 @@ class ModelTable(Table):
         """Of the boom's axial forces, as in :class:`Built`, or about that of a meshed one."""
 
     @abstractmethod
+    def lines(self, boom: Boom, built: Built) -> list[Line]:
+        """What is read along each segment of the model as it was built, on the first rank."""
+
+    @abstractmethod
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
+        """The same boom without play, by itself or by what stands in for it, and along it."""
+
+    @abstractmethod
     def stand_in(self, boom: Boom) -> StandIn:
         """What tells how long it takes to move."""
 
@@ -189,6 +198,18 @@ class BeamTable(ModelTable):
             system = gap_system(joined.boom, segments, joined.laws, joined.lateral_laws)
         factor = self.critical_factor(joined.boom)
         return Built(system, system.num_modes, {"build": perf_counter() - start}, factor)
+
+    def lines(self, boom: Boom, built: Built) -> list[Line]:
+        from beam_model.lines import lines
+
+        return lines(boom.play_free if self.play_free else boom, self.segments(boom))
+
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
+        from beam_model.lines import lines
+        from beam_model.segment_model import tied_system
+
+        segments = self.segments(boom)
+        return tied_system(boom, segments), lines(boom.play_free, segments)
 
     def critical_factor(self, boom: Boom) -> float | None:
         from beam_model.boom_modes import critical_factor

@@ -16,6 +16,8 @@ from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
 if TYPE_CHECKING:
+    from dynamics.gap_system import GapSystem
+    from dynamics.line import Line
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduction.krylov import KrylovOptions
 
@@ -117,6 +119,16 @@ class ShellTable(ModelTable):
             krylov=self._krylov(),
             contact_tolerance=None if self.contact_tolerance == "any" else self.contact_tolerance,
         )
+
+    def lines(self, boom: Boom, built: Built) -> list[Line]:
+        from shell_model.stress.lines import lines
+
+        assert built.shell is not None
+        assert built.shell.fields is not None
+        return lines(built.shell.fields, spatial=boom.spatial)
+
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
+        return self.stand_in(boom).beam.without_play(boom)
 
     def critical_factor(self, boom: Boom) -> float | None:
         return self.stand_in(boom).beam.critical_factor(boom)

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A model of the boom at rest, under the loads of the instants at which these are largest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import count
+
+import numpy as np
+
+from dynamics.contact import ContactLaw
+from dynamics.equilibrium import equilibrium
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line
+from geometry.arrays import Array
+from geometry.boom import Boom, Joint
+from geometry.compression import Compression
+from geometry.cylinder import forces
+from runs.case.contact import PADS_OF_SIDE
+from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
+from runs.pipeline.results import place_names
+
+# Among so many times between kinks the largest value of a load is looked for.
+_TIMES = 2001
+
+# What numbers out of proportion lead to.
+NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
+
+# Part of a place's distance from the start by which a jump's two sides are told apart.
+_ASIDE = 1.0e-9
+
+
+def load_at(system: GapSystem, time: float) -> Array:
+    """(num_modes,) what acts at a time in s, in N/√kg."""
+    changing = (x.load * x.history(np.array([time]))[0] for x in system.excitations)
+    return sum(changing, system.load.copy())
+
+
+def instants(system: GapSystem, duration: float) -> list[float]:
+    """0, and the times in s at which a load that changes is largest one way or the other.
+
+    Args:
+        system: all that stays constant is in its ``load``.
+        duration: of the motion in s.
+    """
+    histories = [excitation.history for excitation in system.excitations]
+    kinks = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    times = np.unique([*np.linspace(0.0, duration, _TIMES), *kinks])
+    values = np.array([history(times) for history in histories]).reshape(-1, times.size)
+    found = [0, *values.argmax(axis=1), *values.argmin(axis=1)]
+    distinct: dict[tuple[float, ...], float] = {}
+    for step in found:
+        distinct.setdefault(tuple(values[:, step]), float(times[step]))
+    return list(distinct.values())
+
+
+def told(boom: Boom, system: GapSystem, lines: Sequence[Line], duration: float) -> list[AtRest]:
+    """Under the loads of t = 0 and of other instants; none where there is no rest.
+
+    Args:
+        boom: with the play that the system has.
+        system: of the model.
+        lines: along its segments.
+        duration: of the motion in s.
+    """
+    system = system.gathered()
+    found = []
+    for time in instants(system, duration):
+        try:
+            position = equilibrium(system, load_at(system, time))
+        except NUMERICS:
+            return []
+        found.append(_told(boom, system, lines, time, position))
+    return found
+
+
+def _told(
+    boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
+) -> AtRest:
+    seen = {name: float(one.row @ position) for name, one in system.observers.items()}
+    stations = list(_stations(boom, system, position))
+    return AtRest(
+        time=time,
+        tip=seen["tip"],
+        tip_lateral=seen.get("tip_lateral"),
+        diagrams=[
+            Diagram(
+                segment.name,
+                rounded(line.x),
+                rounded(normal_force(segment.compression, line.x)),
+                {name: rounded(values) for name, values in line.read(position).items()},
+            )
+            for segment, line in zip(boom.segments, lines, strict=True)
+        ],
+        tilts=list(_tilts(boom, system, position)),
+        stations=stations,
+        cylinders={name: seen[name] for name in forces(boom)},
+    )
+
+
+def normal_force(compression: Compression, x: Array) -> Array:
+    """(num_places,) N in N along a segment; of a place that stands twice from both its sides."""
+    jump = np.diff(x) == 0.0
+    before, behind = np.append(jump, False), np.append(False, jump)
+    aside = _ASIDE * max(1.0, float(np.ptp(x)))
+    return np.asarray(-compression(x + aside * (behind.astype(float) - before)))
+
+
+def _stations(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
+    gaps = system.rows @ position
+    padded = [
+        joint.pad is not None
+        for _ in boom.directions
+        for joint in boom.joints
+        if not joint.tied
+        for _ in joint.stations
+    ] + [False for _ in boom.stops]
+    names = place_names(boom.stations)
+    for k, ((x, direction), name, pads) in enumerate(
+        zip(boom.stations, names, padded, strict=True)
+    ):
+        here = np.flatnonzero(system.station_of_row == k)
+        sides = [
+            sum(_one_sided(system.laws[row], side, gaps[row]) for row in here) for side in (1, -1)
+        ]
+        beyond = [abs(gaps[row]) - system.laws[row].clearance for row in here]
+        yield Pressed(
+            place=name,
+            x=x,
+            direction=direction,
+            force=sides[0] - sides[1],
+            pad=max(sides) / PADS_OF_SIDE if pads else None,
+            depth=float(max([0.0, *beyond])),
+        )
+
+
+def _one_sided(law: ContactLaw, side: int, gap: float) -> float:
+    """What a contact bears on a side in N, not negative."""
+    there = law.one_sided(side)
+    return 0.0 if there is None else float(abs(there.force(np.array(gap))))
+
+
+def _tilts(boom: Boom, system: GapSystem, position: Array) -> Iterator[Tilt]:
+    gaps, numbers = system.rows @ position, count()
+    for joint in (joint for joint in boom.joints if not joint.tied):
+        of_station = [
+            float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations
+        ]
+        if len(joint.stations) > 1:
+            yield _tilt(boom, joint, of_station)
+
+
+def _tilt(boom: Boom, joint: Joint, gaps: Sequence[float]) -> Tilt:
+    first, last = joint.stations[0], joint.stations[-1]
+    rotation = (gaps[-1] - gaps[0]) / (last - first)
+    inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
+    return Tilt(inner, outer, rotation, gaps[0] + rotation * (boom.tip - first))

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Deflections and section forces along segments of shells.
+
+A segment is cut where a line of its mesh goes all around it. Between two cuts its deflections are
+the means over the walls, its section forces the integrals of their membrane and bending stresses
+over the area, divided by the length.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.sparse import csr_matrix
+
+from dynamics.line import Line, Quantity
+from geometry.arrays import Array, Indices
+from shell_model.stress.stresses import ShellStress
+
+Walls = npt.NDArray[np.int32]
+
+# Bands of a segment, at most.
+_BANDS = 60
+
+# Lengths in m that are the same.
+_SAME_PLACE = 1.0e-6
+
+# In m².
+_NOTHING = 1.0e-300
+
+
+def lines(fields: xr.Dataset, spatial: bool) -> list[Line]:
+    """One for each segment.
+
+    Args:
+        fields: of :func:`shell_model.stress.fields.gather_fields`.
+        spatial: whether the boom deflects along y and twists.
+    """
+    still = fields.assign(
+        state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
+    )
+    shell = ShellStress.of(still)
+    return [_line(shell, fields, number, spatial) for number in range(len(shell.plates))]
+
+
+def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) -> Line:
+    walls = shell.wall < len(shell.plates[number])
+    triangles = np.flatnonzero((shell.segment == number) & walls)
+    cuts = cuts_around(shell.spans[triangles])
+    band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
+    moved = _moved(shell, fields, triangles, band, cuts.size - 1)
+    corners = fields["points"].values[fields["triangles"].values[triangles]]
+    reaches = _reaches(corners, shell.wall[triangles])
+    forces = _forces(shell, number, triangles, band, np.diff(cuts), reaches)
+    forces = forces @ fields[f"coordinates_{number + 1}"].values
+    rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[1], "moment": forces[2]}
+    if spatial:
+        rows |= {
+            "lateral": moved[0],
+            "lateral_shear": forces[3],
+            "lateral_moment": forces[4],
+            "twist": moved[2],
+            "torque": forces[5],
+        }
+    return Line(0.5 * (cuts[1:] + cuts[:-1]), rows)
+
+
+def cuts_around(spans: Array) -> Array:
+    """x in m, rising, of mesh lines that no triangle crosses, with the ends of the segment.
+
+    Args:
+        spans: (num_triangles, 2) the smallest and the largest x of each in m.
+    """
+    first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
+    lines = np.unique(spans.round(6))
+    begun = np.searchsorted(first, lines - _SAME_PLACE)
+    ended = np.searchsorted(last, lines + _SAME_PLACE)
+    free = lines[begun == ended]
+    inside = [free[0]]
+    shortest = (free[-1] - free[0]) / _BANDS
+    for x in free[1:-1]:
+        if x - inside[-1] >= shortest and free[-1] - x >= shortest:
+            inside.append(x)
+    return np.array([*inside, free[-1]])
+
+
+def _moved(
+    shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
+) -> tuple[Array, Array, Array]:
+    """(num_bands, num_modes) deflections along y and z, and the turn about x: of all walls."""
+    corners = fields["triangles"].values[triangles]
+    y, z = (fields["points"].values[corners, way] for way in (1, 2))
+    area = np.repeat(shell.areas[triangles, None] / 3.0, 3, axis=1)
+    num_points = fields.sizes["point"]
+
+    def mean(weight: Array, of: Array) -> csr_matrix:
+        rows = np.repeat(band, 3)
+        total = np.bincount(rows, of.ravel(), num_bands)
+        values = weight.ravel() / total[rows]
+        return csr_matrix((values, (rows, corners.ravel())), (num_bands, num_points))
+
+    modes = fields["modes"].values
+    along_y, along_z = modes[:, :, 1].T, modes[:, :, 2].T
+    polar = area * (y**2 + z**2)
+    twist = mean(area * y, polar) @ along_z - mean(area * z, polar) @ along_y
+    plain = mean(area, area)
+    return (
+        np.asarray(plain @ along_y, dtype=float),
+        np.asarray(plain @ along_z, dtype=float),
+        np.asarray(twist, dtype=float),
+    )
+
+
+def _reaches(corners: Array, wall: Walls) -> tuple[Array, Array]:
+    """(num_walls,) how far each wall reaches along z and along y in m."""
+    found = []
+    for way in (2, 1):
+        low, high = np.full((2, int(wall.max()) + 1), [[np.inf], [-np.inf]])
+        np.minimum.at(low, wall, corners[..., way].min(axis=1))
+        np.maximum.at(high, wall, corners[..., way].max(axis=1))
+        found.append(high - low)
+    return found[0], found[1]
+
+
+def _forces(
+    shell: ShellStress,
+    number: int,
+    triangles: Indices,
+    band: Indices,
+    lengths: Array,
+    reaches: tuple[Array, Array],
+) -> Array:
+    """(6, num_bands, num_own) N, V, M, lateral V and M, torque for a unit of each coordinate."""
+    strength = shell.thickness[triangles] * shell.areas[triangles] / lengths[band]
+    y, z = shell.centroids[triangles, 1:].T
+    across, up = shell.outward[triangles, 1:].T
+    # s, x and the normal n are right-handed.
+    s_y, s_z = up, -across
+    own = shell.thickness[triangles] * strength / 6.0
+    within_z, within_y = (
+        _within(shell.wall[triangles], reach, band, strength, place)
+        for reach, place in zip(reaches, (z, y), strict=True)
+    )
+    weights = (
+        {0: strength},
+        {2: s_z * strength},
+        {0: strength * z + within_z, 3: up * own},
+        {2: s_y * strength},
+        {0: strength * y + within_y, 3: across * own},
+        {2: strength * (y * s_z - z * s_y)},
+    )
+    first = int(np.searchsorted(shell.segment, number))
+    modes = shell.modes[number][:, triangles - first]
+    shape = lengths.size, triangles.size
+    columns = np.arange(triangles.size)
+    found = []
+    for of_component in weights:
+        total = np.zeros((lengths.size, len(modes)))
+        for component, weight in of_component.items():
+            total += csr_matrix((weight, (band, columns)), shape) @ modes[:, :, component].T
+        found.append(total)
+    return np.array(found)
+
+
+def _within(wall: Walls, reach: Array, band: Indices, strength: Array, place: Array) -> Array:
+    """(num_triangles,) what a stress that is linear up a wall adds to its centroids' moment, in m³.
+
+    Args:
+        wall: (num_triangles,) of each triangle.
+        reach: (num_walls,) from end to end in m.
+        band: (num_triangles,) of each triangle.
+        strength: (num_triangles,) thickness times width in m².
+        place: (num_triangles,) of the centroids in m.
+    """
+    part = band * reach.size + wall
+    whole = np.bincount(part, strength)
+    about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
+    second = np.bincount(part, strength * about**2)[part]
+    flat = reach[wall] < _SAME_PLACE
+    missing = whole[part] * reach[wall] ** 2 / 12.0 - second
+    return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))

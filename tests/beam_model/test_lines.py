@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Section forces along beams, by hand where they are statically determinate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
+from beam_model.lines import lines
+from beam_model.rigid import rigid_segment
+from beam_model.segment_model import gap_system, tied_system
+from dynamics.contact import PowerContact
+from dynamics.equilibrium import equilibrium
+from dynamics.excitation import Step
+from geometry.boom import Boom, Load, Segment, Support
+
+MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
+    "euler": lambda boom: finite_element_segments(boom, 0.25, "euler-bernoulli", False),
+    "timoshenko": lambda boom: finite_element_segments(boom, 0.25, "timoshenko", False),
+    "series": lambda boom: kantorovich_segments(boom, [12], "complete", False),
+}
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind: str) -> None:
+    """Reference: by hand. −100 N/m and −2000 N at the tip of a cantilever from 3 to 8 m: with
+    s = 8 − x, M = 2000 s + 50 s², which pulls at the top, V = −2000 − 100 s.
+    """
+    segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
+    boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
+    models = MODELS[kind](boom)
+    system = tied_system(boom, models).gathered()
+    (line,) = lines(boom, models)
+    found = line.read(equilibrium(system, system.load))
+    s = 8.0 - line.x
+    np.testing.assert_allclose(found["moment"], 2000.0 * s + 50.0 * s**2, atol=1.0)
+    # A piece has the shear force of its middle.
+    middle = 8.0 - 0.5 * (line.x[::2] + line.x[1::2])
+    np.testing.assert_allclose(found["shear"][::2], -2000.0 - 100.0 * middle, rtol=1e-4)
+    assert found["deflection"][-1] == pytest.approx(
+        system.observers["tip"].row @ equilibrium(system, system.load)
+    )
+
+
+def test_a_joint_with_play_passes_what_the_lever_rule_says(paper_boom: Boom) -> None:
+    """Reference: by hand, 550.7 N upwards at 14 m on 9 and 10 m: the moment of the inner segment is
+    55.07 · 9²/2 N m at 10 m, pulling at the bottom, and its shear force jumps there by 2753.5 N,
+    less the load of a piece, whose middle has its shear force.
+    """
+    models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
+    system = gap_system(paper_boom, models, [PowerContact(1e9, 1.0, clearance=7e-3)])
+    inner = lines(paper_boom, models)[1]
+    found = inner.read(equilibrium(system, system.load))
+    head = inner.x == 10.0
+    assert found["moment"][head] == pytest.approx(-55.07 * 81.0 / 2.0, rel=2e-4)
+    before, behind = found["shear"][head]
+    assert behind - before == pytest.approx(2753.5 - 55.07 * 0.25, rel=1e-4)
+
+
+def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
+    """Reference: by hand. 300 N to the side at 19 m: with s = 19 − x, lateral moment −300 s of a
+    tied boom in its inner segment, whose stations are the only other places that act on it.
+    """
+    load = Load(1, "y", 300.0, 19.0, Step())
+    boom = replace(spatial_boom.play_free, loads=(load,))
+    models = finite_element_segments(boom, 0.5, "timoshenko", True)
+    system = tied_system(boom, models).gathered()
+    inner = lines(boom, models)[1]
+    found = inner.read(equilibrium(system, system.load))
+    outside = inner.x > 10.0
+    np.testing.assert_allclose(
+        found["lateral_moment"][outside], -300.0 * (19.0 - inner.x[outside]), atol=1e-3
+    )
+    np.testing.assert_allclose(found["lateral_shear"][outside], 300.0, rtol=1e-6)
+    np.testing.assert_allclose(found["torque"], 0.0, atol=1e-6)
+
+
+def test_rigid_segments_have_no_section_forces(beam: Callable[..., Segment]) -> None:
+    segment = beam(supports=[Support(3.0, stiffness=1e6), Support(6.0, stiffness=1e6)])
+    boom = Boom((segment,), ())
+    (line,) = lines(boom, [rigid_segment(segment)])
+    assert list(line.rows) == ["deflection"]

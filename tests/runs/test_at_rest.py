@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What each model says of the boom at rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.compression import Compression
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.answers import Answers
+from runs.pipeline.at_rest import normal_force
+from runs.pipeline.run import run_case, silent
+from runs.pipeline.summary import Summary
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+    """Of the paper's boom by elements, with play."""
+    case = case_file.load(str(CASES / "coarse.toml"))
+    time = case.time.model_copy(update={"duration": 0.05})
+    models = tuple(model for model in case.models if model.name == "timoshenko")
+    short = case.model_copy(update={"models": models, "time": time})
+    run = run_case(short, "", None, Path(tmp_path_factory.mktemp("meshes")), silent)
+    assert run is not None
+    # As a folder gives it back.
+    found = Summary.model_validate_json(str(run.results.summary)).answers
+    assert found is not None
+    return found
+
+
+def test_a_joint_tilts_by_its_play(answers: Answers) -> None:
+    """Reference: by hand. Play of 14 mm over 1 m turns by 14 mrad, what lifts the tip, 10 m on, by
+    133 mm; contacts of 1e9 N/m are pressed in by 2.2 and 2.8 µm by the forces of the lever rule.
+    """
+    (rest,) = answers.models["timoshenko"].rests
+    (tilt,) = rest.tilts
+    assert tilt.rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
+    assert tilt.tip == pytest.approx(-0.007 - 2.2e-6 + 10.0 * (0.014 + 4.956e-6), abs=1e-7)
+    assert [pressed.force for pressed in rest.stations] == pytest.approx([-2202.8, 2753.5])
+    assert [pressed.depth for pressed in rest.stations] == pytest.approx(
+        [2.2028e-6, 2.7535e-6], rel=1e-4
+    )
+
+
+def test_play_adds_its_lever_and_no_moment(answers: Answers) -> None:
+    """Reference: by hand. The boom is statically determinate: its play turns it as a lever does,
+    and moments stay what they are without it.
+    """
+    found = answers.models["timoshenko"]
+    (rest,), (tied,) = found.rests, found.tied
+    # The tied boom's stations bend nothing: what is added is the tilt alone.
+    assert rest.tip - tied.tip == pytest.approx(rest.tilts[0].tip, rel=1e-6)
+    for one, other in zip(rest.diagrams, tied.diagrams, strict=True):
+        np.testing.assert_allclose(one.curves["moment"], other.curves["moment"], atol=0.1)
+
+
+def test_supports_bear_what_the_lever_rule_says(answers: Answers) -> None:
+    """Reference: by hand, 831.6 N at 5 m and 550.7 N at 14 m on 0 and 2 m."""
+    at_start, at_two = answers.reactions
+    assert at_two.force == pytest.approx(-(831.6 * 5.0 + 550.7 * 14.0) / 2.0)
+    assert at_start.force == pytest.approx(-831.6 - 550.7 - at_two.force)
+
+
+def test_a_normal_force_has_both_sides_of_a_jump() -> None:
+    pressed = Compression((0.0, 4.0, 10.0), ((9e3, 7e3), (2e3, 2e3)))
+    x = np.array([0.0, 4.0, 4.0, 10.0])
+    np.testing.assert_allclose(normal_force(pressed, x), [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Section forces and deflections along segments of shells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
+
+from beam_model.finite_element import finite_element_segments
+from beam_model.lines import lines as lines_of_beams
+from beam_model.segment_model import gap_system
+from dynamics.equilibrium import equilibrium
+from dynamics.line import Line
+from geometry.arrays import Array
+from geometry.boom import Boom
+from shell_model.boom_shell import ShellOptions
+from shell_model.reduced_shell import reduce_boom
+from shell_model.stress.lines import cuts_around, lines
+from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
+
+
+def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
+    """Along each segment of a shell, with its modal coordinates at rest."""
+    lateral = [LATERAL_LAW] if boom.spatial else []
+    shell = reduce_boom(boom, [LAW], options, MPI.COMM_SELF, lateral_laws=lateral)
+    assert shell.fields is not None
+    position = equilibrium(shell.system, shell.system.load)
+    return [(line, position) for line in lines(shell.fields, boom.spatial)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", [None, 0.02])
+def test_a_shell_bears_what_statics_ask(tolerance: float | None) -> None:
+    """Reference: by hand. The inner segment outside the overlap: with s = 19 − x, V = 55.07 s and
+    M = −55.07 s²/2, on a uniform mesh and on one that is fine at stations; the second order of the
+    bands' lengths is below 3 N m.
+    """
+    options = ShellOptions(mesh_size=0.2, contact_tolerance=tolerance)
+    line, position = at_rest(flat_boom(), options)[1]
+    found = line.read(position)
+    s = 19.0 - line.x
+    outside = s < 8.7
+    np.testing.assert_allclose(found["shear"][outside], 55.07 * s[outside], atol=3.0)
+    np.testing.assert_allclose(found["moment"][outside], -27.535 * s[outside] ** 2, atol=15.0)
+
+
+@pytest.mark.slow
+def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
+    """Reference: another model, shear-flexible beam elements of the same boom with a side load:
+    section forces within 1 % of their largest outside the overlap, deflections within 2 %.
+    """
+    boom = boom_in_space(sideways=0.4)
+    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
+    system = gap_system(boom, models, [LAW], [LATERAL_LAW])
+    position = equilibrium(system, system.load)
+    beams = lines_of_beams(boom, models)
+    shells = at_rest(boom, ShellOptions(mesh_size=0.25))
+    for beam, (line, state), far in zip(beams, shells, ((2.5, 8.5), (10.5, 19.0)), strict=True):
+        of_beam, found = beam.read(position), line.read(state)
+        outside = (line.x > far[0]) & (line.x < far[1])
+        for name, values in found.items():
+            expected = np.interp(line.x, beam.x, of_beam[name])
+            largest = np.abs(of_beam[name]).max()
+            share = 0.02 if name in ("deflection", "lateral") else 0.01
+            if name in ("twist", "torque") and largest < 1e-3:
+                continue
+            off = np.abs(values - expected)[outside].max() / largest
+            assert off < share, name
+
+
+def test_cuts_pass_no_triangle() -> None:
+    """Reference: by hand. Triangles from 0 to 2 and from 1 to 3 leave 0, 3 and 4 m."""
+    spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
+    assert cuts_around(spans).tolist() == [0.0, 3.0, 4.0]
