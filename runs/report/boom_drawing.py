@@ -21,6 +21,7 @@ from matplotlib.transforms import Affine2D, Transform
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Segment, Stop, Support
+from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report import symbols, theme
@@ -161,7 +162,7 @@ def _draw_whole(drawing: Drawing, boom: Boom, acts: Sequence[Acting], angle: flo
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
     axes.set_axis_off()
-    degrees = theme.signed(f"{angle:g}°")
+    degrees = signed(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
     if angle:
         reach = 0.18 * boom.length

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from dynamics.predictability.horizon import SHARES
+from geometry.typography import signed
 from runs.pipeline.comparisons import DECIDES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
@@ -20,7 +21,7 @@ from runs.pipeline.summary import (
 )
 from runs.report.model_tables import horizon_column
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, fixed, number, scientific, signed
+from runs.report.theme import NONE, fixed, number, scientific
 
 MILLI = 1.0e3
 PERCENT = 100.0

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from geometry.typography import signed
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.folder.files import beside
@@ -151,4 +152,4 @@ def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
     else:
         return event, ""
     tip = float(motion["tip"].sel(time=time, method="nearest"))
-    return when, f", the tip at {MILLI * tip:+.1f} mm"
+    return when, f", the tip at {signed(f'{MILLI * tip:+.1f}')} mm"

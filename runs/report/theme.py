@@ -11,6 +11,8 @@ from typing import Any
 
 from matplotlib.colors import to_rgb
 
+from geometry.typography import signed
+
 # On a telephone a figure is shown about half as wide as it is drawn: 11 pt stay readable.
 WIDTH = 5.4
 DPI = 150
@@ -96,11 +98,6 @@ def scientific(number: float, digits: int = 1) -> str:
     """8 × 10⁻⁵ for 8e-05, with at most so many significant digits."""
     mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
     return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
-
-
-def signed(text: str) -> str:
-    """A number with a minus sign in place of a hyphen."""
-    return text.replace("-", "−")
 
 
 NONE = "–"

@@ -13,6 +13,7 @@ from matplotlib.colors import Normalize
 from PIL import Image
 
 from geometry.arrays import Array
+from geometry.typography import signed
 from shell_model.pictures import theme as theme
 from shell_model.pictures.deformation import SAME_PLACE, Lug, MovingShell, Stop, round_scale
 from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
@@ -34,7 +35,7 @@ class Instant(NamedTuple):
         """What stands above a picture of a shell whose tip deflects by so much (m)."""
         title = f"{self.title}:  " if self.title else ""
         way = " sideways" if shell.from_above else ""
-        return f"{title}t = {self.time:.3f} s,  tip {1.0e3 * tip:+.1f} mm{way}"
+        return f"{title}t = {self.time:.3f} s,  tip {signed(f'{1.0e3 * tip:+.1f}')} mm{way}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,6 +61,13 @@ def test_a_caption_says_what_is_seen(name: str, title: str, seen: str) -> None:
     assert "magnifi" in figure.caption
 
 
+def test_a_deflection_down_has_a_minus_sign() -> None:
+    """Reference: analytic, the tip of −100 mm; a hyphen is no sign."""
+    above = results("shell")
+    below = replace(above, trajectories=above.trajectories.assign(tip=-above.trajectories["tip"]))
+    assert "the tip at −100.0 mm" in describe_one(below, Path("boom-0.5s.png")).caption
+
+
 def test_arrows_over_a_surface_are_sums() -> None:
     lines = results("shell")
     table = lines.case.models[0].model_copy(update={"contact_line": "surface"})
