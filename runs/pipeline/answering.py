@@ -3,36 +3,77 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line
 from geometry.boom import Boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import Answers, AtRest, ModelAnswers
-from runs.pipeline.at_rest import NUMERICS, told
+from runs.pipeline.answers import Answers, AtRest, Mode, ModelAnswers, ModesBeside
+from runs.pipeline.at_rest import NUMERICS, at_rest, positions
+from runs.pipeline.comparisons import reference_of
+from runs.pipeline.modes import matched, modes
 from runs.pipeline.statics import reactions, statics
+
+
+class Resting(NamedTuple):
+    """A boom at rest, and its modes there."""
+
+    rests: list[AtRest]
+    modes: list[Mode]
 
 
 def of_model(boom: Boom, case: Case, model: Model, built: Built) -> ModelAnswers:
     """What one model answers, on the first rank."""
     own = boom.play_free if model.play_free else boom
     duration = case.time.duration
-    return ModelAnswers(
-        rests=told(own, built.system, model.lines(boom, built), duration),
-        tied=_tied(boom, model, duration),
+    played = _resting(own, built.system.gathered(), model.lines(boom, built), duration)
+    tied = _tied(boom, model, duration)
+    # Their shapes are those of the pressed boom to the eye.
+    plain = [replace(mode, shapes=[]) for mode in tied.modes]
+    return ModelAnswers(played.rests, tied.rests, played.modes, plain)
+
+
+def _resting(boom: Boom, system: GapSystem, lines: Sequence[Line], duration: float) -> Resting:
+    found = positions(system, duration)
+    if not found:
+        return Resting([], [])
+    return Resting(
+        [at_rest(boom, system, lines, time, position) for time, position in found.items()],
+        modes(boom, system, lines, found[0.0]),
     )
 
 
-def _tied(boom: Boom, model: Model, duration: float) -> list[AtRest]:
+def _tied(boom: Boom, model: Model, duration: float) -> Resting:
     try:
         system, lines = model.without_play(boom)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move.
-        return []
-    return told(boom.play_free, system, lines, duration)
+        return Resting([], [])
+    return _resting(boom.play_free, system.gathered(), lines, duration)
 
 
-def of_run(boom: Boom, case: Case, models: dict[str, ModelAnswers]) -> Answers:
+def of_run(boom: Boom, case: Case, models: Mapping[str, ModelAnswers]) -> Answers:
     """What all of them answer together."""
     found = statics(case, boom)
-    if found is None:
-        return Answers(models)
-    return Answers(models, reactions(boom, found.played), reactions(boom.play_free, found.tied))
+    return Answers(
+        models=dict(models),
+        reactions=[] if found is None else reactions(boom, found.played),
+        tied_reactions=[] if found is None else reactions(boom.play_free, found.tied),
+        modes=_beside(boom, case, models),
+    )
+
+
+def _beside(boom: Boom, case: Case, models: Mapping[str, ModelAnswers]) -> ModesBeside | None:
+    with_modes = [
+        model for model in case.models if model.name in models and models[model.name].modes
+    ]
+    reference = reference_of(with_modes)
+    others = [m.name for m in with_modes if not m.play_free and m.name != reference]
+    if reference is None or not others:
+        return None
+    own = models[reference].modes
+    return ModesBeside(reference, {name: matched(boom, own, models[name].modes) for name in others})

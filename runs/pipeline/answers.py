@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from geometry.arrays import Array
 
 # Digits that are kept of curves.
-_DIGITS = 6
+_DIGITS = 5
 
 
 def rounded(values: Array | Iterable[float]) -> list[float]:
@@ -120,6 +120,65 @@ class AtRest:
 
 
 @dataclass(frozen=True, slots=True)
+class Shape:
+    """How a segment moves in a mode: at x in m ``deflection``, in space ``lateral``, ``twist``."""
+
+    segment: str
+    x: list[float]
+    curves: dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A mode of the boom with its joints pressed as they are at rest.
+
+    Args:
+        frequency: in Hz.
+        way: what moves most: ``bending in z``, ``bending in y``, ``twist``.
+        number: among the model's modes of this way, from 1 on.
+        share: of that way in the kinetic energy, from 0 to 1.
+        shapes: of each segment, what moves most 1 m or 1 rad at most.
+    """
+
+    frequency: float
+    way: str
+    number: int
+    share: float
+    shapes: list[Shape]
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A mode of another model that is that of the reference.
+
+    Args:
+        number: among the other model's modes, from 1 on.
+        frequency: in Hz.
+        off: by what part it differs from the reference's.
+        alike: the modal assurance criterion of both shapes, from 0 to 1.
+    """
+
+    number: int
+    frequency: float
+    off: float
+    alike: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModesBeside:
+    """The modes of all models beside those of a reference.
+
+    Args:
+        reference: the name of the model.
+        matches: of each other model with play, for each mode of the reference; None where it has
+            none like it.
+    """
+
+    reference: str
+    matches: dict[str, list[Match | None]]
+
+
+@dataclass(frozen=True, slots=True)
 class ModelAnswers:
     """Of one model.
 
@@ -127,10 +186,14 @@ class ModelAnswers:
         rests: under the loads of t = 0, and where these change also those of the instants at which
             they are largest; none where it has no rest.
         tied: the same without play; of a shell those of Timoshenko elements.
+        modes: the first ones at rest under the loads of t = 0; none where it has no rest.
+        tied_modes: of what ``tied`` is of, without their shapes.
     """
 
     rests: list[AtRest] = field(default_factory=list)
     tied: list[AtRest] = field(default_factory=list)
+    modes: list[Mode] = field(default_factory=list)
+    tied_modes: list[Mode] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,8 +205,10 @@ class Answers:
         reactions: at rest under the loads of t = 0, of beam elements, as ``check`` has them; none
             where there is no rest.
         tied_reactions: the same without play.
+        modes: of the models side by side; None where fewer than two have any.
     """
 
     models: dict[str, ModelAnswers]
     reactions: list[Reaction] = field(default_factory=list)
     tied_reactions: list[Reaction] = field(default_factory=list)
+    modes: ModesBeside | None = None

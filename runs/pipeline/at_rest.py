@@ -55,29 +55,35 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     return list(distinct.values())
 
 
-def told(boom: Boom, system: GapSystem, lines: Sequence[Line], duration: float) -> list[AtRest]:
-    """Under the loads of t = 0 and of other instants; none where there is no rest.
+def positions(system: GapSystem, duration: float) -> dict[float, Array]:
+    """Where it rests, (num_modes,), by the instants in s whose loads act; none without a rest.
+
+    Args:
+        system: of a model, all that stays constant in its ``load``.
+        duration: of the motion in s.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            return {
+                time: equilibrium(system, load_at(system, time))
+                for time in instants(system, duration)
+            }
+    except NUMERICS:
+        return {}
+
+
+def at_rest(
+    boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
+) -> AtRest:
+    """What is told of a rest.
 
     Args:
         boom: with the play that the system has.
         system: of the model.
         lines: along its segments.
-        duration: of the motion in s.
+        time: whose loads act, in s.
+        position: (num_modes,) of the rest.
     """
-    system = system.gathered()
-    found = []
-    for time in instants(system, duration):
-        try:
-            position = equilibrium(system, load_at(system, time))
-        except NUMERICS:
-            return []
-        found.append(_told(boom, system, lines, time, position))
-    return found
-
-
-def _told(
-    boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
-) -> AtRest:
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
     stations = list(_stations(boom, system, position))
     return AtRest(

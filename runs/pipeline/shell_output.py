@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from dynamics.damping import pressed_modes
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from runs.pipeline.at_rest import positions
+from runs.pipeline.modes import MODES
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
 from shell_model.stress.summary import StressSummary
@@ -26,7 +29,8 @@ class ShellOutput:
 
     Args:
         fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
-            mode), and the joints.
+            mode), the joints, and ``pressed_mode_shape`` (pressed_mode in Hz, mode) of the boom
+            with its joints pressed.
         stresses: von Mises stresses near stations and supports over time.
         largest: the largest of them, and what the walls carry then.
         meshes: name of the segment → its mesh.
@@ -36,6 +40,16 @@ class ShellOutput:
     stresses: xr.Dataset
     largest: StressSummary
     meshes: dict[str, SegmentMesh]
+
+    @property
+    def modes(self) -> xr.Dataset | None:
+        """Fields whose instants are the modes, at their frequencies in Hz; None without any."""
+        if "pressed_mode" not in self.fields.dims:
+            return None
+        return self.fields.drop_vars(["state", "time"]).assign(
+            state=(("time", "mode"), self.fields["pressed_mode_shape"].values),
+            time=("time", self.fields["pressed_mode"].values, {"units": "Hz"}),
+        )
 
     @classmethod
     def of(
@@ -56,6 +70,7 @@ class ShellOutput:
             **_joints(boom),
             **_stops(boom),
             **_lugs(boom),
+            **_modes(reduced),
         ).assign_attrs(model=name)
         names = [segment.name for segment in boom.segments]
         shell = ShellStress.of(fields)
@@ -102,6 +117,23 @@ def _lugs(boom: Boom) -> dict[str, Any]:
         "lug_x": ("lug", np.array([cylinder.x for cylinder in boom.cylinders]), {"units": "m"}),
         "lug_along": ("lug", along),
         "lug_up": ("lug", up),
+    }
+
+
+def _modes(reduced: ReducedShell) -> dict[str, Any]:
+    """Those of the boom with its joints pressed, the largest displacement of each 1 m."""
+    assert reduced.fields is not None
+    system = reduced.system.gathered()
+    rest = positions(system, 0.0)
+    if not rest:
+        return {}
+    omega, shapes = pressed_modes(system, rest[0.0])
+    modes = shapes[:, :MODES].T
+    moved = np.tensordot(modes, reduced.fields["modes"].values, axes=1)
+    largest = np.sqrt((moved**2).sum(axis=2)).max(axis=1)
+    return {
+        "pressed_mode": ("pressed_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
+        "pressed_mode_shape": (("pressed_mode", "mode"), modes / largest[:, None]),
     }
 
 

@@ -106,6 +106,9 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
         write_field_series(shell.fields, series, series_times(shell.fields))
+        if (modes := shell.modes) is not None:
+            of_modes = modes.assign_attrs(model=f"{name}-modes")
+            write_field_series(of_modes, series, modes["time"].values.tolist())
         for segment, mesh in shell.meshes.items():
             mesh.write(meshes / f"{segment}.vtu")
             gmsh_file = mesh_folder / name / f"{segment}.msh"

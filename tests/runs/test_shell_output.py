@@ -56,4 +56,7 @@ def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
     assert {name: fields[name].values.tolist() for name in expected} == expected
     assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0]
     assert left.largest.von_mises == 0.0
+    assert left.modes is not None
+    moved = np.tensordot(left.modes["state"].values, left.modes["modes"].values, axes=1)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=2).max(axis=1), 1.0, rtol=1e-5)
     assert set(left.meshes) == {"outer", "inner"}

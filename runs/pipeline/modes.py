@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The modes of the boom as it works: what presses at rest is a spring, in all models alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from dynamics.damping import pressed_modes
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line, Quantity
+from geometry.arrays import Array
+from geometry.boom import Boom, Segment
+from runs.pipeline.answers import Match, Mode, Shape, rounded
+
+# Of each model.
+MODES = 8
+
+# Places of a segment at which shapes are compared and kept.
+_PLACES = 21
+
+# What moves in a mode, and the words for it.
+_WAYS: Mapping[Quantity, str] = {
+    "deflection": "bending in z",
+    "lateral": "bending in y",
+    "twist": "twist",
+}
+
+# Modes that are alike by less than this are not the same (Allemang 2003).
+ALIKE = 0.5
+
+
+def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
+    """The first ones, by rising frequency.
+
+    Args:
+        boom: whose segments the lines read.
+        system: of the model.
+        lines: along its segments.
+        rest: (num_modes,) where it rests.
+    """
+    omega, shapes = pressed_modes(system, rest)
+    found: list[Mode] = []
+    for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
+        curves = [_curves(line, shape) for line in lines]
+        shares = _shares(boom.segments, curves)
+        way = max(shares, key=lambda name: shares[name])
+        number = 1 + sum(mode.way == _WAYS[way] for mode in found)
+        found.append(
+            Mode(
+                frequency=float(frequency),
+                way=_WAYS[way],
+                number=number,
+                share=shares[way],
+                shapes=_scaled(boom.segments, curves, way),
+            )
+        )
+    return found
+
+
+def _curves(line: Line, shape: Array) -> dict[Quantity, Array]:
+    """Of each way to move at even places."""
+    even = np.linspace(line.x[0], line.x[-1], _PLACES)
+    return {
+        name: np.interp(even, line.x, line.rows[name] @ shape)
+        for name in _WAYS
+        if name in line.rows
+    }
+
+
+def _shares(
+    segments: Sequence[Segment], curves: Sequence[Mapping[Quantity, Array]]
+) -> dict[Quantity, float]:
+    """Parts of the kinetic energy, without that of turning cross-sections and of point masses."""
+    energies = {
+        name: sum(
+            inertia(segment, name) * segment.length * float((of[name] ** 2).mean())
+            for segment, of in zip(segments, curves, strict=True)
+        )
+        for name in curves[0]
+    }
+    whole = sum(energies.values())
+    return {name: energy / whole if whole else 0.0 for name, energy in energies.items()}
+
+
+def inertia(segment: Segment, way: Quantity) -> float:
+    """Of a unit of length in kg/m, against a twist in kg·m."""
+    if way != "twist":
+        return segment.mass_per_length
+    assert segment.lateral is not None
+    return segment.lateral.polar_inertia
+
+
+def _scaled(
+    segments: Sequence[Segment], curves: Sequence[Mapping[Quantity, Array]], way: Quantity
+) -> list[Shape]:
+    """The largest of the way that moves most is 1."""
+    most = np.concatenate([of[way] for of in curves])
+    scale = 1.0 / float(most[np.abs(most).argmax()] or 1.0)
+    return [
+        Shape(
+            segment.name,
+            rounded(np.linspace(segment.start, segment.end, _PLACES)),
+            {name: rounded(scale * curve) for name, curve in of.items()},
+        )
+        for segment, of in zip(segments, curves, strict=True)
+    ]
+
+
+def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
+    """For each mode of a reference the most alike of another model, each once; None without one.
+
+    Alike by the modal assurance criterion of the deflections and twists along the segments, each
+    weighted by its inertia (Allemang 2003).
+
+    Args:
+        boom: of both.
+        reference, other: their modes.
+    """
+    here, there = (np.array([_vector(boom, mode) for mode in of]) for of in (reference, other))
+    if not (here.size and there.size):
+        return [None for _ in reference]
+    lengths = np.outer(np.linalg.norm(here, axis=1), np.linalg.norm(there, axis=1))
+    alike = (here @ there.T / np.maximum(lengths, np.finfo(float).tiny)) ** 2
+    found: list[Match | None] = []
+    left = alike.copy()
+    for number, mode in enumerate(reference):
+        k = int(left[number].argmax())
+        if left[number, k] < ALIKE:
+            found.append(None)
+            continue
+        off = other[k].frequency / mode.frequency - 1.0
+        found.append(Match(k + 1, other[k].frequency, off, float(alike[number, k])))
+        left[:, k] = -1.0
+    return found
+
+
+def _vector(boom: Boom, mode: Mode) -> Array:
+    """What moves, in √kg·m."""
+    parts = [
+        np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])
+        for segment, shape in zip(boom.segments, mode.shapes, strict=True)
+        for name in _WAYS
+        if name in shape.curves
+    ]
+    return np.concatenate(parts)

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Modes are named for what moves in them, and found again in other models."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
+from beam_model.lines import lines
+from beam_model.segment_model import tied_system
+from geometry.boom import Boom, Material, Segment, Support
+from geometry.section import BoxSection
+from runs.pipeline.answers import Mode
+from runs.pipeline.modes import matched, modes
+
+BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
+
+
+@pytest.fixture(scope="module")
+def arm(spatial_boom: Boom, steel: Material) -> Boom:
+    """A cantilever of 10 m in space: its second segment is tied within its first half."""
+    root = Segment.of_section("root", 0.0, 10.0, steel, BOX, supports=(Support(0.0, "clamped"),))
+    # As light as none, and rigid beside it.
+    sleeve = BoxSection(height=0.25, width=0.15, flange=0.001, web=0.001)
+    light = Material(youngs_modulus=2.1e3, poissons_ratio=0.3, density=1e-6)
+    dummy = Segment.of_section("dummy", 9.0, 10.0, light, sleeve)
+    joint = replace(spatial_boom.joints[0], stations=(9.0, 10.0), tied=True)
+    return Boom((root, dummy), (joint,))
+
+
+def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
+    system = tied_system(boom, models)
+    return modes(boom, system, lines(boom, models), np.zeros(system.num_modes))
+
+
+def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
+    """Reference: analytic. A cantilever's (βL)² = 3.51602, 22.0345 in both planes; and
+    √(GJ/I) / 4L of its first twist (Blevins 1979).
+    """
+    root, lateral = arm.segments[0], arm.segments[0].lateral
+    assert lateral is not None
+    first = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
+    names = {(mode.way, mode.number): mode for mode in found(arm, first)}
+    for way, second_moment in (
+        ("bending in z", root.second_moment_of_area),
+        ("bending in y", lateral.second_moment_of_area),
+    ):
+        speed = np.sqrt(2.1e11 * second_moment / root.mass_per_length) / 100.0
+        for number, root_of in ((1, 3.51602), (2, 22.0345)):
+            mode = names[way, number]
+            assert mode.frequency == pytest.approx(root_of * speed / (2.0 * np.pi), rel=1e-4)
+            assert mode.share > 0.999
+    twisting = root.material.shear_modulus * lateral.torsion_constant / lateral.polar_inertia
+    assert names["twist", 1].frequency == pytest.approx(np.sqrt(twisting) / 40.0, rel=1e-3)
+
+
+def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
+    """Reference: the same boom on its side, whose planes are exchanged: shapes are alike where they
+    move the same way, and nowhere else.
+    """
+    models = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
+    series = kantorovich_segments(arm, [12, 4], "complete", rotary_inertia=False)
+    here, there = found(arm, models), found(arm, series)
+    moved = list(reversed(there))
+    for mode, match in zip(here, matched(arm, here, moved), strict=True):
+        assert match is not None
+        other = moved[match.number - 1]
+        assert (other.way, other.number) == (mode.way, mode.number)
+        assert match.alike > 0.999
+        assert match.off == pytest.approx(0.0, abs=2e-3)
+    sideways = [mode for mode in there if mode.way == "bending in y"]
+    upright = [mode for mode in here if mode.way == "bending in z"]
+    assert matched(arm, upright, sideways) == [None] * len(upright)
