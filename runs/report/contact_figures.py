@@ -10,10 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from geometry.arrays import Array
+from runs.report.charts import Chart
 from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet
 
-# The stretch in which single contacts can be told apart, in s.
-FIRST_CONTACTS = 1.0
 # Over a whole run only the largest force of each of so many intervals can be seen.
 FORCE_BINS = 100
 # Below this a contact force is as good as none in a picture, in N.
@@ -30,14 +29,16 @@ def first_contacts(pen: Pen) -> list[Figure]:
     """Mean contact force at each station while single presses can be told apart."""
     if not _touches(pen):
         return []
-    end = min(FIRST_CONTACTS, pen.time[-1])
+    end = pen.first_stretch
     shown = pen.time <= end
     stations = pen.stations()
     sheet, panels = new_sheet(len(stations), 1.3 + 2.0 * len(stations))
+    curves = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in pen.with_play:
             mean = _mean(pen, pen.of(name, "contact_force")[:, i] / KILO)
             pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
+            curves.append(pen.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
     panels[-1].set_xlabel("time (s)")
     title = f"Mean contact forces, first {end:g} s"
@@ -45,7 +46,8 @@ def first_contacts(pen: Pen) -> list[Figure]:
         f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms: what the many "
         "short impacts of a press amount to. Positive where the inner segment presses up."
     )
-    return [pen.finish(sheet, panels[0], "contact-first", title, caption)]
+    chart = Chart(pen.time, "force (kN)", curves, stations, (0.0, end))
+    return [pen.finish(sheet, panels[0], "contact-first", title, caption, chart=chart)]
 
 
 def contact_peaks(pen: Pen) -> list[Figure]:

@@ -12,10 +12,9 @@ from matplotlib.axes import Axes
 from dynamics.predictability.horizon import SHARES
 from geometry.arrays import Array
 from runs.report import theme
+from runs.report.charts import Chart
 from runs.report.figure_context import MILLI, Figure, Pen, farthest, highest, new_sheet
 
-# The stretch that shows the first press of the play and the first peak, in s.
-CLOSE_UP = 1.2
 # Of an ensemble this part of the members lies in its band, in percent.
 BAND = (5.0, 95.0)
 # How dark the bands of all models are where they lie on one another.
@@ -32,12 +31,13 @@ def tip(pen: Pen) -> list[Figure]:
     statements = (*(("S7",) if pen.rubs else ("S2", "S3")), *_many_segments(pen))
     caption = f"Deflection of the tip, all models{_counterpart(pen, 'tip')}."
     title = f"Tip: {_reach(pen, 'tip')}"
-    return [pen.finish(sheet, axes, "tip", title, caption + _sampled(pen, "tip"), statements)]
+    caption += _sampled(pen, "tip")
+    return [pen.finish(sheet, axes, "tip", title, caption, statements, chart=_chart(pen, "tip"))]
 
 
 def close_up(pen: Pen) -> list[Figure]:
     """The tip up to shortly after its first peak."""
-    end = min(CLOSE_UP, pen.time[-1])
+    end = pen.first_stretch
     shown = pen.time <= end
     sheet, (axes,) = new_sheet(1, 3.9)
     contacts, peakless = [], []
@@ -104,7 +104,9 @@ def _head(pen: Pen, place: str) -> Figure:
     )
     statements = ("S6", "S7") if pen.rubs else ("S6",)
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
-    return pen.finish(sheet, None, place, title, caption + _sampled(pen, place), statements)
+    caption += _sampled(pen, place)
+    chart = _chart(pen, place)
+    return pen.finish(sheet, None, place, title, caption, statements, chart=chart)
 
 
 def lateral_tip(pen: Pen) -> list[Figure]:
@@ -117,7 +119,17 @@ def lateral_tip(pen: Pen) -> list[Figure]:
     axes.set(xlabel="time (s)", ylabel="displacement (mm)", xlim=(0.0, pen.time[-1]))
     caption = "Displacement of the tip along y, to the sides, all models."
     title = f"Tip, to the sides: {_reach(pen, 'tip_lateral')}"
-    return [pen.finish(sheet, axes, "tip-lateral", title, caption)]
+    chart = _chart(pen, "tip_lateral", "displacement (mm)")
+    return [pen.finish(sheet, axes, "tip-lateral", title, caption, chart=chart)]
+
+
+def _chart(pen: Pen, place: str, heading: str = "deflection (mm)") -> Chart:
+    """One place in all models, with the bands of their ensembles."""
+    curves = [
+        pen.curve(name, MILLI * pen.of(name, place), band=_band(pen, name, place))
+        for name in pen.models
+    ]
+    return Chart(pen.time, heading, curves)
 
 
 def _many_segments(pen: Pen) -> tuple[str, ...]:
@@ -145,13 +157,11 @@ def _reach(pen: Pen, place: str) -> str:
 
 def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
     """The band of a model's ensemble behind its curve, and its horizons."""
-    if pen.ensembles is None or name not in pen.ensembles["model"]:
-        return
-    if place not in pen.ensembles:
+    band = _band(pen, name, place)
+    if band is None:
         return
     color = pen.strokes[name].color
-    members = MILLI * pen.ensembles[place].sel(model=name).values
-    low, high = np.percentile(members, BAND, axis=0)
+    low, high = band
     shade = min(0.25, SHADE / len(pen.with_play))
     axes.fill_between(pen.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
     for share, dashes in zip(SHARES, (":", "--"), strict=True):
@@ -160,9 +170,18 @@ def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
             axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
 
 
+def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
+    """(num_times,) each in mm, between which most members of an ensemble are."""
+    if pen.ensembles is None or name not in pen.ensembles["model"] or place not in pen.ensembles:
+        return None
+    members = MILLI * pen.ensembles[place].sel(model=name).values
+    low, high = np.percentile(members, BAND, axis=0)
+    return low, high
+
+
 def _sampled(pen: Pen, place: str) -> str:
     """What a curve is worth, and what the marks of its ensemble are."""
-    if not pen.with_play:
+    if not pen.with_play or _stays_pressed(pen):
         return ""
     if pen.ensembles is None or place not in pen.ensembles:
         if pen.rubs or pen.ensembles is not None:
@@ -185,6 +204,12 @@ def _sampled(pen: Pen, place: str) -> str:
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
         f"the tip's range around one another{beyond}."
     )
+
+
+def _stays_pressed(pen: Pen) -> bool:
+    """Whether no contact ever opens, and no impact lets small differences grow."""
+    forces = [pen.of(name, "contact_force") for name in pen.with_play]
+    return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
 
 def _limits(curves: Sequence[Array]) -> tuple[float, float]:

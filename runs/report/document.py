@@ -9,6 +9,7 @@ from itertools import chain
 from runs.case import toml
 from runs.pipeline.results import Results
 from runs.report import theme
+from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
@@ -27,7 +28,7 @@ def render(
     snapshots: Sequence[Figure],
     readings: Sequence[TextTable] = (),
 ) -> str:
-    """The report as HTML: every picture inside, no script, no resource from elsewhere.
+    """The report as HTML: every picture and script inside, no resource from elsewhere.
 
     Args:
         results: one run.
@@ -46,6 +47,7 @@ def render(
         *_numbered("Table", chain(models, known, compared, readings)),
         *_numbered("Figure", chain(case, motion, knowledge, snapshots)),
     ]
+    charts = {figure.path.stem: figure.chart for figure in figures if figure.chart}
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
@@ -62,6 +64,8 @@ def render(
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         case=case,
+        charts=packed_charts(charts) if charts else "",
+        plotly=packed_plotly() if charts else "",
         models=models,
         motion=motion,
         known=known,

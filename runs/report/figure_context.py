@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,12 +14,24 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
+from runs.case.schema import Case
 from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.report import theme
+from runs.report.charts import Chart, Curve
 
 MILLI = 1.0e3
 KILO = 1.0e3
+# Widths of the curves that stand behind the leading ones, as a part of theirs.
+BEHIND = 0.5
+# A close-up lasts so many times as long as the first peak takes.
+PAST = 1.3
+# How plotly calls the strokes.
+CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
+THINNED = (
+    " On a screen each curve is drawn by the lowest and the highest of every few samples; "
+    "trajectories.nc has them all."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +44,7 @@ class Figure:
         caption: sentences.
         statements: of the paper, S1 … S11, that it bears on.
         part: of the report where it belongs.
+        chart: the same curves for whoever reads it on a screen.
     """
 
     path: Path
@@ -39,6 +52,7 @@ class Figure:
     caption: str
     statements: Sequence[str] = ()
     part: Literal["case", "motion", "knowledge"] = "motion"
+    chart: Chart | None = None
 
     @property
     def anchor(self) -> str:
@@ -62,6 +76,7 @@ class Pen:
         self.play_free = [model.name for model in results.case.models if model.play_free]
         self.with_play = [name for name in self.models if name not in self.play_free]
         self.strokes = theme.strokes(self.models, self.play_free)
+        self.leading = leading(results.case, self.models)
 
     def of(self, name: str, variable: str) -> Array:
         """(num_times,) of one model; (num_times, num_stations) of what stations have."""
@@ -92,16 +107,32 @@ class Pen:
     ) -> None:
         """A curve of one model; one that is alone in its panel needs no dashes to be known."""
         stroke = self.strokes[name]
+        behind = not alone and name not in self.leading
         axes.plot(
             x,
             y,
             color=stroke.color,
             linestyle="-" if alone else stroke.linestyle,
-            linewidth=linewidth,
+            linewidth=BEHIND * linewidth if behind else linewidth,
+            zorder=1.9 if behind else 2.0,
             marker=marker,
             markersize=2.5,
             label=name,
         )
+
+    def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
+        """The same for a chart, whose axes are in the unit of the values."""
+        stroke = self.strokes[name]
+        dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
+        return Curve(name, values, stroke.color, dashes, shown, panel, **more)
+
+    @property
+    def first_stretch(self) -> float:
+        """Until shortly after the first peaks of the tip, in s; the whole run without any."""
+        found = (self.summary[name].first_peak["tip"].time for name in self.models)
+        peaks = [time for time in found if time is not None]
+        end = float(self.time[-1])
+        return min(float(f"{PAST * max(peaks):.2g}"), end) if peaks else end
 
     def finish(
         self,
@@ -112,6 +143,7 @@ class Pen:
         caption: str,
         statements: Sequence[str] = (),
         part: Literal["motion", "knowledge"] = "motion",
+        chart: Chart | None = None,
     ) -> Figure:
         """Title above, legend below, and onto the disk; the last ones are :class:`Figure`'s."""
         if legend_of is not None:
@@ -120,7 +152,24 @@ class Pen:
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
         sheet.savefig(path)
-        return Figure(path, title, caption, statements, part)
+        if chart is not None and chart.thinned:
+            caption += THINNED
+        return Figure(path, title, caption, statements, part, chart)
+
+
+def leading(case: Case, models: Sequence[str]) -> set[str]:
+    """Those that are read first: the last shell, the last beam with play, the first without.
+
+    All of up to three, and of kinds that a run lacks the last one with play.
+    """
+    if len(models) <= 3:
+        return set(models)
+    ran = [model for model in case.models if model.name in models]
+    loose = [model for model in ran if not model.play_free]
+    shells = [model.name for model in loose if model.meshed]
+    beams = [model.name for model in loose if not model.meshed]
+    tied = [model.name for model in ran if model.play_free]
+    return {*shells[-1:], *beams[-1:], *tied[:1]}
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:

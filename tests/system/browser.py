@@ -83,6 +83,24 @@ class Page:
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
 
+    def wait_for(self, expression: str) -> None:
+        """Go on when it counts as true."""
+        end = time.monotonic() + SECONDS
+        while not self.evaluate(f"!!({expression})"):
+            assert time.monotonic() < end, f"{expression} stays false"
+            time.sleep(0.05)
+
+    def point_at(self, x: float, y: float, press: bool = False) -> None:
+        """Move the mouse to a place in CSS pixels, and click there if asked to."""
+        kinds = ("mouseMoved", *(("mousePressed", "mouseReleased") if press else ()))
+        for kind in kinds:
+            button = {"button": "left", "clickCount": 1} if kind != "mouseMoved" else {}
+            self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
+
+    def show_as(self, media: str) -> None:
+        """On paper, ``print``, or on a screen, an empty text."""
+        self._ask("Emulation.setEmulatedMedia", media=media)
+
     def _ask(self, method: str, **parameters: Any) -> Any:
         self._number += 1
         number = self._number

@@ -4,14 +4,17 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
 from runs.paper.rules import judge
+from runs.pipeline.results import read_netcdf
 from runs.pipeline.run import run_case
 from runs.report import output
 from tests.system.browser import Page, blank_page, find_browser
@@ -54,6 +57,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "limits": ["step", "physics"],
     }
     out = output.prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
+    out.mkdir()
     output.write(finished, judge(finished.results), out, out)
     return out
 
@@ -76,6 +80,52 @@ def test_a_report_is_whole_on_a_telephone(page: Page, folder: Path) -> None:
     assert page.evaluate(DEAD) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
     assert page.evaluate(WIDE) == []
+
+
+# The middle of a part of the page, after it has been brought to the window's.
+MIDDLE = (
+    "(e => {{ e.scrollIntoView({{block: 'center'}}); const b = e.getBoundingClientRect();"
+    " return [b.x + b.width / 2, b.y + b.height / 2]; }})(document.querySelector({!r}))"
+)
+PLOT = "document.querySelector('#figure-tip .plot')"
+SHOWN = f"{PLOT}.data.filter(t => t.visible === true && t.name).map(t => t.name)"
+
+
+def test_a_curve_says_the_number_of_the_file(page: Page, folder: Path) -> None:
+    """Reference: trajectories.nc; what hovers has five digits."""
+    page.open(folder / "report.html", 1000)
+    page.evaluate(MIDDLE.format("#figure-tip"))
+    page.wait_for(f"{PLOT}.querySelector('.nsewdrag')")
+    page.point_at(*page.evaluate(MIDDLE.format("#figure-tip .nsewdrag")))
+    page.wait_for(f"{PLOT}.querySelector('.hoverlayer .legend')")
+    text = page.evaluate(f"{PLOT}.querySelector('.hoverlayer').textContent")
+    time = page.evaluate(f"{PLOT}._hoverdata[0].x")
+    trajectories = read_netcdf(folder / "trajectories.nc")
+    assert float(np.abs(trajectories["time"] - time).min()) < 1e-12
+    tips = 1e3 * trajectories["tip"].sel(time=time, method="nearest")
+    for name in MODELS:
+        shown = text.partition(name)[2].lstrip(" :")
+        number = re.match(r"[−-]?[0-9.]+", shown)
+        assert number is not None, text
+        value = float(number[0].replace("−", "-"))
+        assert value == pytest.approx(float(tips.sel(model=name)), rel=1e-4)
+    assert page.complaints == []
+
+
+def test_a_curve_is_hidden_by_its_name(page: Page, folder: Path) -> None:
+    """Reference: the legend that is pressed; on paper the picture stands in its place."""
+    page.open(folder / "report.html", 1000)
+    page.evaluate(MIDDLE.format("#figure-tip"))
+    page.wait_for(f"{PLOT}.querySelector('.legendtoggle')")
+    assert page.evaluate(SHOWN) == MODELS
+    page.point_at(*page.evaluate(MIDDLE.format("#figure-tip .legendtoggle")), press=True)
+    page.wait_for(f"{SHOWN}.length == 2")
+    picture = "getComputedStyle(document.querySelector('#figure-tip img')).display"
+    assert page.evaluate(picture) == "none"
+    page.show_as("print")
+    assert page.evaluate(picture) == "block"
+    assert page.evaluate(f"getComputedStyle({PLOT}).display") == "none"
+    page.show_as("")
 
 
 def test_the_browser_would_notice(page: Page, tmp_path: Path) -> None:
