@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from importlib.util import find_spec
 from itertools import chain
 
 from runs.case import toml
@@ -36,6 +37,8 @@ def render(
         figures: on disk.
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
+
+    Where plotly is not installed the pictures of curves stand alone.
     """
     models = _texts([*model_tables(results), *pad_tables(results), *wall_tables(results)])
     known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
@@ -47,7 +50,7 @@ def render(
         *_numbered("Table", chain(models, known, compared, readings)),
         *_numbered("Figure", chain(case, motion, knowledge, snapshots)),
     ]
-    charts = {figure.path.stem: figure.chart for figure in figures if figure.chart}
+    charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
