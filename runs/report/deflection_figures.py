@@ -148,7 +148,8 @@ def _counterpart(pen: Pen, place: str) -> str:
 def _reach(pen: Pen, place: str) -> str:
     """How far the models deflect at one place, upwards or downwards."""
     parts = [
-        f"{MILLI * farthest([farthest(pen.of(name, place)) for name in names]):.0f} mm{how}"
+        theme.fixed(farthest([farthest(pen.of(name, place)) for name in names]), 0, MILLI)
+        + f" mm{how}"
         for names, how in ((pen.with_play, " with play"), (pen.play_free, " without"))
         if names
     ]

@@ -219,7 +219,7 @@ def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path
         draw_some(tip, run_of, tmp_path)[0].title
         for run_of in (results, replace(results, trajectories=down))
     )
-    assert downwards == upwards.replace("up to ", "up to -").replace("play, ", "play, -")
+    assert downwards == upwards.replace("up to ", "up to −").replace("play, ", "play, −")
 
 
 def test_each_figure_bears_on_statements(

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.slow
 
 
 TINY = Sizes(
-    mesh=1.0,
+    mesh=2.0,
     duration=0.37,
     steps=(1.0e-3, 5.0e-4),
     hard_steps=(2.5e-4, 1.25e-4),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two points of the paper's boom on three coarse meshes, and what is told of some motions."""
+"""Two points of the paper's boom on two coarse meshes, and what is told of some motions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from runs.studies.motions import friction_case
 from runs.studies.working_load import Contact, Moved, Point, Sizes, Touch, study
 
 TINY = Sizes(
-    meshes=(16.0, 8.0, 4.0),
+    meshes=(16.0, 8.0),
     plays=(14.0e-3,),
     loads=(1.0, 10.0),
     pads=(),
