@@ -63,7 +63,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
             rows["torque"] = stiffness * _slope(breaks, rows["twist"])
-    return Line(np.repeat(breaks, 2)[1:-1], rows)
+    return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
 
 
 def _stiffness(segment: Segment, direction: Direction) -> float:

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from dynamics.arrays import Array
 
 # In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it;
@@ -23,11 +25,33 @@ class Line:
     Args:
         x: (num_places,) in m, rising; a place where something may jump stands twice.
         rows: (num_places, num_modes) of each quantity that the model knows.
+        paired: whether places are the two ends of each piece, and not the middles of pieces.
     """
 
     x: Array
     rows: Mapping[Quantity, Array]
+    paired: bool
 
     def read(self, states: Array) -> dict[Quantity, Array]:
         """(..., num_places) of modal coordinates (..., num_modes)."""
         return {name: states @ row.T for name, row in self.rows.items()}
+
+    def beside(self, name: Quantity, x: float, side: int) -> Array:
+        """(num_modes,) row of a quantity at x in m as it goes on from one side; 0 off the segment.
+
+        Args:
+            name: of the quantity.
+            x: a place where something jumps.
+            side: −1 before it, 1 behind it.
+        """
+        places, rows = self.x, self.rows[name]
+        if self.paired:
+            places, rows = 0.5 * (places[::2] + places[1::2]), 0.5 * (rows[::2] + rows[1::2])
+        there = np.flatnonzero(side * (places - x) > 0.0)
+        if there.size == 0:
+            return np.zeros(rows.shape[1])
+        first, *more = there[np.abs(places[there] - x).argsort()][:2]
+        if not more:
+            return np.asarray(rows[first])
+        part = (x - places[first]) / (places[more[0]] - places[first])
+        return np.asarray(rows[first] + part * (rows[more[0]] - rows[first]))

@@ -7,8 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
+from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
 from geometry.boom import Boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
@@ -16,32 +20,59 @@ from runs.pipeline.answers import Answers, AtRest, Mode, ModelAnswers, ModesBesi
 from runs.pipeline.at_rest import NUMERICS, at_rest, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.modes import matched, modes
+from runs.pipeline.moved import Motions, wall_stresses
+from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
 
 
 class Resting(NamedTuple):
-    """A boom at rest, and its modes there."""
+    """A boom at rest, (num_rests, num_modes), what is told of it, and its modes there."""
 
+    positions: Array
     rests: list[AtRest]
     modes: list[Mode]
 
 
-def of_model(boom: Boom, case: Case, model: Model, built: Built) -> ModelAnswers:
-    """What one model answers, on the first rank."""
+def of_model(
+    boom: Boom,
+    case: Case,
+    model: Model,
+    built: Built,
+    trajectory: Trajectory,
+    shell: ShellOutput | None,
+) -> ModelAnswers:
+    """What one model answers, on the first rank.
+
+    Args:
+        boom: of the case.
+        case: the model's.
+        model: one of the case's.
+        built: the model before it moved.
+        trajectory: its motion.
+        shell: what it leaves besides.
+    """
     own = boom.play_free if model.play_free else boom
-    duration = case.time.duration
-    played = _resting(own, built.system.gathered(), model.lines(boom, built), duration)
+    lines, duration = model.lines(boom, built), case.time.duration
+    played = _resting(own, built.system.gathered(), lines, duration)
     tied = _tied(boom, model, duration)
-    # Their shapes are those of the pressed boom to the eye.
-    plain = [replace(mode, shapes=[]) for mode in tied.modes]
-    return ModelAnswers(played.rests, tied.rests, played.modes, plain)
+    motions = Motions(own, lines, trajectory, played.positions, played.rests, not model.smooth)
+    walls = [] if shell is None else wall_stresses(own, shell.stresses)
+    return ModelAnswers(
+        rests=played.rests,
+        tied=tied.rests,
+        modes=played.modes,
+        # Their shapes are those of the pressed boom to the eye.
+        tied_modes=[replace(mode, shapes=[]) for mode in tied.modes],
+        moved=replace(motions.told, walls=walls),
+    )
 
 
 def _resting(boom: Boom, system: GapSystem, lines: Sequence[Line], duration: float) -> Resting:
     found = positions(system, duration)
     if not found:
-        return Resting([], [])
+        return Resting(np.zeros((0, system.num_modes)), [], [])
     return Resting(
+        np.array(list(found.values())),
         [at_rest(boom, system, lines, time, position) for time, position in found.items()],
         modes(boom, system, lines, found[0.0]),
     )
@@ -52,7 +83,7 @@ def _tied(boom: Boom, model: Model, duration: float) -> Resting:
         system, lines = model.without_play(boom)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move.
-        return Resting([], [])
+        return Resting(np.zeros((0, 0)), [], [])
     return _resting(boom.play_free, system.gathered(), lines, duration)
 
 

@@ -179,6 +179,112 @@ class ModesBeside:
 
 
 @dataclass(frozen=True, slots=True)
+class Envelope:
+    """What a segment has gone through: the least and the largest of every curve of a diagram.
+
+    Args:
+        segment: its name.
+        x: (num_places) in m; a place where something jumps stands twice.
+        low, high: of each curve over the run, as of :class:`Diagram`.
+    """
+
+    segment: str
+    x: list[float]
+    low: dict[str, list[float]]
+    high: dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class FibreStress:
+    """The stress along x in an outer fibre of a segment where it is largest, of section forces.
+
+    Args:
+        segment: its name.
+        x, y, z: where, in m; y is 0 in a flat boom.
+        stress: in Pa, positive where it pulls.
+        time: when, in s.
+        utilisation: of the yield strength; None where the case does not tell that.
+        at_rest: the largest |stress| of the segment at rest under the largest loads in Pa; None
+            where there is no rest.
+    """
+
+    segment: str
+    x: float
+    y: float
+    z: float
+    stress: float
+    time: float
+    utilisation: float | None
+    at_rest: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class WallStress:
+    """The largest von Mises stresses of a shell's segment near stations and supports.
+
+    Args:
+        segment: its name.
+        x: of the place near which the patch is, in m.
+        patch: the mean over a patch of a wall in Pa, which settles as the mesh refines.
+        time: of that, in s.
+        triangle: of any triangle in Pa, which may grow as the mesh refines.
+        utilisation: of the patch, as of :class:`FibreStress`.
+    """
+
+    segment: str
+    x: float
+    patch: float
+    time: float
+    triangle: float
+    utilisation: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """The largest of a motion beside the largest at rest, by their absolute values.
+
+    Args:
+        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, ``moment at the
+            support`` or ``bending moment``.
+        where: the place, as the results or the case name it.
+        unit: of the SI.
+        largest: of the motion; of contacts the mean over an output interval, which is what a pad
+            feels, not the peak of a blow.
+        time: when, in s.
+        at_rest: the largest at rest under the largest loads; None where there is no rest.
+    """
+
+    what: str
+    where: str
+    unit: str
+    largest: float
+    time: float
+    at_rest: float | None
+
+    @property
+    def factor(self) -> float | None:
+        """The dynamic factor; None where nothing is at rest."""
+        return self.largest / self.at_rest if self.at_rest else None
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """What a model has gone through.
+
+    Args:
+        envelopes: of each segment.
+        peaks: largest over static.
+        fibres: of each segment whose section is known; none of rigid ones.
+        walls: of shells.
+    """
+
+    envelopes: list[Envelope]
+    peaks: list[Peak]
+    fibres: list[FibreStress]
+    walls: list[WallStress]
+
+
+@dataclass(frozen=True, slots=True)
 class ModelAnswers:
     """Of one model.
 
@@ -188,12 +294,14 @@ class ModelAnswers:
         tied: the same without play; of a shell those of Timoshenko elements.
         modes: the first ones at rest under the loads of t = 0; none where it has no rest.
         tied_modes: of what ``tied`` is of, without their shapes.
+        moved: over the run.
     """
 
     rests: list[AtRest] = field(default_factory=list)
     tied: list[AtRest] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)
     tied_modes: list[Mode] = field(default_factory=list)
+    moved: Moved | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -217,7 +217,7 @@ def _run_model(
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
     with stages.stage("answers"):
-        answers = answering.of_model(boom, case, model, built)
+        answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
     summary.seconds = stages.seconds
     return moved, shell, answers
 

@@ -62,7 +62,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) ->
             "twist": moved[2],
             "torque": forces[5],
         }
-    return Line(0.5 * (cuts[1:] + cuts[:-1]), rows)
+    return Line(0.5 * (cuts[1:] + cuts[:-1]), rows, paired=False)
 
 
 def cuts_around(spans: Array) -> Array:

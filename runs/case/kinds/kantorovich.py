@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,6 +19,8 @@ MOST_TERMS = 60
 
 class KantorovichTable(BeamTable):
     """The semi-discrete Ritz series of the paper."""
+
+    smooth: ClassVar[bool] = True
 
     kind: Literal["kantorovich"] = Field(description="the kind of model")
     terms: Annotated[tuple[Count, ...], Few] = Field(

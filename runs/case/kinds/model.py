@@ -112,6 +112,9 @@ class ModelTable(Table):
     # Whether it has a mesh of the plates: it takes FEniCSx and a workshop, and leaves fields.
     meshed: ClassVar[bool] = False
 
+    # Whether its section forces run smoothly past the forces that act, as those of a series do.
+    smooth: ClassVar[bool] = False
+
     @property
     def needs_plates(self) -> bool:
         """Whether it cannot do without the sections of the segments."""

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The stress along x in the outer fibres of a segment, of its section forces.
+
+σ = N/A + M z/J + M_y y/J_y, as beams have it (Navier 1826); of a shell with the integrals of its
+walls' stresses, so that both are the nominal stress of the same section.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.line import Line
+from geometry.arrays import Array
+from geometry.boom import Segment
+from geometry.section import Section
+from runs.pipeline.at_rest import normal_force
+
+
+@dataclass(frozen=True, slots=True)
+class Fibres:
+    """The outer fibres of a segment.
+
+    Args:
+        x: (num_places,) in m.
+        y, z: (num_fibres,) in m.
+        rows: (num_fibres, num_places, num_modes) that read the stress of bending in Pa.
+        axial: (num_places,) what the normal force adds in Pa.
+    """
+
+    x: Array
+    y: Array
+    z: Array
+    rows: Array
+    axial: Array
+
+    @classmethod
+    def of(cls, segment: Segment, line: Line) -> Fibres | None:
+        """None where the section is not known or the segment does not bend."""
+        if segment.section is None or "moment" not in line.rows:
+            return None
+        spatial = "lateral_moment" in line.rows
+        y, z = outer_corners(segment.section)
+        if not spatial:
+            z, y = np.unique(z), np.zeros(np.unique(z).size)
+        rows = np.multiply.outer(z / segment.second_moment_of_area, line.rows["moment"])
+        if spatial:
+            assert segment.lateral is not None
+            share = y / segment.lateral.second_moment_of_area
+            rows += np.multiply.outer(share, line.rows["lateral_moment"])
+        axial = normal_force(segment.compression, line.x) / segment.section.area
+        return cls(line.x, y, z, rows, axial)
+
+    def stress(self, fibre: int, states: Array) -> Array:
+        """(..., num_places) in Pa of modal coordinates (..., num_modes)."""
+        return np.asarray(states @ self.rows[fibre].T + self.axial)
+
+
+def outer_corners(section: Section) -> tuple[Array, Array]:
+    """y and z (num_corners,) in m of the corners of the plates' outer surfaces, from the centroid.
+
+    Of plates that meet, those of the surface whose normal is nearer to the direction count.
+    """
+    places, beyond = [], []
+    for before, after in zip(
+        section.plates[-1:] + section.plates[:-1], section.plates, strict=True
+    ):
+        # A normal has the components of the tangent, exchanged.
+        normals = [0.5 * plate.thickness * np.abs(plate.tangent[::-1]) for plate in (before, after)]
+        places.append(after.start)
+        beyond.append(np.maximum(*normals))
+    y, z = (np.array(places) + np.sign(places) * np.array(beyond)).T
+    return y, z

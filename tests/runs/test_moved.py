@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a model has gone through, beside what it is at rest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.profiles import hexagon
+from geometry.section import BoxSection
+from runs.case import reading as case_file
+from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.fibres import outer_corners
+from runs.pipeline.run import run_case, silent
+from runs.pipeline.summary import Summary
+
+CASE = """
+title = "A cantilever, loaded suddenly"
+time = {{ duration = 0.5, output_step = 1e-3 }}
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+yield_strength = 3e8
+
+[[segment]]
+name = "arm"
+span = [0.0, 10.0]
+supports = [{{ x = 0.0, kind = "clamped" }}]
+section = {{ height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }}
+load = -1000.0
+
+[[model]]
+name = "one"
+{model}
+"""
+
+
+def answers(model: str, folder: Path) -> ModelAnswers:
+    """Of a run, as a folder gives them back."""
+    file = folder / "case.toml"
+    file.write_text(CASE.format(model=model), encoding="utf-8")
+    run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
+    assert run is not None
+    found = Summary.model_validate_json(str(run.results.summary)).answers
+    assert found is not None
+    return found.models["one"]
+
+
+def test_a_load_that_comes_suddenly_counts_twice(tmp_path: Path) -> None:
+    """Reference: analytic. A boom of one coordinate swings around its rest from zero: everything
+    is twice what it is at rest, at half a period, which the output step meets within 1e-5.
+    """
+    series = 'kind = "kantorovich"\nterms = [1]\nbase = "complete"'
+    found = answers(series, tmp_path)
+    assert found.moved is not None
+    assert {peak.what for peak in found.moved.peaks} == {"deflection", "bending moment"}
+    for peak in found.moved.peaks:
+        assert peak.factor == pytest.approx(2.0, rel=2e-4)
+        assert peak.time * found.modes[0].frequency % 1.0 == pytest.approx(0.5, abs=0.01)
+    (fibre,) = found.moved.fibres
+    assert fibre.at_rest is not None
+    assert abs(fibre.stress) == pytest.approx(2.0 * fibre.at_rest, rel=2e-4)
+    (envelope,) = found.moved.envelopes
+    np.testing.assert_allclose(envelope.low["deflection"][-1], 2.0 * found.rests[0].tip, rtol=2e-4)
+    assert envelope.high["deflection"][-1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
+    """Reference: by hand. 1000 N/m on 10 m: 10 kN and 50 kN m at the wall, σ = M c/J with
+    c = (0.40 + 0.008)/2 m.
+    """
+    beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
+    found = answers(beam, tmp_path)
+    assert found.moved is not None
+    still = {peak.what: peak.at_rest for peak in found.moved.peaks}
+    assert still["reaction"] == pytest.approx(1e4, rel=1e-6)
+    assert still["moment at the support"] == pytest.approx(5e4, rel=1e-3)
+    assert still["bending moment"] == pytest.approx(5e4, rel=2e-4)
+    box = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+    (fibre,) = found.moved.fibres
+    assert fibre.at_rest == pytest.approx(5e4 * 0.204 / box.second_moment_of_area, rel=2e-4)
+    assert (fibre.x, abs(fibre.z)) == (0.0, pytest.approx(0.204))
+    assert fibre.utilisation == pytest.approx(abs(fibre.stress) / 3e8)
+    assert found.moved.walls == []
+
+
+def test_outer_corners_lie_on_the_outer_surfaces() -> None:
+    """Reference: by hand. Half a thickness beyond the mid-lines of a box; of a hexagon no more
+    than that.
+    """
+    y, z = outer_corners(BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006))
+    np.testing.assert_allclose(np.abs(y), 0.153)
+    np.testing.assert_allclose(np.abs(z), 0.204)
+    six = hexagon(0.4, 0.3, flat=0.2, top=0.006, bottom=0.006, web=0.006)
+    y, z = outer_corners(six)
+    assert np.abs(z).max() == pytest.approx(0.203)
+    assert 0.15 < np.abs(y).max() < 0.153
