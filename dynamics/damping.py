@@ -54,7 +54,9 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
     omega2, combination = eigh(
         free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
     )
-    moving = omega2 > 1.0e-6 * system.omega2[system.omega2 > 0.0].min()
+    # Rigid segments have no frequency of their own to tell motions from round-off.
+    least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
+    moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
 
 

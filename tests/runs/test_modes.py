@@ -12,7 +12,11 @@ from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
+from beam_model.rigid import rigid_segment
 from beam_model.segment_model import tied_system
+from dynamics.contact import PowerContact
+from dynamics.damping import pressed_modes
+from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
 from runs.pipeline.answers import Mode
@@ -76,3 +80,27 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
     sideways = [mode for mode in there if mode.way == "bending in y"]
     upright = [mode for mode in here if mode.way == "bending in z"]
     assert matched(arm, upright, sideways) == [None] * len(upright)
+
+
+def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
+    """Reference: analytic. A bar of mass m on two equal springs at its ends: ω² = 2k/m of its
+    heave and k L²/2I of its pitch.
+    """
+    bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
+    segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
+    boom = Boom((segment,), ())
+    system = tied_system(boom, [rigid_segment(segment)])
+    found = modes(boom, system, lines(boom, [rigid_segment(segment)]), np.zeros(2))
+    mass = bar.mass_per_length * 4.0
+    inertia = mass * 4.0**2 / 12.0 + bar.rotary_inertia * 4.0
+    expected = np.sqrt([2e6 / mass, 2e6 * 2.0**2 / inertia]) / (2.0 * np.pi)
+    np.testing.assert_allclose([mode.frequency for mode in found], expected, rtol=1e-9)
+
+
+def test_what_nothing_bends_has_modes_of_its_contacts() -> None:
+    """Reference: analytic. A ball of 1 kg on a spring of 1e6 N/m, with no frequency of its own."""
+    law = PowerContact(1e6, 1.0, clearance=0.0).lower()
+    one = np.ones(1)
+    ball = GapSystem(0.0 * one, -9.81 * one, one[None], [law], np.array([0]), [0.0], {})
+    omega, _ = pressed_modes(ball)
+    np.testing.assert_allclose(omega, [1e3])
