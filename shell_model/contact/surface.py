@@ -22,7 +22,7 @@ from geometry.boom import Boom, Direction, Joint
 from geometry.contact_places import Pad
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
 from shell_model.cross_section import Reading
-from shell_model.reduction.products import exact_product
+from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
 

@@ -9,12 +9,6 @@ from petsc4py import PETSc
 
 from geometry.arrays import Array
 
-# Rows whose products are in memory at once.
-_AT_ONCE = 1 << 14
-
-# Part of the sizes of its terms below which a sum is round-off.
-_CANCELLED = 1.0e-14
-
 
 def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
     """A block (num_owned, num_columns) as a matrix that another one is multiplied with."""
@@ -50,44 +44,3 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
     product = np.ascontiguousarray(left.T @ right)
     comm.Allreduce(MPI.IN_PLACE, product)
     return product
-
-
-def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """(num_columns,) products with all columns, to the same bit on any number of ranks. Collective.
-
-    Sums are carried with twice the digits, so that their order does not show.
-
-    Args:
-        comm: the ranks that share the rows.
-        left: (num_owned,).
-        right: (num_owned, num_columns).
-    """
-    rows = np.flatnonzero(left)
-    parts = [np.zeros((1, right.shape[1]))]
-    lost, size = np.zeros((2, right.shape[1]))
-    for begin in range(0, rows.size, _AT_ONCE):
-        some = rows[begin : begin + _AT_ONCE]
-        terms = left[some, None] * right[some]
-        part, off = _sum(terms)
-        parts.append(part[None, :])
-        lost += off
-        size += np.abs(terms).sum(axis=0)
-    gathered = comm.allgather((np.concatenate(parts), lost, size))
-    total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
-    total += off + np.sum([lost for _, lost, _ in gathered], axis=0)
-    # What cancels but for the last bits of its terms is zero.
-    total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
-    return total
-
-
-def _sum(terms: Array) -> tuple[Array, Array]:
-    """Sums over the first axis and what is lost in them by rounding (Knuth 1969)."""
-    lost = np.zeros(terms.shape[1:])
-    while len(terms) > 1:
-        half = len(terms) // 2
-        a, b = terms[:half], terms[half : 2 * half]
-        both = a + b
-        of_b = both - a
-        lost += ((a - (both - of_b)) + (b - of_b)).sum(axis=0)
-        terms = np.concatenate([both, terms[2 * half :]])
-    return terms[0], lost

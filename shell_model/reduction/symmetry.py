@@ -19,13 +19,13 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_array
 
+from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Segment
 from geometry.mesh import SegmentMesh
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
 from shell_model.contact.attachments import Attached
-from shell_model.reduction.agreement import together
 from shell_model.reduction.mirror import (
     Family,
     families,
@@ -242,6 +242,26 @@ def shared(
     found = together(comm, lambda: {number: compute(number, job) for number, job in mine.items()})
     for number, root in enumerate(roots):
         yield root, found.pop(number, None)
+
+
+def together(comm: MPI.Comm, work: Callable[[], _Found]) -> _Found:
+    """Each rank's result of its own work. Collective, but the work must not communicate.
+
+    Raises:
+        NumericsError: on every rank, if the work of any raises it, or its memory does not suffice.
+    """
+    results: list[_Found] = []
+    problem = ""
+    try:
+        results.append(work())
+    except NumericsError as error:
+        problem = str(error)
+    except (MemoryError, PETSc.Error) as error:
+        problem = f"the direct solver failed ({error}); give it more memory, or a coarser mesh"
+    problems = [told for told in comm.allgather(problem) if told]
+    if problems:
+        raise NumericsError(problems[0])
+    return results[0]
 
 
 def _sent(comm: MPI.Comm, jobs: Sequence[Job], roots: Sequence[int]) -> Iterator[Job | None]:

@@ -17,31 +17,17 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.pipeline.inferred import print_inferred
 from runs.report.model_tables import buckling_table
+from tests.runs.case_texts import STEEL, box, joint
 
-LIFT = """
+LIFT = f"""
 title = "Lift"
 [time]
 duration = 0.05
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-[[segment]]
-name = "mast"
-span = [0.0, 8.0]
-supports = [{ x = 0.0, kind = "clamped" }]
-section = { height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }
-[[segment]]
-name = "fly"
-span = [6.0, 14.0]
-section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }
-[[joint]]
-outer = "mast"
-inner = "fly"
-stations = [6.0, 8.0]
-play = 0.01
-stiffness = 1e9
-exponent = 1.0
+{STEEL}
+{box("mast", (0.0, 8.0), (0.40, 0.30, 0.008, 0.006))}
+supports = [{{ x = 0.0, kind = "clamped" }}]
+{box("fly", (6.0, 14.0), (0.36, 0.26, 0.006, 0.005))}
+{joint("fly", "mast", 0.01, (6.0, 8.0))}
 [[load]]
 segment = "fly"
 x = 14.0

@@ -15,45 +15,22 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.toml import dumps
 from runs.pipeline.inferred import print_inferred
+from tests.runs.case_texts import STEEL, box, joint
 
-LUFFED = """
+LUFFED = f"""
 title = "A boom on its cylinder"
-
 [time]
 duration = 0.05
 output_step = 1e-3
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
+{STEEL}
 [gravity]
 acceleration = 9.80665
-
 [start]
 state = "equilibrium"
-
-[[segment]]
-name = "base"
-span = [0.0, 9.0]
-supports = [{ x = 0.0, kind = "hinged", depth = 0.2 }]
-section = { height = 0.60, width = 0.40, flange = 0.010, web = 0.008 }
-
-[[segment]]
-name = "fly"
-span = [7.5, 15.0]
-section = { height = 0.56, width = 0.36, flange = 0.008, web = 0.006 }
-
-[[joint]]
-outer = "base"
-inner = "fly"
-stations = [7.5, 9.0]
-play = 0.004
-stiffness = 1e9
-exponent = 1.0
-dashpot = 500.0
-
+{box("base", (0.0, 9.0), (0.60, 0.40, 0.010, 0.008))}
+supports = [{{ x = 0.0, kind = "hinged", depth = 0.2 }}]
+{box("fly", (7.5, 15.0), (0.56, 0.36, 0.008, 0.006))}
+{joint("fly", "base", 0.004, (7.5, 9.0), "dashpot = 500.0")}
 [[cylinder]]
 segment = "base"
 x = 3.0
@@ -61,25 +38,20 @@ depth = 0.5
 ground = [1.2, -2.4]
 stiffness = 6e7
 dashpot = 2e4
-
 [payload]
 mass = 1000.0
-
 [[model]]
 name = "elements"
 kind = "finite-element"
 element_length = 1.5
-
 [[model]]
 name = "series"
 kind = "kantorovich"
 terms = [10, 8]
 base = "complete"
-
 [[model]]
 name = "rigid"
 kind = "rigid"
-
 [[model]]
 name = "tied"
 kind = "finite-element"

@@ -15,22 +15,16 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
+from tests.runs.case_texts import STEEL, box, joint
 
-HEAD = """
+HEAD = f"""
 title = "Under its weight"
-
 [time]
 duration = 0.5
 output_step = 1e-2
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
+{STEEL}
 [start]
 state = "equilibrium"
-
 [[model]]
 name = "elements"
 kind = "finite-element"
@@ -38,45 +32,15 @@ element_length = 2.5
 """
 
 # Three segments of 18 m with a cage, on which a load comes.
-LIFT = """
-[[segment]]
-name = "base"
-span = [0.0, 7.0]
-supports = [0.0, 1.5]
-section = { height = 0.40, width = 0.26, flange = 0.008, web = 0.006 }
+LIFT = f"""
+{box("base", (0.0, 7.0), (0.40, 0.26, 0.008, 0.006), "supports = [0.0, 1.5]")}
 load = -640.0
-
-[[segment]]
-name = "middle"
-span = [6.0, 12.5]
-section = { height = 0.36, width = 0.22, flange = 0.006, web = 0.005 }
-load = -480.0
-
-[[segment]]
-name = "fly"
-span = [11.5, 18.0]
-section = { height = 0.32, width = 0.18, flange = 0.005, web = 0.004 }
-load = -330.0
-
-[[joint]]
-outer = "base"
-inner = "middle"
-stations = [6.0, 7.0]
-play = 0.006
-stiffness = 1e9
-exponent = 1.0
-
-[[joint]]
-outer = "middle"
-inner = "fly"
-stations = [11.5, 12.5]
-play = 0.006
-stiffness = 1e9
-exponent = 1.0
-
+{box("middle", (6.0, 12.5), (0.36, 0.22, 0.006, 0.005), "load = -480.0")}
+{box("fly", (11.5, 18.0), (0.32, 0.18, 0.005, 0.004), "load = -330.0")}
+{joint("middle", "base", 0.006, (6.0, 7.0))}
+{joint("fly", "middle", 0.006, (11.5, 12.5))}
 [payload]
 mass = 230.0
-
 [[load]]
 segment = "fly"
 x = 18.0
@@ -85,29 +49,11 @@ ramp = 0.2
 """
 
 # An arm in space in a gust from a file.
-ARM = """
-[[segment]]
-name = "base"
-span = [0.0, 8.0]
-supports = [0.0, 1.5]
-section = { height = 0.50, width = 0.32, flange = 0.008, web = 0.006 }
+ARM = f"""
+{box("base", (0.0, 8.0), (0.50, 0.32, 0.008, 0.006), "supports = [0.0, 1.5]")}
 load = -800.0
-
-[[segment]]
-name = "fly"
-span = [7.0, 14.0]
-section = { height = 0.46, width = 0.28, flange = 0.006, web = 0.005 }
-load = -500.0
-
-[[joint]]
-outer = "base"
-inner = "fly"
-stations = [7.0, 8.0]
-play = 0.006
-lateral_play = 0.006
-stiffness = 1e9
-exponent = 1.0
-
+{box("fly", (7.0, 14.0), (0.46, 0.28, 0.006, 0.005), "load = -500.0")}
+{joint("fly", "base", 0.006, (7.0, 8.0), "lateral_play = 0.006")}
 [[load]]
 segment = "fly"
 direction = "y"

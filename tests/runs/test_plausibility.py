@@ -11,47 +11,23 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.pipeline.plausibility import slips
+from tests.runs.case_texts import STEEL, box, joint
 
-CASE = """
+CASE = f"""
 title = "An arm"
-
 [time]
 duration = 1.0
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
+{STEEL}
 [payload]
 mass = 500.0
-
-[[segment]]
-name = "arm"
-span = [0.0, 8.0]
-supports = [{ x = 0.0, kind = "clamped" }]
-section = { height = 0.4, width = 0.3, flange = 0.008, web = 0.006 }
-load = -670.0
-
-[[segment]]
-name = "fly"
-span = [7.0, 14.0]
-section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }
-load = -470.0
-
-[[joint]]
-outer = "arm"
-inner = "fly"
-stations = [7.0, 8.0]
-play = 0.004
-stiffness = 1e8
-exponent = 1.0
-
+{box("arm", (0.0, 8.0), (0.4, 0.3, 0.008, 0.006), "load = -670.0")}
+supports = [{{ x = 0.0, kind = "clamped" }}]
+{box("fly", (7.0, 14.0), (0.36, 0.26, 0.006, 0.005), "load = -470.0")}
+{joint("fly", "arm", 0.004, (7.0, 8.0), "stiffness = 1e8")}
 [[model]]
 name = "beam"
 kind = "finite-element"
 element_length = 0.5
-
 [[model]]
 name = "shell"
 kind = "shell"

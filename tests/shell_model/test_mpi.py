@@ -15,8 +15,8 @@ from mpi4py import MPI
 from dynamics.failure import NumericsError
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.agreement import together
 from shell_model.reduction.segment import KrylovOptions
+from shell_model.reduction.symmetry import together
 from shell_model.verification.eigenmodes import natural_frequencies
 from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom

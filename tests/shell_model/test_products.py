@@ -12,7 +12,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from shell_model.reduction.products import exact_product
+from shell_model.reduction.coordinates import exact_product
 
 
 def _terms() -> tuple[np.ndarray, np.ndarray]:

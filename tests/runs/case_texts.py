@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What cases of several tests say alike: steel, segments that are boxes, joints of linear pads."""
+
+from __future__ import annotations
+
+STEEL = """
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+"""
+
+
+_SIZES = "height", "width", "flange", "web"
+
+
+def box(name: str, span: tuple[float, float], section: tuple[float, ...], more: str = "") -> str:
+    """A segment by height, width, flange and web in m, and what else is said of it."""
+    sizes = (f"{key} = {m}" for key, m in zip(_SIZES, section, strict=True))
+    return f"""
+[[segment]]
+name = "{name}"
+span = {list(span)}
+section = {{ {", ".join(sizes)} }}
+{more}
+"""
+
+
+def joint(inner: str, outer: str, play: float, span: tuple[float, float], more: str = "") -> str:
+    """Of a segment in another, with stations at both ends of their overlap; 1 GN/m unless said."""
+    stiffness = "" if "stiffness" in more else "stiffness = 1e9"
+    return f"""
+[[joint]]
+outer = "{outer}"
+inner = "{inner}"
+stations = {list(span)}
+play = {play}
+exponent = 1.0
+{stiffness}
+{more}
+"""
