@@ -96,6 +96,10 @@ class BoomModes:
         """(num_modes,) modal load of one N/m along a segment, in 1/(N/m) of N/√kg."""
         return self._expand(segment, direction, self._component(segment, direction).unit_load)
 
+    def inertia(self, segment: int, direction: Direction) -> Array:
+        """(num_modes,) an acceleration that a segment feels as 1 N/m on average."""
+        return self._expand(segment, direction, self._component(segment, direction).inertia)
+
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
         """(num_modes,) row that reads the rotation of a segment's cross-section at x in m."""
         rotation = self._component(segment, direction).rotation_at(x)

@@ -29,6 +29,8 @@ class Component:
         stiffness, mass, damping: (num_dofs, num_dofs).
         load: (num_dofs,) the segment's own uniform load.
         unit_load: (num_dofs,) a uniform load of one N/m (of one N for the twist).
+        felt: (num_dofs,) an acceleration of the mass per length which a segment feels as 1 N/m, on
+            average where it tapers; ``unit_load`` unless given.
         at: x in m → (num_dofs,) row that reads the deflection or twist there.
         rotation: x in m → (num_dofs,) row that reads the rotation of the cross-section there, the
             slope of a beam that is rigid in shear; none of a twist.
@@ -54,11 +56,17 @@ class Component:
     turning: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
     geometric: Array | None = None
+    felt: Array | None = None
 
     @property
     def softening(self) -> Array:
         """(num_dofs, num_dofs) K_G."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
+
+    @property
+    def inertia(self) -> Array:
+        """(num_dofs,) ``felt``, of whatever component."""
+        return self.unit_load if self.felt is None else self.felt
 
     def rotation_at(self, x: float) -> Array:
         """(num_dofs,) row that reads the rotation of the cross-section at x in m."""

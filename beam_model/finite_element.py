@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two-node beam elements: Hermite cubics, and the shear-flexible element exact at its nodes.
+"""Beams of two-node elements (:mod:`beam_model.elements`) for each plane of bending.
 
-Both have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s h²)
-the shear-flexible shape functions solve the homogeneous Timoshenko equations (Friedman and
-Kosmatka 1993); at Φ = 0 they are the Hermite cubics with θ = w′. Beside a second such element
-for the other plane, a linear one for the twist makes the frame element in space (Przemieniecki
-1968), less the stretching of the axis.
+Beside them a linear one for the twist makes the frame element in space (Przemieniecki 1968), less
+the stretching of the axis.
 """
 
 from __future__ import annotations
@@ -13,21 +10,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Literal
+from operator import attrgetter
 
 import numpy as np
 
 from beam_model.component import Component, Motion, SegmentModel, products
+from beam_model.elements import Element, Theory, element
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 
-Theory = Literal["euler-bernoulli", "timoshenko"]
-
-# ξ = x/h, h and Φ to shape functions and their derivatives along x, each (4, num_points).
-_Shapes = Callable[[Array, float, float], tuple[Array, Array]]
+# An element and ξ to shape functions and their derivatives along x, each (4, num_points).
+_Shapes = Callable[[Element, Array], tuple[Array, Array]]
 
 # Exact for products of the cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
+
+_MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
+_TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_inertia"))
 
 
 def finite_element_segments(
@@ -81,26 +80,26 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     """The deflection along z; unknowns w and θ of each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
-    unit_load, turning = np.zeros((2, num_dofs))
+    unit_load, turning, felt = np.zeros((3, num_dofs))
     points, weights = _GAUSS
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(2 * k, 2 * k + 4)
-        phi = _shear_number(segment, theory, h)
         xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
-        w, slope = _deflection(xi, h, phi)
-        theta, curvature = _rotation(xi, h, phi)
-        stiffness[dofs, dofs] += segment.bending_stiffness * products(curvature, weight)
-        if phi > 0.0:
-            shear_stiffness = 12.0 * segment.bending_stiffness / (phi * h**2)
-            stiffness[dofs, dofs] += shear_stiffness * products(slope - theta, weight)
-        mass[dofs, dofs] += segment.mass_per_length * products(w, weight)
-        turning[dofs] += segment.mass_per_length * w @ (weight * (nodes[k] + h * xi))
+        here = element(segment, theory, nodes[k], h)
+        w, slope = here.deflection(xi)
+        theta, _ = here.rotation(xi)
+        x = nodes[k] + h * xi
+        heavy, turned = (weight * segment.relative(number, x) for number in (_MASS, _ROTARY))
+        stiffness[dofs, dofs] += here.stiffness(xi, weight)
+        mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
+        turning[dofs] += segment.mass_per_length * w @ (heavy * x)
         if rotary_inertia:
-            mass[dofs, dofs] += segment.rotary_inertia * products(theta, weight)
-            turning[dofs] += segment.rotary_inertia * theta @ weight
+            mass[dofs, dofs] += segment.rotary_inertia * products(theta, turned)
+            turning[dofs] += segment.rotary_inertia * theta @ turned
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
-        geometric[dofs, dofs] += products(slope, weight * segment.compression(nodes[k] + h * xi))
+        geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
         unit_load[dofs] += w @ weight
+        felt[dofs] += w @ heavy
 
     held = []
     for support in segment.supports:
@@ -121,7 +120,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     def read(shapes: _Shapes, order: int, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        values = shapes(np.array((x - nodes[k]) / h), h, _shear_number(segment, theory, h))
+        values = shapes(element(segment, theory, nodes[k], h), np.array((x - nodes[k]) / h))
         row[2 * k : 2 * k + 4] = values[order]
         return np.asarray(row[free])
 
@@ -132,6 +131,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping=damping[block],
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
+        felt=felt[free],
         at=partial(read, _deflection, 0),
         rotation=partial(read, _rotation, 0),
         curvature=partial(read, _rotation, 1),
@@ -151,8 +151,13 @@ def _twist(segment: Segment, nodes: Array) -> Component:
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
     for k, h in enumerate(np.diff(nodes)):
         dofs = slice(k, k + 2)
-        stiffness[dofs, dofs] += twisting_stiffness / h * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        mass[dofs, dofs] += lateral.polar_inertia * h / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+        places = nodes[k] + h * np.array([0.0, 0.5, 1.0])
+        # Simpson's rule for the flexibility.
+        stiff = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.relative(_TORSION, places)))
+        heavy = segment.relative(_POLAR, places)[1]
+        stretched, moved = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
+        stiffness[dofs, dofs] += stiff * (twisting_stiffness / h) * np.array(stretched)
+        mass[dofs, dofs] += heavy * (lateral.polar_inertia * h / 6.0) * np.array(moved)
         unit_load[dofs] += 0.5 * h
     held = [_nearest(nodes, support.x) for support in segment.supports]
     free = np.setdiff1d(np.arange(nodes.size), held)
@@ -198,51 +203,9 @@ def _element(nodes: Array, x: float) -> tuple[int, float]:
     return k, float(nodes[k + 1] - nodes[k])
 
 
-def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
-    if theory == "euler-bernoulli" or segment.section is None:
-        return 0.0
-    shear_stiffness = segment.material.shear_modulus * segment.section.shear_area
-    return 12.0 * segment.bending_stiffness / (shear_stiffness * h**2)
+def _deflection(here: Element, xi: Array) -> tuple[Array, Array]:
+    return here.deflection(xi)
 
 
-def _deflection(xi: Array, h: float, phi: float) -> tuple[Array, Array]:
-    """Shape functions of w and their slopes w′, each (4, num_points), at ξ = x/h."""
-    w = np.array(
-        [
-            1.0 - 3.0 * xi**2 + 2.0 * xi**3 + phi * (1.0 - xi),
-            h * (xi - 2.0 * xi**2 + xi**3 + 0.5 * phi * (xi - xi**2)),
-            3.0 * xi**2 - 2.0 * xi**3 + phi * xi,
-            h * (-(xi**2) + xi**3 - 0.5 * phi * (xi - xi**2)),
-        ]
-    )
-    slope = np.array(
-        [
-            (-6.0 * xi + 6.0 * xi**2 - phi) / h,
-            1.0 - 4.0 * xi + 3.0 * xi**2 + 0.5 * phi * (1.0 - 2.0 * xi),
-            (6.0 * xi - 6.0 * xi**2 + phi) / h,
-            -2.0 * xi + 3.0 * xi**2 - 0.5 * phi * (1.0 - 2.0 * xi),
-        ]
-    )
-    return w / (1.0 + phi), slope / (1.0 + phi)
-
-
-def _rotation(xi: Array, h: float, phi: float) -> tuple[Array, Array]:
-    """Shape functions of θ and the curvatures θ′, each (4, num_points), at ξ = x/h."""
-    theta = np.array(
-        [
-            6.0 * (xi**2 - xi) / h,
-            1.0 - 4.0 * xi + 3.0 * xi**2 + phi * (1.0 - xi),
-            6.0 * (xi - xi**2) / h,
-            -2.0 * xi + 3.0 * xi**2 + phi * xi,
-        ]
-    )
-    curvature = np.array(
-        [
-            6.0 * (2.0 * xi - 1.0) / h**2,
-            (-4.0 + 6.0 * xi - phi) / h,
-            6.0 * (1.0 - 2.0 * xi) / h**2,
-            (-2.0 + 6.0 * xi + phi) / h,
-        ]
-    )
-    return theta / (1.0 + phi), curvature / (1.0 + phi)
+def _rotation(here: Element, xi: Array) -> tuple[Array, Array]:
+    return here.rotation(xi)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from operator import attrgetter
 from typing import Literal
 
 import numpy as np
@@ -21,6 +22,9 @@ from beam_model.component import Component, Motion, SegmentModel, products
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
 from geometry.compression import Compression
+
+# Points beyond those that polynomials need, for the numbers of sections that taper.
+_TAPERING = 6
 
 Base = Literal["as printed", "pinned", "complete"]
 
@@ -101,12 +105,16 @@ def kantorovich_bending(
     basis = _Basis(segment, bending_basis(segment, terms, base))
     # The printed base holds the slope at the first support too.
     printed = int(bool(segment.supports) and base == "as printed")
-    stiffness = segment.bending_stiffness * products(basis.curvature, basis.weights)
-    mass = segment.mass_per_length * products(basis.value, basis.weights)
-    turning = segment.mass_per_length * basis.value @ (basis.x * basis.weights)
+    bent, heavy, turned = (
+        basis.weights * segment.relative(attrgetter(number), basis.x)
+        for number in ("bending_stiffness", "mass_per_length", "rotary_inertia")
+    )
+    stiffness = segment.bending_stiffness * products(basis.curvature, bent)
+    mass = segment.mass_per_length * products(basis.value, heavy)
+    turning = segment.mass_per_length * basis.value @ (basis.x * heavy)
     if rotary_inertia:
-        mass += segment.rotary_inertia * products(basis.slope, basis.weights)
-        turning += segment.rotary_inertia * basis.slope @ basis.weights
+        mass += segment.rotary_inertia * products(basis.slope, turned)
+        turning += segment.rotary_inertia * basis.slope @ turned
     for support in segment.supports:
         if support.stiffness is not None:
             row = basis.at(support.x)
@@ -129,6 +137,7 @@ def kantorovich_bending(
         turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
         geometric=_geometric(segment.compression, basis.functions),
+        felt=basis.value @ heavy,
     )
 
 
@@ -151,9 +160,13 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
     held = [(support.x, 0) for support in segment.supports]
     basis = _Basis(segment, complete_basis(segment, held, terms))
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
+    stiff, heavy = (
+        basis.weights * segment.relative(attrgetter(f"lateral.{number}"), basis.x)
+        for number in ("torsion_constant", "polar_inertia")
+    )
     return Component(
-        stiffness=twisting_stiffness * products(basis.slope, basis.weights),
-        mass=lateral.polar_inertia * products(basis.value, basis.weights),
+        stiffness=twisting_stiffness * products(basis.slope, stiff),
+        mass=lateral.polar_inertia * products(basis.value, heavy),
         damping=np.zeros((terms, terms)),
         load=np.zeros(terms),
         unit_load=basis.integral,
@@ -256,7 +269,8 @@ class _Basis:
         self.functions = functions
         # Gauss's rule with as many points as the highest degree and one is exact.
         degree = max(function.degree() for function in functions)
-        nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+        tapering = _TAPERING if segment.head_section is not None else 0
+        nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
         self.x = segment.start + 0.5 * segment.length * (nodes + 1.0)
         self.weights = 0.5 * segment.length * weights
         self.value, self.slope, self.curvature = (

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
+from operator import attrgetter
 
 import numpy as np
 
@@ -53,8 +54,8 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
             breaks, partial(modes.displacement, number, direction=direction)
         )
         if model.components[direction].curvature is not None:
-            curvature = _at_ends(breaks, partial(modes.curvature, number, direction=direction))
-            rows[moment] = -_stiffness(segment, direction) * curvature
+            plane = segment if direction == "z" else segment.turned()
+            rows[moment] = _at_ends(breaks, partial(_moment, modes, number, plane, direction))
             rows[shear] = _slope(breaks, rows[moment])
     if boom.spatial:
         lateral = segment.lateral
@@ -62,13 +63,15 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         rows["twist"] = _both_ends(breaks, partial(modes.twist, number))
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
-            rows["torque"] = stiffness * _slope(breaks, rows["twist"])
+            middles = 0.5 * (breaks[1:] + breaks[:-1])
+            local = np.repeat(segment.relative(attrgetter("lateral.torsion_constant"), middles), 2)
+            rows["torque"] = stiffness * local[:, None] * _slope(breaks, rows["twist"])
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
 
 
-def _stiffness(segment: Segment, direction: Direction) -> float:
-    """E J in N·m²."""
-    return (segment if direction == "z" else segment.turned()).bending_stiffness
+def _moment(modes: BoomModes, number: int, plane: Segment, direction: Direction, x: float) -> Array:
+    """(num_modes,) at x, by the local E J of the segment as it bends in its plane."""
+    return -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
 
 
 def _breaks(boom: Boom, number: int, nodes: Array) -> Array:

@@ -121,7 +121,7 @@ class _Member:
         return self.modes.load_between(self.segment, direction, *span)
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.uniform(direction, None)
+        return force * self.modes.inertia(self.segment, direction)
 
     def turning(self, direction: Direction) -> Array:
         return self.modes.turning(self.segment, direction)

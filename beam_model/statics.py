@@ -16,7 +16,8 @@ import numpy as np
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import Component
-from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import ContactLaw
 from dynamics.equilibrium import equilibrium
@@ -84,9 +85,10 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
 
 
 def _size(boom: Boom) -> float:
-    """Of elements in m: the longest are exact in statics but for axial forces."""
+    """Of elements in m: the longest are exact in statics but for axial forces and tapers."""
     longest = max(segment.length for segment in boom.segments)
-    return longest / COMPRESSED_ELEMENTS if boom.compressed else longest
+    tapers = any(segment.head_section is not None for segment in boom.segments)
+    return longest / COMPRESSED_ELEMENTS if boom.compressed or tapers else longest
 
 
 def _holds(
@@ -137,7 +139,7 @@ class _Bare(Member):
         return self.component.unit_load if span is None else self.component.uniform_load(*span)
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.component.unit_load
+        return force * self.component.inertia
 
     def torque(self, x: float) -> Array:
         return np.zeros(len(self.component.load))

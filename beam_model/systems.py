@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from beam_model.finite_element import Theory, finite_element_segments
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import ContactLaw

@@ -8,13 +8,19 @@ inboard hangs there and pulls.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+
+import numpy as np
 
 from geometry.compression import UNPRESSED, Compression
 from geometry.joint import Joint
 from geometry.segment import SAME_PLACE, Segment
+from geometry.taper import mean_area
+
+# Forces are exact at their ends, and between them off by some thousandths of what a step weighs.
+_STEPS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,18 +84,34 @@ def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
     """Those at one x in m, in N."""
     found = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
-        plate = segment.material.density * segment.section.enclosed_area * gravity
-        found += [(each.x, plate * each.thickness) for each in segment.diaphragms]
+        plate = segment.material.density * gravity
+        found += [
+            (each.x, plate * segment.section_at(each.x).enclosed_area * each.thickness)
+            for each in segment.diaphragms
+        ]
     return found
 
 
 def _spread_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
     """Those between two x in m, in N/m."""
-    found = [(segment.start, segment.end, segment.mass_per_length * gravity)]
+    found = list(_plain_weights(segment, gravity))
     if segment.section is not None:
-        doubler = segment.material.density * segment.section.perimeter * gravity
-        found += [(each.start, each.end, doubler * each.thickness) for each in segment.collars]
+        doubler = segment.material.density * gravity
+        found += [
+            (each.start, each.end, doubler * segment.mean_perimeter(each) * each.thickness)
+            for each in segment.collars
+        ]
     return found
+
+
+def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
+    """That of the mass per length, even in steps where the segment tapers."""
+    if segment.head_section is None:
+        yield segment.start, segment.end, segment.mass_per_length * gravity
+        return
+    for start, end in pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist()):
+        area = mean_area(segment.section_at(start), segment.section_at(end))
+        yield start, end, segment.material.density * area * gravity
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from geometry.cylinder import Cylinder, forces
+from geometry.fault import BoomError
 from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
 from geometry.joint import Joint, PadSize, Stop
@@ -19,15 +20,14 @@ from geometry.observation import IN_SPACE, KINDS, Observation, Quantity
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
-    BoomError,
     Collar,
     Diaphragm,
     Lateral,
     Material,
     PointMass,
     Segment,
-    Support,
 )
+from geometry.support import Support
 
 __all__ = [
     "SAME_PLACE",
@@ -265,13 +265,14 @@ class Boom:
 
     def _check_touching(self) -> None:
         for stop in self.stops:
-            check_flats(f"segment[{stop.segment + 1}]", self.segments[stop.segment], ("z",))
+            check_flats(f"segment[{stop.segment + 1}]", self.segments[stop.segment], ("z",), ())
         for joint in self.joints:
             if joint.tied:
                 continue
             outer, inner = self.segments[joint.outer], self.segments[joint.inner]
-            check_flats(f"segment[{joint.outer + 1}]", outer, self.directions)
-            check_flats(f"segment[{joint.inner + 1}]", inner, self.directions, outer)
+            where, places = f"segment[{joint.inner + 1}]", joint.stations
+            check_flats(f"segment[{joint.outer + 1}]", outer, self.directions, places)
+            check_flats(where, inner, self.directions, places, outer)
 
     def _check_space(self) -> None:
         for number, joint in enumerate(self.joints, start=1):
@@ -408,10 +409,15 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
             f"{where}.pad.length",
             f"must be above 0 and not above the overlap of {end - start:g} m, got {pad.length:g} m",
         )
-    section = boom.segments[joint.inner].section
-    if section is None:
+    inner = boom.segments[joint.inner]
+    if inner.section is None:
         return
-    room = 0.5 * min(face.width for face in section.faces if face.direction in boom.directions)
+    room = 0.5 * min(
+        face.width
+        for x in joint.stations
+        for face in inner.section_at(x).faces
+        if face.direction in boom.directions
+    )
     if not 0.0 < pad.width <= room - pad.offset:
         beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
         raise BoomError(

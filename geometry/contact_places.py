@@ -140,7 +140,9 @@ def rests(boom: Boom) -> list[Rest]:
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]
         assert segment.section is not None
-        length = stop.contact_length or min(_OF_HEIGHT * segment.section.size("z"), segment.length)
+        length = stop.contact_length or min(
+            _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length
+        )
         found.append(Rest(station, stop, Stretch.on(segment, stop.x, length)))
     return found
 
@@ -163,7 +165,7 @@ def pads(boom: Boom) -> list[Pad]:
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
                 pressed = Stretch.on(inner_segment, x, length), Stretch.on(outer_segment, x, length)
-                for side, inner, outer, weight in _points(boom, joint, direction):
+                for side, inner, outer, weight in _points(boom, joint, direction, x):
                     found.append(
                         Pad(
                             station=station,
@@ -189,15 +191,13 @@ def pads(boom: Boom) -> list[Pad]:
 
 
 def _points(
-    boom: Boom, joint: Joint, direction: Direction
+    boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float]]:
     """Side, inner and outer point, and weight of the pads at one station along one direction."""
     if joint.lateral_clearance is None:
         yield 0, (0.0, 0.0), (0.0, 0.0), 1.0
         return
-    inner, outer = boom.segments[joint.inner].section, boom.segments[joint.outer].section
-    assert inner is not None
-    assert outer is not None
+    inner, outer = (boom.segments[number].section_at(x) for number in (joint.inner, joint.outer))
     clearance = joint.clearance if direction == "z" else joint.lateral_clearance
     sides: tuple[Side, Side] = (1, -1)
     for side in sides:

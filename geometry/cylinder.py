@@ -9,8 +9,9 @@ from math import hypot
 from typing import TYPE_CHECKING, NamedTuple
 
 from geometry.arrays import Array
+from geometry.fault import BoomError
 from geometry.load import Body
-from geometry.segment import BoomError, Support
+from geometry.support import Support
 
 if TYPE_CHECKING:
     from geometry.boom import Boom

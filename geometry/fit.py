@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from geometry.fault import BoomError
 from geometry.joint import Joint
 from geometry.section import Direction, Side
-from geometry.segment import SAME_PLACE, BoomError, Segment
+from geometry.segment import SAME_PLACE, Segment
 from geometry.walls import free_room
 
 _WHERE: Mapping[tuple[Direction, Side], str] = {
@@ -27,7 +28,7 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
     if outer.section is None or inner.section is None:
         return
     near = SAME_PLACE * outer.length
-    height, width = free_room(outer.section, inner.section, 2.0 * joint.clearance)
+    height, width = room(joint, outer, inner)
     if height < 2.0 * joint.clearance - near or width < 0.0:
         raise BoomError(
             f"{where}.play",
@@ -44,8 +45,26 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         )
 
 
+def room(joint: Joint, outer: Segment, inner: Segment) -> tuple[float, float]:
+    """How far the inner segment can move along z, and then along y, where that is least, in m.
+
+    At the stations and the ends of the overlap, of segments whose sections are known.
+    """
+    ends = max(outer.start, inner.start), min(outer.end, inner.end)
+    found = [
+        free_room(outer.section_at(x), inner.section_at(x), 2.0 * joint.clearance)
+        for x in (*joint.stations, *ends)
+    ]
+    heights, widths = zip(*found, strict=True)
+    return min(heights), min(widths)
+
+
 def check_flats(
-    where: str, segment: Segment, directions: tuple[Direction, ...], around: Segment | None = None
+    where: str,
+    segment: Segment,
+    directions: tuple[Direction, ...],
+    places: Sequence[float],
+    around: Segment | None = None,
 ) -> None:
     """Whether a segment has plates that can touch, as far as its section is known.
 
@@ -53,6 +72,7 @@ def check_flats(
         where: its key.
         segment: which touches, on both sides.
         directions: along which.
+        places: x in m at which it touches.
         around: the segment whose plates it touches, if any.
 
     Raises:
@@ -72,10 +92,13 @@ def check_flats(
             )
         if around is None or around.section is None:
             continue
-        room, width = around.section.face(*sides).width, flats[sides].width
-        if width > room:
+        faces = [
+            [one.section_at(x).face(*sides).width for one in (around, segment)] for x in places
+        ]
+        free, width = min(faces, key=lambda pair: pair[0] - pair[1])
+        if width > free:
             raise BoomError(
                 f"{where}.section",
                 f"its {place} is {width:.6g} m wide, and that of {around.name!r}, which it "
-                f"touches, {room:.6g} m; make it narrower",
+                f"touches, {free:.6g} m; make it narrower",
             )

@@ -17,9 +17,10 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.cylinder import ground_lines
+from geometry.fault import BoomError
 from geometry.load import Member
 from geometry.section import Direction
-from geometry.segment import BoomError, Segment
+from geometry.segment import Segment
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
@@ -130,11 +131,11 @@ class _RigidBody(Member):
         return (end - start) * self.force(0.5 * (start + end), direction)
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.uniform(direction, None)
+        return force * self.segment.length * self.force(self.segment.mass_middle, direction)
 
     def turning(self, direction: Direction) -> Array:
         segment = self.segment if direction == "z" else self.segment.turned()
-        mass, middle = segment.mass_per_length * segment.length, 0.5 * (segment.start + segment.end)
+        mass, middle = segment.mass_per_length * segment.length, segment.mass_middle
         inertia = mass * segment.length**2 / 12.0 + segment.rotary_inertia * segment.length
         return mass * middle * self.force(middle, direction) + inertia * self.moment(
             middle, direction

@@ -30,6 +30,9 @@ from geometry.section import Offset, Plate, Section
 # Part of a mesh's extent below which a coordinate is 0.
 _ROUND_OFF = 1.0e-12
 
+# Of a part of a segment's length: below any triangle, above round-off.
+_DIGITS = 9
+
 
 @dataclass(frozen=True, slots=True)
 class SegmentMesh:
@@ -152,6 +155,23 @@ def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
     return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 
 
+def wall_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
+    """(num_triangles,) as :func:`plain_thickness`, where a segment tapers as it is there."""
+    assert segment.section is not None
+    tail = plain_thickness(segment.section, mesh)
+    if segment.head_section is None:
+        return tail
+    part = part_along(segment, mesh)
+    return np.asarray(tail + part * (plain_thickness(segment.head_section, mesh) - tail))
+
+
+def part_along(segment: Segment, mesh: SegmentMesh) -> Array:
+    """(num_triangles,) where triangles are, from 0 at the start of a segment to 1 at its end."""
+    part = (mesh.points[mesh.triangles, 0].mean(axis=1) - segment.start) / segment.length
+    # Mirror images have the same to the last bit.
+    return np.asarray(np.round(part, _DIGITS))
+
+
 def plate_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
     """(num_triangles,) thickness in m of all plates of a segment whose section is known.
 
@@ -159,8 +179,7 @@ def plate_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
         segment: its diaphragms are those of the mesh, in the same order.
         mesh: with lines at the ends of the collars.
     """
-    assert segment.section is not None
-    thickness = plain_thickness(segment.section, mesh)
+    thickness = wall_thickness(segment, mesh)
     x = mesh.points[mesh.triangles, 0].mean(axis=1)
     for collar in segment.collars:
         thickness[mesh.on_walls & (x > collar.start) & (x < collar.end)] += collar.thickness

@@ -6,28 +6,23 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any
 
+import numpy as np
+
+from geometry.arrays import Array
 from geometry.compression import UNPRESSED, Compression
-from geometry.section import Direction, Section
+from geometry.fault import BoomError
+from geometry.section import COMPONENT, Section, SectionError
+from geometry.support import Support, check_support
+from geometry.taper import areas, between, check_alike, half_way, mean_area
 
 # Two places closer than this part of a segment's length are one: far below any plate, far above
 # round-off, in whatever unit.
 SAME_PLACE = 1.0e-10
-
-
-Hold = Literal["pinned", "clamped"]
-
-
-class BoomError(ValueError):
-    """A boom that cannot be. ``where`` is the key of the fault, ``segment[2].span`` say."""
-
-    def __init__(self, where: str, what: str) -> None:
-        super().__init__(f"{where}: {what}")
-        self.where = where
-        self.what = what
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,47 +43,6 @@ class Material:
     def shear_modulus(self) -> float:
         """G = E / 2(1 + ν) in Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
-
-
-@dataclass(frozen=True, slots=True)
-class Support:
-    """What holds a segment at x: its deflection, along y as along z, and its twist.
-
-    >>> pt.Support(2.0).stiffness is None, pt.Support(0.0, "clamped").kind
-    (True, 'clamped')
-    >>> hinge = pt.Support(0.0, lateral_kind="clamped", depth=0.2)  # of a pin across the boom
-    >>> hinge.holds_slope("z"), hinge.holds_slope("y")
-    (False, True)
-
-    Args:
-        x: m.
-        kind: ``pinned`` leaves the slopes free, ``clamped`` holds them too.
-        stiffness: of a pinned support whose deflections give way, in N/m, the same along y and
-            along z; rigid unless given. The twist is held rigidly all the same.
-        lateral_kind: whether the slope along y is held; as that along z unless given.
-        rotation_stiffness: against the slopes that are not held, in N·m/rad; none unless given.
-        dashpot: beside ``stiffness`` in N·s/m, likewise along y and along z.
-        depth: of its pin below the axis in m, which the lines of cylinders heed.
-    """
-
-    x: float
-    kind: Hold = "pinned"
-    stiffness: float | None = None
-    lateral_kind: Hold | None = None
-    rotation_stiffness: float | None = None
-    dashpot: float = 0.0
-    depth: float = 0.0
-
-    def holds_slope(self, direction: Direction) -> bool:
-        """Whether the slope along y or z is held rigidly."""
-        lateral = self.lateral_kind or self.kind
-        return (self.kind if direction == "z" else lateral) == "clamped"
-
-    def turned(self) -> Support:
-        """Of a segment whose two planes are exchanged."""
-        if self.lateral_kind is None:
-            return self
-        return replace(self, kind=self.lateral_kind, lateral_kind=self.kind)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,6 +132,9 @@ class Segment:
         second_moment_of_area: J in m⁴.
         rotary_inertia: I_p in kg·m.
         section: its plates; only shear-flexible beams, shells and booms in space need it.
+        head_section: at its end, where it tapers: ``section`` is then that at its start, the
+            centroids of all are on the axis, m̄ is the mean, and the other numbers above and of
+            ``lateral`` are those half-way.
         load: uniform load along z in N/m, applied at t = 0 and kept.
         supports: what holds it.
         viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
@@ -196,6 +153,7 @@ class Segment:
     second_moment_of_area: float
     rotary_inertia: float
     section: Section | None = None
+    head_section: Section | None = None
     load: float = 0.0
     supports: tuple[Support, ...] = ()
     viscous_damping: float = 0.0
@@ -227,20 +185,22 @@ class Segment:
         Args:
             name, start, end, material, section, others: as of :class:`Segment`.
         """
-        density, second_moment = material.density, section.second_moment_of_area
-        sideways = section.lateral_second_moment_of_area
+        head = others.get("head_section")
+        numbers = half_way(section, head)
+        density, second_moment = material.density, numbers.second_moment_of_area
+        sideways = numbers.lateral_second_moment_of_area
         lateral = Lateral(
             second_moment_of_area=sideways,
             rotary_inertia=density * sideways,
-            torsion_constant=section.torsion_constant,
-            polar_inertia=density * section.polar_second_moment_of_area,
+            torsion_constant=numbers.torsion_constant,
+            polar_inertia=density * numbers.polar_second_moment_of_area,
         )
         return cls(
             name,
             start,
             end,
             material,
-            mass_per_length=section.mass_per_length(density),
+            mass_per_length=density * mean_area(section, head),
             second_moment_of_area=second_moment,
             rotary_inertia=density * second_moment,
             section=section,
@@ -251,6 +211,56 @@ class Segment:
     def length(self) -> float:
         """Length in m."""
         return self.end - self.start
+
+    @property
+    def area(self) -> float:
+        """Mean area of the sections in m²."""
+        assert self.section is not None
+        return mean_area(self.section, self.head_section)
+
+    @property
+    def mass_middle(self) -> float:
+        """x of the centre of its mass per length in m."""
+        if self.section is None or self.head_section is None:
+            return 0.5 * (self.start + self.end)
+        _, middle, head = areas(self.section, self.head_section)
+        return self.start + self.length * (2.0 * middle + head) / (6.0 * self.area)
+
+    def section_at(self, x: float) -> Section:
+        """The section at x in m, of a segment whose plates are known."""
+        assert self.section is not None
+        if self.head_section is None:
+            return self.section
+        return between(self.section, self.head_section, (x - self.start) / self.length)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """x of both in m."""
+        return self.start, self.end
+
+    @property
+    def widest(self) -> Section:
+        """Of both ends the section with the longer mid-lines, which meshes of it begin with."""
+        assert self.section is not None
+        ends = self.section, self.head_section or self.section
+        return max(ends, key=lambda section: section.perimeter)
+
+    def mean_perimeter(self, collar: Collar) -> float:
+        """Length of the mid-lines in m, half-way along a collar."""
+        return self.section_at(0.5 * (collar.start + collar.end)).perimeter
+
+    def local(self, x: float) -> Segment:
+        """The plain segment that has everywhere the section of this one at x in m."""
+        if self.head_section is None:
+            return self
+        section = self.section_at(x)
+        return Segment.of_section(self.name, self.start, self.end, self.material, section)
+
+    def relative(self, number: Callable[[Segment], float], x: Array) -> Array:
+        """(num_places,) a number of the section at x (num_places,) in m over the segment's own."""
+        if self.head_section is None:
+            return np.ones(x.shape)
+        return np.array([number(self.local(place)) for place in x.tolist()]) / number(self)
 
     @property
     def bending_stiffness(self) -> float:
@@ -296,6 +306,7 @@ class Segment:
             load=self.lateral.load,
             supports=tuple(support.turned() for support in self.supports),
             section=None if self.section is None else self.section.turned(),
+            head_section=None if self.head_section is None else self.head_section.turned(),
             lateral=replace(
                 self.lateral,
                 second_moment_of_area=self.second_moment_of_area,
@@ -319,9 +330,10 @@ class Segment:
                 f"{where}.span",
                 f"must run from a smaller to a larger x, got [{self.start:g}, {self.end:g}] m",
             )
+        self._check_taper(f"{where}.head_section")
         for support in self.supports:
             self._check_place(f"{where}.supports", support.x)
-            _check_support(f"{where}.supports", support)
+            check_support(f"{where}.supports", support)
         places = sorted(support.x for support in self.supports)
         if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
             raise BoomError(f"{where}.supports", "a place is given twice; give each once")
@@ -333,6 +345,16 @@ class Segment:
                 )
         self._check_collars(where)
         self._check_diaphragms(where)
+
+    def _check_taper(self, where: str) -> None:
+        if self.head_section is None:
+            return
+        if self.section is None:
+            raise BoomError(where, "a segment tapers from a section; give section, at its tail")
+        try:
+            check_alike(self.section, self.head_section)
+        except SectionError as error:
+            raise BoomError(where, str(error)) from None
 
     def _check_collars(self, where: str) -> None:
         for number, collar in enumerate(self.collars, start=1):
@@ -371,7 +393,8 @@ class Segment:
             )
         if self.section is None:
             return
-        half = 0.5 * min(self.section.size("z"), self.section.size("y"))
+        ends = self.section, self.head_section or self.section
+        half = 0.5 * min(end.size(axis) for end in ends for axis in COMPONENT)
         if thickness > half:
             raise BoomError(
                 f"{where}.thickness",
@@ -385,39 +408,3 @@ class Segment:
                 f"{x:g} m lies outside the segment; it must be between {self.start:g} and "
                 f"{self.end:g} m",
             )
-
-
-def _check_support(where: str, support: Support) -> None:
-    at = f"at {support.x:g} m"
-    if support.stiffness is not None and (support.holds_slope("z") or support.holds_slope("y")):
-        hold = "clamped support" if support.holds_slope("z") else "hinge"
-        raise BoomError(
-            where,
-            f"a {hold} is rigid, and the one {at} has a stiffness; leave it out, or make the "
-            "support pinned",
-        )
-    if support.rotation_stiffness is not None and support.holds_slope("z"):
-        raise BoomError(
-            where,
-            f"a clamped support holds the slope, and the one {at} has a rotation_stiffness; leave "
-            "it out, or make the support pinned",
-        )
-    if support.dashpot > 0.0 and support.stiffness is None:
-        raise BoomError(
-            where,
-            f"the support {at} is rigid, and its dashpot would never move; leave it out, or give "
-            "the support a stiffness",
-        )
-    for key, what, unit in (
-        ("stiffness", "stiffness", "N/m"),
-        ("rotation_stiffness", "stiffness against rotation", "N m/rad"),
-    ):
-        given = getattr(support, key)
-        if given is not None and not 0.0 < given < float("inf"):
-            raise BoomError(
-                where, f"the {what} {at} must be a positive number of {unit}, got {given:g}"
-            )
-    if not 0.0 <= support.dashpot < float("inf"):
-        raise BoomError(
-            where, f"the dashpot {at} must be a number of N s/m from 0 on, got {support.dashpot:g}"
-        )

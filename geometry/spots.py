@@ -51,8 +51,7 @@ _Measured = tuple[_Place, _Place, float, float]
 def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]:
     """Ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
     segment = boom.segments[number]
-    section = segment.section
-    assert section is not None
+    section = segment.widest
     lowest, high = section.bounds
     low_y, low_z = (
         0.0 if axis in section.mirrors else place
@@ -110,12 +109,14 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
 
 def _pressed(boom: Boom, pad: Pad, stretch: Stretch, face: Face, line: ContactLine) -> _Measured:
     """What a pad presses of a segment's face."""
-    covered, section = pad.patch, boom.segments[pad.joint.inner].section
-    if covered is None or section is None:
+    covered = pad.patch
+    if covered is None:
         low, high, size, growth = _corner(stretch, face)
         return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
     size = _PAD * min(covered.end - covered.start, covered.width)
-    near, far = covered.across(section.face(face.direction, face.side))
+    near, far = covered.across(
+        boom.segments[pad.joint.inner].widest.face(face.direction, face.side)
+    )
     low, high = (
         _place(face, x, across) for x, across in ((covered.start, near), (covered.end, far))
     )

@@ -65,8 +65,8 @@ if TYPE_CHECKING:
     from geometry.segment import Material as Material
     from geometry.segment import PointMass as PointMass
     from geometry.segment import Segment as Segment
-    from geometry.segment import Support as Support
     from geometry.shear_flow import shear_centre as shear_centre
+    from geometry.support import Support as Support
     from geometry.unequal_box import UnequalBox as UnequalBox
     from protractile.cases import change as change
     from protractile.cases import load_case as load_case
@@ -107,7 +107,8 @@ _HOMES = {
         "geometry.polygon": "PolygonSection closed_polygon",
         "geometry.profiles": "hexagon octagon u_section",
         "geometry.section": "BoxSection Section",
-        "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment Support",
+        "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment",
+        "geometry.support": "Support",
         "geometry.shear_flow": "shear_centre",
         "geometry.unequal_box": "UnequalBox",
         "protractile.cases": "change load_case run_case",

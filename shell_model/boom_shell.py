@@ -24,6 +24,7 @@ from geometry.load import Load
 from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.observation import Quantity, Read
 from geometry.spots import spots
+from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.local_compliance import full_compliance, local_compliance
 from shell_model.contact.rows import gap_rows, ties
 from shell_model.contact.surface import SurfaceOptions
@@ -229,13 +230,15 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
-    box = segment.section, breaks, options.mesh_size
+    box = segment.widest, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))
     if options.contact_tolerance is None or options.contact_line == "surface":
         mesh = mesh_segment(*box, closed=closed)
     else:
         fine = spots(boom, number, options.contact_tolerance, options.contact_line)
         mesh = graded_mesh(*box, fine, closed=closed)
+    if segment.head_section is not None:
+        mesh = tapered_mesh(segment, mesh)
     if options.mesh_folder is not None:
         mesh.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
     return mesh

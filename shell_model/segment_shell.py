@@ -13,8 +13,9 @@ from mpi4py import MPI
 
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Direction, Segment, Support
-from geometry.mesh import SegmentMesh, plain_thickness, plate_thickness
+from geometry.mesh import SegmentMesh, part_along, plate_thickness, wall_thickness
 from geometry.section import COMPONENT, Section
+from geometry.taper import areas
 from shell_model import compat
 from shell_model.contact.attachments import Attached
 from shell_model.cross_section import Outline, Row
@@ -37,6 +38,8 @@ class SegmentShell(Shell):
     Args:
         unit_loads: direction → (num_owned,) a uniform load of 1 N/m along it, zero in held rows;
             it is spread over the plain section, collars and diaphragms have no part in it.
+        plain_loads: direction → (num_owned,) what the plain section feels of an acceleration along
+            it, as 1 N/m on average; ``unit_loads`` unless it tapers.
         stiffener_loads: direction → (num_owned,) what collars and diaphragms alone feel of an
             acceleration of 1 m/s² along it, in N, zero in held rows.
         masses: what the segment carries.
@@ -46,6 +49,7 @@ class SegmentShell(Shell):
     """
 
     unit_loads: Mapping[Direction, Array]
+    plain_loads: Mapping[Direction, Array]
     stiffener_loads: Mapping[Direction, Array]
     masses: Attached
     section: Section
@@ -59,7 +63,7 @@ class SegmentShell(Shell):
 
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
-        return _outline(self.comm, self.nodes, self.node_dofs, self.section, x)
+        return _outline(self.comm, self.nodes, self.node_dofs, self.segment.section_at(x), x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
         """(num_owned,) the segment's uniform loads that are applied at t = 0 and kept, in N."""
@@ -89,16 +93,16 @@ class SegmentShell(Shell):
         thickness = None
         if self.mesh is not None:
             x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
-            thickness = plain_thickness(self.section, self.mesh) * ((x > start) & (x < end))
+            thickness = _evenly(self.segment, self.mesh) * ((x > start) & (x < end))
         forms = self.matrices.plates.forms
         loaded = compat.cellwise_function(self.space.mesh, self.comm.bcast(thickness))
         forms.loaded.x.array[:] = loaded.x.array
-        return _unit_load(self.comm, forms, direction) / self.section.area * self.free
+        return _unit_load(self.comm, forms, direction) / self.segment.area * self.free
 
     def inertia(self, direction: Direction, force: float) -> Array:
         """(num_owned,) an acceleration that the plain segment feels as so many N/m."""
         acceleration = force / self.segment.mass_per_length
-        whole = force * self.unit_loads[direction]
+        whole = force * self.plain_loads[direction]
         return whole + acceleration * self.stiffener_loads[direction]
 
     def turning(self, direction: Direction) -> Array:
@@ -135,10 +139,16 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     assert section is not None
     plates = assemble_plates(comm, segment, mesh)
     space, forms = plates.space, plates.forms
-    unit_loads = {d: _unit_load(comm, forms, d) / section.area for d in COMPONENT}
+    plain_loads = {d: _unit_load(comm, forms, d) / segment.area for d in COMPONENT}
+    unit_loads = plain_loads
     forms.loaded.x.array[:] = plates.thickness.x.array - forms.loaded.x.array
     density = segment.material.density
     stiffener_loads = {d: density * _unit_load(comm, forms, d) for d in COMPONENT}
+    if segment.head_section is not None:
+        even = None if mesh is None else _evenly(segment, mesh)
+        spread = compat.cellwise_function(space.mesh, comm.bcast(even))
+        forms.loaded.x.array[:] = spread.x.array
+        unit_loads = {d: _unit_load(comm, forms, d) / segment.area for d in COMPONENT}
     free = free_rows(space, plates.holds)
     nodes, node_dofs = owned_nodes(space, 0)
     rotation_nodes, rotation_dofs = owned_nodes(space, 1)
@@ -146,7 +156,7 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
         rows, factors = [], []
         for x, row, factor in what:
-            outline = _outline(comm, nodes, node_dofs, section, x)
+            outline = _outline(comm, nodes, node_dofs, segment.section_at(x), x)
             rows.append(_local_row(space.dofmap.index_map.local_range[0], free, row(outline)))
             factors.append(factor)
         return Attached.of(rows, factors, free.size)
@@ -156,6 +166,7 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
         comm=comm,
         matrices=Matrices(comm, plates, plates.holds, springs, masses),
         unit_loads={d: load * free for d, load in unit_loads.items()},
+        plain_loads={d: load * free for d, load in plain_loads.items()},
         stiffener_loads={d: load * free for d, load in stiffener_loads.items()},
         free=free,
         springs=springs,
@@ -173,14 +184,13 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
 
 def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> Plates:
     """The plates of a mesh, a segment's whole one or a part of it. Collective."""
-    section = segment.section
-    assert section is not None
     if mesh is not None:
         points, triangles = mesh.points, mesh.triangles
-        plain = plain_thickness(section, mesh)
+        plain = wall_thickness(segment, mesh)
         # The plain walls carry the whole axial force, so that it is the same in each section.
         force = segment.compression(points[triangles, 0].mean(axis=1))
-        of_cells = plate_thickness(segment, mesh), plain, force / section.area * plain
+        pressing = force / segment.area * _evenly(segment, mesh)
+        of_cells = plate_thickness(segment, mesh), plain, pressing
     else:
         points, triangles = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
         of_cells = None
@@ -190,8 +200,19 @@ def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) 
     )
     space = compat.shell_space(domain)
     forms = ShellForms(space, thickness, segment.material, loaded=loaded, compression=pressed)
-    holds = _holds(space, segment, section)
+    holds = _holds(space, segment)
     return Plates(space, thickness, forms, holds, bool(segment.compression))
+
+
+def _evenly(segment: Segment, mesh: SegmentMesh) -> Array:
+    """(num_triangles,) thickness in m by which a force per length that is the same at each x is
+    spread over the walls: theirs, over the section's part of the mean area where it tapers.
+    """
+    thickness = wall_thickness(segment, mesh)
+    if segment.section is None or segment.head_section is None:
+        return thickness
+    parabola = np.polyfit([0.0, 0.5, 1.0], areas(segment.section, segment.head_section), 2)
+    return np.asarray(thickness * segment.area / np.polyval(parabola, part_along(segment, mesh)))
 
 
 def _outline(
@@ -235,14 +256,13 @@ def _unit_load(comm: MPI.Comm, forms: ShellForms, direction: Direction) -> Array
 
 def _springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
     """Where supports pull that are elastic, or hold a turn, at what, and how stiffly."""
-    section = segment.section
-    assert section is not None
-    torsion = segment.material.shear_modulus * section.torsion_constant
-    bending: Mapping[Direction, float] = {
-        "z": segment.material.youngs_modulus * section.second_moment_of_area,
-        "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
-    }
     for support in segment.supports:
+        section = segment.section_at(support.x)
+        torsion = segment.material.shear_modulus * section.torsion_constant
+        bending: Mapping[Direction, float] = {
+            "z": segment.material.youngs_modulus * section.second_moment_of_area,
+            "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
+        }
         if support.stiffness is not None:
             yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
             yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
@@ -263,10 +283,11 @@ def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row],
         yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
 
 
-def _holds(space: Any, segment: Segment, section: Section) -> list[Any]:
+def _holds(space: Any, segment: Segment) -> list[Any]:
     """Dirichlet conditions of the rigid supports."""
 
     def at(x: float) -> Callable[[Array], Mask]:
+        section = segment.section_at(x)
         return lambda places: _on_outline(places, section, x)
 
     return [

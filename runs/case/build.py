@@ -29,6 +29,7 @@ from geometry.section import (
     infer_inner_section,
     infer_outer_section,
 )
+from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
@@ -200,7 +201,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
     table = case.segments[index]
     material = material_of(case, index)
     mass, second_moment = _beam_numbers(case, index)
-    rotary = table.rotary_inertia
+    rotary, head = table.rotary_inertia, _head_section(table, index)
     return Segment(
         name=table.name,
         start=ends[0],
@@ -210,11 +211,14 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         second_moment_of_area=second_moment,
         rotary_inertia=material.density * second_moment if rotary is None else rotary,
         section=section,
+        head_section=head,
         load=table.load,
         supports=tuple(_support(support, ends) for support in table.supports),
         viscous_damping=table.viscous_damping,
         masses=_masses(case, index, ends),
-        lateral=_lateral(table, material, section) if _in_space(case) else None,
+        lateral=_lateral(table, material, section and half_way(section, head))
+        if _in_space(case)
+        else None,
         collars=tuple(
             Collar(at(collar.span[0], *ends), at(collar.span[1], *ends), collar.thickness)
             for collar in table.collars
@@ -296,12 +300,12 @@ def _lateral(table: SegmentTable, material: Material, section: Section | None) -
 def _beam_numbers(case: Case, index: int) -> tuple[float, float]:
     """Mass per length in kg/m and second moment in m⁴, given or of the given section."""
     table = case.segments[index]
-    section = _given_section(table, index)
+    section, head = _given_section(table, index), _head_section(table, index)
     mass, second_moment = table.mass_per_length, table.second_moment_of_area
     if section is not None:
         _check_plates(case, index, section)
-        mass = mass or section.mass_per_length(material_of(case, index).density)
-        second_moment = second_moment or section.second_moment_of_area
+        mass = mass or material_of(case, index).density * mean_area(section, head)
+        second_moment = second_moment or half_way(section, head).second_moment_of_area
     if mass is None:
         raise _missing(index, "mass_per_length")
     if second_moment is None:
@@ -344,6 +348,33 @@ def _given_section(table: SegmentTable, index: int) -> Section | None:
         raise BoomError(f"segment[{index + 1}].section", str(error)) from None
 
 
+def _head_section(table: SegmentTable, index: int) -> Section | None:
+    if table.head_section is None:
+        return None
+    where, tail = f"segment[{index + 1}]", _given_section(table, index)
+    if tail is None:
+        raise BoomError(f"{where}.section", "missing; a segment with a head_section tapers from it")
+    for key in _OF_SECTIONS:
+        if getattr(table, key) is not None:
+            raise BoomError(
+                f"{where}.{key}",
+                "of a segment that tapers it follows from the sections; leave it out",
+            )
+    try:
+        head = table.head_section.section()
+        check_alike(tail, head)
+    except SectionError as error:
+        raise BoomError(f"{where}.head_section", str(error)) from None
+    return head
+
+
+# Numbers that change along a segment that tapers.
+_OF_SECTIONS = (
+    "mass_per_length", "second_moment_of_area", "rotary_inertia", "lateral_second_moment_of_area",
+    "lateral_rotary_inertia", "torsion_constant", "polar_inertia",
+)  # fmt: skip
+
+
 def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
     """Given sections, then those of a given ratio, then those that fill the one around them."""
     sections = [_given_section(table, i) for i, table in enumerate(case.segments)]
@@ -355,8 +386,18 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
         for joint in joints:
             outer = sections[joint.outer]
             if sections[joint.inner] is None and outer is not None:
+                _check_plain(case, joint)
                 sections[joint.inner] = _infer(case, joint.inner, (outer, joint.clearance))
     return sections
+
+
+def _check_plain(case: Case, joint: Joint) -> None:
+    outer = case.segments[joint.outer]
+    if outer.head_section is not None:
+        raise BoomError(
+            f"segment[{joint.inner + 1}].section",
+            f"missing, and none is inferred within {outer.name!r}, which tapers; give it",
+        )
 
 
 def _infer(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:

@@ -135,6 +135,11 @@ class SegmentTable(Table):
         description="the table of the plates; unless given a box is inferred from mass and second "
         "moment, with height_to_width, or with the room in the segment around it",
     )
+    head_section: AnySection | None = Field(
+        None,
+        description="the table of the plates at the head, of the section's shape: the segment "
+        "tapers from its section at the tail to this one",
+    )
     load: Annotated[Number, In("N/m")] = Field(
         0.0, description="the uniform load in N/m, positive upwards, applied at t = 0 and kept"
     )

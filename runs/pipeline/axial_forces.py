@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from rich.console import Console
 from rich.table import Table
 
@@ -17,8 +19,15 @@ def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
     """Print the largest force of each segment, and the buckling factor of each model."""
     carried = Table("axial force, pressing", "largest (kN)", "over the plain area (MPa)")
     for segment in boom.segments:
-        force, section = segment.compression.largest, segment.section
-        stress = "unknown" if section is None else f"{force / section.area / MEGA:.4g}"
+        force, pressed = segment.compression.largest, segment.compression
+        stress = "unknown"
+        if segment.section is not None:
+            stresses = (
+                end / segment.section_at(x).area
+                for ends, places in zip(pressed.ends, pairwise(pressed.places), strict=True)
+                for x, end in zip(places, ends, strict=True)
+            )
+            stress = f"{max(stresses, key=abs, default=0.0) / MEGA:.4g}"
         carried.add_row(segment.name, f"{force / KILO:.4g}", stress)
     console.print(carried)
     buckling = Table("joints pressed", "buckling factor", "of the critical forces")

@@ -7,7 +7,9 @@ walls' stresses, so that both are the nominal stress of the same section.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -24,7 +26,7 @@ class Fibres:
 
     Args:
         x: (num_places,) in m.
-        y, z: (num_fibres,) in m.
+        y, z: (num_fibres, num_places) in m.
         rows: (num_fibres, num_places, num_modes) that read the stress of bending in Pa.
         axial: (num_places,) what the normal force adds in Pa.
     """
@@ -41,20 +43,32 @@ class Fibres:
         if segment.section is None or "moment" not in line.rows:
             return None
         spatial = "lateral_moment" in line.rows
-        y, z = outer_corners(segment.section)
-        if not spatial:
-            z, y = np.unique(z), np.zeros(np.unique(z).size)
-        rows = np.multiply.outer(z / segment.second_moment_of_area, line.rows["moment"])
+        there = [segment.local(x) for x in line.x.tolist()]
+        y, z = _corners(segment, line.x, spatial)
+        rows = (z / _each(there, "second_moment_of_area"))[..., None] * line.rows["moment"]
         if spatial:
-            assert segment.lateral is not None
-            share = y / segment.lateral.second_moment_of_area
-            rows += np.multiply.outer(share, line.rows["lateral_moment"])
-        axial = normal_force(segment.compression, line.x) / segment.section.area
+            share = y / _each(there, "lateral.second_moment_of_area")
+            rows += share[..., None] * line.rows["lateral_moment"]
+        axial = normal_force(segment.compression, line.x) / _each(there, "section.area")
         return cls(line.x, y, z, rows, axial)
 
     def stress(self, fibre: int, states: Array) -> Array:
         """(..., num_places) in Pa of modal coordinates (..., num_modes)."""
         return np.asarray(states @ self.rows[fibre].T + self.axial)
+
+
+def _each(segments: Sequence[Segment], number: str) -> Array:
+    return np.array([attrgetter(number)(segment) for segment in segments])
+
+
+def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
+    """(num_fibres, num_places) y and z in m; of a flat boom those that differ in z, at y = 0."""
+    found = np.array([outer_corners(segment.section_at(place)) for place in x.tolist()])
+    y, z = np.moveaxis(found, 0, -1)
+    if spatial:
+        return y, z
+    _, different = np.unique(z[:, 0], return_index=True)
+    return np.zeros_like(z[different]), z[different]
 
 
 def outer_corners(section: Section) -> tuple[Array, Array]:

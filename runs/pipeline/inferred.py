@@ -13,7 +13,7 @@ from rich.table import Table
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NumericsError
 from geometry.boom import Boom, Direction, Joint
-from geometry.walls import free_room
+from geometry.fit import room
 from runs.case import actions
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import JointTable
@@ -63,6 +63,8 @@ def _segments(case: Case, boom: Boom) -> Table:
     table = Table("segment", *shown, "box (mm)")
     for given, segment in zip(case.segments, boom.segments, strict=True):
         box = "unknown" if segment.section is None else str(segment.section)
+        if segment.head_section is not None:
+            box = f"{box} to {segment.head_section}"
         table.add_row(
             segment.name,
             f"{system.of(segment.start, 'm'):g}–{system.of(segment.end, 'm'):g}",
@@ -83,12 +85,12 @@ def _stiffeners(boom: Boom, system: System) -> Table:
         if box is None:
             continue
         for one in segment.collars:
-            area = box.perimeter * (one.end - one.start)
+            area = segment.mean_perimeter(one) * (one.end - one.start)
             place = f"{system.of(one.start, 'm'):g}–{system.of(one.end, 'm'):g}"
             row = _plate(one.thickness, density * area, system)
             table.add_row("collar", segment.name, place, *row)
         for plate in segment.diaphragms:
-            per_thickness = density * box.enclosed_area
+            per_thickness = density * segment.section_at(plate.x).enclosed_area
             row = _plate(plate.thickness, per_thickness, system)
             table.add_row("diaphragm", segment.name, f"{system.of(plate.x, 'm'):g}", *row)
     return table
@@ -105,16 +107,16 @@ def _joints(case: Case, boom: Boom) -> Table:
     table = Table("joint", *lengths, "clearance (mm)", "free (mm)", "friction")
     for given, joint in zip(case.joints, boom.joints, strict=True):
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
-        room = "unknown"
+        free = "unknown"
         if outer.section is not None and inner.section is not None:
-            height, width = free_room(outer.section, inner.section, 2.0 * joint.clearance)
-            room = f"{1e3 * height:.1f} high, {1e3 * width:.1f} wide"
+            height, width = room(joint, outer, inner)
+            free = f"{1e3 * height:.1f} high, {1e3 * width:.1f} wide"
         table.add_row(
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
             "tied" if joint.tied else ", ".join(_clearances(given)),
-            room,
+            free,
             _friction(joint),
         )
     return table

@@ -87,7 +87,7 @@ def _largest_stress(
 ) -> tuple[FibreStress, Array]:
     largest, widest = 0.0, -1.0
     where, history = (0, 0, 0), np.zeros(motions.trajectory.time.size)
-    for fibre in range(fibres.z.size):
+    for fibre in range(len(fibres.z)):
         stress = fibres.stress(fibre, motions.trajectory.states)
         step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
         if abs(stress[step, place]) > abs(largest):
@@ -98,14 +98,14 @@ def _largest_stress(
     fibre, at_step, at_place = where
     still = [
         float(np.abs(fibres.stress(k, motions.positions)).max())
-        for k in range(fibres.z.size)
+        for k in range(len(fibres.z))
         if motions.positions.size
     ]
     told = FibreStress(
         segment=segment.name,
         x=float(fibres.x[at_place]),
-        y=float(fibres.y[fibre]),
-        z=float(fibres.z[fibre]),
+        y=float(fibres.y[fibre, at_place]),
+        z=float(fibres.z[fibre, at_place]),
         stress=largest,
         time=float(motions.trajectory.time[at_step]),
         utilisation=utilisation(segment, largest),

@@ -105,7 +105,7 @@ def _masses(boom: Boom, system: System) -> Table:
     for segment in boom.segments:
         own, carried = segment.mass_per_length * segment.length, segment.masses
         here = own + sum(point.mass for point in carried)
-        middle = own * 0.5 * (segment.start + segment.end)
+        middle = own * segment.mass_middle
         middle += sum(point.mass * point.x for point in carried)
         table.add_row(segment.name, mass(own), mass(here - own), place(middle / here))
         whole, moment = whole + here, moment + middle

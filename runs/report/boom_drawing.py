@@ -181,7 +181,9 @@ def _draw_along(drawing: Drawing, boom: Boom, acts: Sequence[Acting]) -> None:
     axes, larger = drawing.axes, drawing.larger
     margin = MARGIN * boom.length
     axes.set_xlim(boom.segments[0].start - margin, boom.tip + margin)
-    tallest = larger * max(abs(z) for s in boom.segments for z in _reach(s, boom))
+    tallest = larger * max(
+        abs(z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)
+    )
     axes.set_ylim(-2.9 * tallest, 2.6 * tallest)
     axes.grid(False)
     axes.set_yticks([])
@@ -207,42 +209,44 @@ def _draw(drawing: Drawing, boom: Boom, acts: Sequence[Acting], angle: float) ->
     for stop in boom.stops:
         _stop(drawing, boom, stop)
     for act in acts:
-        bottom, top = _reach(boom.segments[act.segment], boom)
-        edge = {"top": top, "bottom": bottom, "axis": 0.0}[act.edge]
-        places = np.array([(x, edge) for x in act.places])
+        places = np.array(
+            [(x, _edge(act.edge, boom.segments[act.segment], boom, x)) for x in act.places]
+        )
         drawing.sign(act.turned(angle), places, act.meaning, act.color)
 
 
 def _segment(drawing: Drawing, boom: Boom, number: int) -> None:
     segment = boom.segments[number]
-    bottom, top = _reach(segment, boom)
     color = _color(number)
-    ends = segment.start, segment.end
-    box = [(x, z) for x, z in zip((*ends, *ends[::-1]), (bottom, bottom, top, top), strict=True)]
+    (bottom, top), (last_bottom, last_top) = (_reach(segment, boom, x) for x in segment.ends)
+    tail, head = segment.ends
+    box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
     drawing.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
     if drawing.whole:
         return
     for collar in segment.collars:
-        for edge in (bottom, top):
-            drawing.line([(collar.start, edge), (collar.end, edge)], color=color, linewidth=2.6)
+        places = collar.start, collar.end
+        for edge in zip(*(_reach(segment, boom, x) for x in places), strict=True):
+            drawing.line([*zip(places, edge, strict=True)], color=color, linewidth=2.6)
     for plate in segment.diaphragms:
-        drawing.line([(plate.x, bottom), (plate.x, top)], color=color, linewidth=1.6)
+        upright = [(plate.x, z) for z in _reach(segment, boom, plate.x)]
+        drawing.line(upright, color=color, linewidth=1.6)
 
 
 def _stations(drawing: Drawing, boom: Boom, joint: Joint) -> None:
     """Bars across what the two segments leave between them, above and below."""
-    outer, inner = (_reach(boom.segments[number], boom) for number in (joint.outer, joint.inner))
+    outer, inner = (boom.segments[number] for number in (joint.outer, joint.inner))
     color = theme.PLAY_FREE if joint.tied else theme.INK
     look: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
     for x in joint.stations:
-        for ends in zip(inner, outer, strict=True):
+        for ends in zip(_reach(inner, boom, x), _reach(outer, boom, x), strict=True):
             drawing.line([(x, z) for z in ends], **look)
     what = "slide pads" if joint.pad else "where segments touch"
     drawing.meanings["tied" if joint.tied else what] = Line2D([], [], **look)
 
 
 def _support(drawing: Drawing, boom: Boom, segment: Segment, support: Support) -> None:
-    bottom, _ = _reach(segment, boom)
+    bottom, _ = _reach(segment, boom, support.x)
     place = np.array([(support.x, -support.depth or bottom)])
     if support.kind == "clamped":
         drawing.sign(symbols.CLAMPED, place * [1.0, 0.0], "clamped")
@@ -269,7 +273,7 @@ def _cylinder(drawing: Drawing, cylinder: Cylinder) -> None:
 
 def _stop(drawing: Drawing, boom: Boom, stop: Stop) -> None:
     play = f"rest, {2e3 * stop.clearance:g} mm of play"
-    reached = _reach(boom.segments[stop.segment], boom)
+    reached = _reach(boom.segments[stop.segment], boom, stop.x)
     sides = ((-1.0, stop.stiffness_below), (1.0, stop.stiffness))
     for (side, stiffness), z in zip(sides, reached, strict=True):
         if stiffness > 0.0:
@@ -281,15 +285,21 @@ def _color(number: int) -> str:
     return theme.PALETTE[number % len(theme.PALETTE)]
 
 
-def _reach(segment: Segment, boom: Boom) -> tuple[float, float]:
-    """z in m of the lower and the upper edge."""
+def _reach(segment: Segment, boom: Boom, x: float) -> tuple[float, float]:
+    """z in m of the lower and the upper edge at x."""
     half = 0.5 * UNKNOWN * boom.length
-    return (-half, half) if segment.section is None else segment.section.reach("z")
+    return (-half, half) if segment.section is None else segment.section_at(x).reach("z")
+
+
+def _edge(name: str, segment: Segment, boom: Boom, x: float) -> float:
+    """z in m of the edge at x on which a sign stands."""
+    bottom, top = _reach(segment, boom, x)
+    return {"top": top, "bottom": bottom, "axis": 0.0}[name]
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
     """(2,) the lowest and the highest place of a boom at an angle in degrees, in m."""
-    ends = [(x, z) for s in boom.segments for x in (s.start, s.end) for z in _reach(s, boom)]
+    ends = [(x, z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)]
     places = np.array([*ends, *(one.ground for one in boom.cylinders)])
     turned = Affine2D().rotate_deg(angle).transform(places)
     return turned.min(axis=0), turned.max(axis=0)
@@ -297,7 +307,7 @@ def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
 
 def _larger(boom: Boom) -> float:
     """By how much heights are drawn larger."""
-    tallest = max(np.ptp(_reach(segment, boom)) for segment in boom.segments)
+    tallest = max(np.ptp(_reach(s, boom, x)) for s in boom.segments for x in s.ends)
     wanted = SECTION_SHARE * LYING * (1.0 + 2.0 * MARGIN) * boom.length / theme.WIDTH / tallest
     return max(1.0, float(f"{wanted:.1g}"))
 
@@ -306,12 +316,10 @@ def _name_segments(drawing: Drawing, boom: Boom) -> None:
     """Above the part of each that is seen, the names of many on two lines."""
     for number, segment in enumerate(boom.segments):
         hidden = boom.segments[number - 1].end if number else segment.start
+        middle = 0.5 * (max(hidden, segment.start) + segment.end)
         drawing.axes.annotate(
             segment.name,
-            (
-                0.5 * (max(hidden, segment.start) + segment.end),
-                drawing.larger * _reach(segment, boom)[1],
-            ),
+            (middle, drawing.larger * _reach(segment, boom, middle)[1]),
             (0, 18 + 12 * (number % 2 if len(boom.segments) > 4 else 0)),
             textcoords="offset points",
             ha="center",

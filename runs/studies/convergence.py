@@ -48,6 +48,7 @@ STUDIES = (
     "supports",
     "second_order",
     "sections",
+    "taper",
 )
 
 

@@ -10,7 +10,8 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from beam_model.finite_element import Theory, finite_element_segments
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system

@@ -66,6 +66,7 @@ class Place:
         if self.steps[0] == "segment":
             return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
+                "head_section",
             }  # fmt: skip
         return self.steps == ("material", "density")
 

@@ -8,14 +8,14 @@ ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from geometry.arrays import Array, Indices
 from geometry.contact_places import Stretch
-from geometry.section import COMPONENT, Direction, Offset
+from geometry.section import COMPONENT, Direction
+from geometry.walls_along import WallsAlong
 from shell_model.cross_section import Row, quadratic
 from shell_model.segment_shell import SegmentShell
 
@@ -48,15 +48,16 @@ class CornerLines:
     """The corners of a segment's section. Collective."""
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._section = shell.section
-        self._lines: Mapping[Offset, _Line] = {}
-        for corner in (plate.start for plate in shell.section.plates):
-            off = np.abs(shell.nodes[:, 1:] - np.array(corner)).max(axis=1)
-            on = off < shell.section.near
+        self._segment = shell.segment
+        self._lines: list[_Line] = []
+        along = WallsAlong(shell.segment, shell.nodes[:, 0])
+        for number in range(len(shell.section.plates)):
+            off = np.abs(shell.nodes[:, 1:] - along.starts(number)).max(axis=1)
+            on = off < along.near
             x = np.concatenate(shell.comm.allgather(shell.nodes[on, 0]))
             dofs = np.concatenate(shell.comm.allgather(shell.node_dofs[on]))
             order = np.argsort(x)
-            self._lines[corner] = _Line(x[order], dofs[order])
+            self._lines.append(_Line(x[order], dofs[order]))
 
     def deflection(self, stretch: Stretch, direction: Direction, y: float, z: float) -> Row:
         """u_z or u_y of a face in m, on the straight line through its two corners.
@@ -71,9 +72,12 @@ class CornerLines:
                 along y the sign of ``y`` tells which one.
         """
         side, across = (z, y) if direction == "z" else (y, z)
-        face = self._section.face(direction, side)
-        plate = self._section.plates[face.plate]
-        first, last = sorted((plate.start, plate.end))
+        section = self._segment.section_at(stretch.station)
+        face = section.face(direction, side)
+        plate, after = section.plates[face.plate], (face.plate + 1) % len(section.plates)
+        first, last = face.plate, after
+        if plate.end < plate.start:
+            first, last = last, first
         middle, half = 0.5 * (face.low + face.high), 0.5 * face.width
         along = (across - middle) / half
         low, high = (self._lines[end].mean(stretch, direction) for end in (first, last))

@@ -120,6 +120,13 @@ def _touch(
 
 
 def _check_line(boom: Boom, line: ContactLine) -> None:
+    for segment in boom.segments:
+        if line == "surface" and segment.head_section is not None:
+            raise BoomError(
+                "contact_line",
+                f"'surface' lets parallel walls touch, and {segment.name!r} tapers; give 'near "
+                "webs', or 'across'",
+            )
     if boom.spatial and line == "across":
         raise BoomError(
             "contact_line",

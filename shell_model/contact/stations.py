@@ -49,7 +49,9 @@ def across(pad: Pad, inner: WallPoints, outer: WallPoints) -> Touch:
     """A station of a flat boom over the width of the inner section's faces. Collective."""
     points = []
     for side in _SIDES:
-        for y, weight in zip(*_half_gauss(inner.section.face("z", side).width), strict=True):
+        for y, weight in zip(
+            *_half_gauss(inner.segment.section_at(pad.x).face("z", side).width), strict=True
+        ):
             rows = (
                 walls.mean(Wall("z", side), *_line(stretch, y), "z")
                 for walls, stretch in zip((inner, outer), pad.pressed, strict=True)
@@ -107,7 +109,7 @@ def _mean_approach(
 ) -> Reading:
     """Mean of u − w over a patch: read the other way round, a uniform pressure on both walls."""
     x, along = gauss(patch.start, patch.end, _POINTS)
-    near, far = patch.across(inner.section.face(pad.direction, side))
+    near, far = patch.across(inner.segment.section_at(pad.x).face(pad.direction, side))
     y, over = gauss(half * near, half * far, _POINTS)
     places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
     weights = np.outer(along, over).ravel()

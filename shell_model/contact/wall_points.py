@@ -14,6 +14,7 @@ import numpy as np
 
 from geometry.arrays import Array, Indices
 from geometry.section import COMPONENT, Direction
+from geometry.walls_along import WallsAlong
 from shell_model import compat
 from shell_model.cross_section import Row
 from shell_model.segment_shell import SegmentShell
@@ -51,17 +52,18 @@ class WallPoints:
     """The triangles of a segment's walls with their nodes. Collective.
 
     Attributes:
-        section: whose walls these are.
+        segment: whose walls these are.
     """
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._comm, self.section = shell.comm, shell.section
+        self._comm, self.segment = shell.comm, shell.segment
         displacement, to_parent = shell.space.sub(0).collapse()
         local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
         rows = shell.space.dofmap.index_map.local_to_global(local.ravel())
         self._dofs = np.asarray(rows, dtype=np.int64).reshape(-1, 3)
         self._places = compat.node_places(displacement)
         self._cells = compat.cell_nodes(displacement)
+        self._along = WallsAlong(shell.segment, self._places[:, 0])
 
     def rows(self, wall: Wall, places: Array, direction: Direction) -> list[Row]:
         """A row for each place, the same on every rank. Collective.
@@ -92,9 +94,9 @@ class WallPoints:
 
     def _near(self, wall: Wall, x: Array) -> Indices:
         """(num_cells, 6) nodes of the wall's triangles that may hold places at these x."""
-        margin = self.section.near
-        plate = self.section.plates[self.section.face(wall.normal, wall.side).plate]
-        flat = plate.distance(self._places[:, 1:]) < margin
+        margin = self._along.near
+        plate = self.segment.widest.face(wall.normal, wall.side).plate
+        flat = self._along.distance(plate, self._places[:, 1:]) < margin
         along = self._places[self._cells[:, :3], 0]
         close = (along.max(axis=1) >= x.min() - margin) & (along.min(axis=1) <= x.max() + margin)
         return np.asarray(self._cells[flat[self._cells].all(axis=1) & close])

@@ -190,8 +190,18 @@ class MovingShell:
         """
         mine = self.members(segment)
         _, y, z = self.points[mine].T
-        mine = mine[(np.abs(y) < SAME_PLACE) & (side * z > (side * z).max() - SAME_PLACE)]
-        return np.asarray(mine[self.points[mine, 0].argsort()])
+        mine = mine[(np.abs(y) < SAME_PLACE) & (side * (z - self.middle(segment)) > 0.0)]
+        x, _, z = self.points[mine].T
+        order = np.lexsort([side * z, x.round(6)])
+        outermost = np.diff(x[order], append=np.inf) > SAME_PLACE
+        return np.asarray(mine[order][outermost])
+
+    def half_between(self, segment: int, overlap: Overlap) -> float:
+        """Half of how tall a segment's section is in the middle of an overlap's stations, in m."""
+        x = float(np.mean(self.motion["station"].values[overlap.stations]))
+        lines = [self.points[self.flange_in_plane(segment, side)] for side in (-1, 1)]
+        low, high = (float(np.interp(x, line[:, 0], line[:, 2])) for line in lines)
+        return 0.5 * (high - low)
 
     def change_of_shape(self, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
         """(num_points + 1, 2) y and z in m once around a section, and how they change.
@@ -244,9 +254,9 @@ class MovingShell:
         """(num_segments,) of y and z; every inner segment makes room for the play around it."""
         factors = np.full(int(self.segment.max()) + 1, section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
-            around = factors[overlap.outer] * self.half_height(overlap.outer)
+            outer, inner = (self.half_between(n, overlap) for n in (overlap.outer, overlap.inner))
             room = scale * overlap.clearance + section * self.wall(overlap)
-            factors[overlap.inner] = (around - room) / self.half_height(overlap.inner)
+            factors[overlap.inner] = (factors[overlap.outer] * outer - room) / inner
         return factors
 
     def _at_points(self, of_segments: Array) -> Array:

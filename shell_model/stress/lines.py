@@ -9,15 +9,12 @@ over the area, divided by the length.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.sparse import csr_matrix
 
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array, Indices
 from shell_model.stress.stresses import ShellStress
-
-Walls = npt.NDArray[np.int32]
 
 # Bands of a segment, at most.
 _BANDS = 60
@@ -50,8 +47,9 @@ def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) ->
     band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
     moved = _moved(shell, fields, triangles, band, cuts.size - 1)
     corners = fields["points"].values[fields["triangles"].values[triangles]]
-    reaches = _reaches(corners, shell.wall[triangles])
-    forces = _forces(shell, number, triangles, band, np.diff(cuts), reaches)
+    part = band * len(shell.plates[number]) + shell.wall[triangles]
+    reaches = _reaches(corners, part)
+    forces = _forces(shell, number, triangles, band, part, np.diff(cuts), reaches)
     forces = forces @ fields[f"coordinates_{number + 1}"].values
     rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[1], "moment": forces[2]}
     if spatial:
@@ -111,13 +109,13 @@ def _moved(
     )
 
 
-def _reaches(corners: Array, wall: Walls) -> tuple[Array, Array]:
-    """(num_walls,) how far each wall reaches along z and along y in m."""
+def _reaches(corners: Array, part: Indices) -> tuple[Array, Array]:
+    """(num_parts,) how far a wall reaches along z and along y in m within each band."""
     found = []
     for way in (2, 1):
-        low, high = np.full((2, int(wall.max()) + 1), [[np.inf], [-np.inf]])
-        np.minimum.at(low, wall, corners[..., way].min(axis=1))
-        np.maximum.at(high, wall, corners[..., way].max(axis=1))
+        low, high = np.full((2, int(part.max()) + 1), [[np.inf], [-np.inf]])
+        np.minimum.at(low, part, corners[..., way].min(axis=1))
+        np.maximum.at(high, part, corners[..., way].max(axis=1))
         found.append(high - low)
     return found[0], found[1]
 
@@ -127,25 +125,25 @@ def _forces(
     number: int,
     triangles: Indices,
     band: Indices,
+    part: Indices,
     lengths: Array,
     reaches: tuple[Array, Array],
 ) -> Array:
     """(6, num_bands, num_own) N, V, M, lateral V and M, torque for a unit of each coordinate."""
     strength = shell.thickness[triangles] * shell.areas[triangles] / lengths[band]
     y, z = shell.centroids[triangles, 1:].T
-    across, up = shell.outward[triangles, 1:].T
+    slope, across, up = shell.outward[triangles].T
     # s, x and the normal n are right-handed.
     s_y, s_z = up, -across
     own = shell.thickness[triangles] * strength / 6.0
     within_z, within_y = (
-        _within(shell.wall[triangles], reach, band, strength, place)
-        for reach, place in zip(reaches, (z, y), strict=True)
+        _within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
     )
     weights = (
         {0: strength},
-        {2: s_z * strength},
+        {2: s_z * strength, 0: -slope * up * strength},
         {0: strength * z + within_z, 3: up * own},
-        {2: s_y * strength},
+        {2: s_y * strength, 0: -slope * across * strength},
         {0: strength * y + within_y, 3: across * own},
         {2: strength * (y * s_z - z * s_y)},
     )
@@ -162,20 +160,18 @@ def _forces(
     return np.array(found)
 
 
-def _within(wall: Walls, reach: Array, band: Indices, strength: Array, place: Array) -> Array:
+def _within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
     """(num_triangles,) what a stress that is linear up a wall adds to its centroids' moment, in m³.
 
     Args:
-        wall: (num_triangles,) of each triangle.
-        reach: (num_walls,) from end to end in m.
-        band: (num_triangles,) of each triangle.
+        part: (num_triangles,) wall within a band of each triangle.
+        reach: (num_parts,) of walls from end to end in m.
         strength: (num_triangles,) thickness times width in m².
         place: (num_triangles,) of the centroids in m.
     """
-    part = band * reach.size + wall
     whole = np.bincount(part, strength)
     about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
     second = np.bincount(part, strength * about**2)[part]
-    flat = reach[wall] < _SAME_PLACE
-    missing = whole[part] * reach[wall] ** 2 / 12.0 - second
+    flat = reach[part] < _SAME_PLACE
+    missing = whole[part] * reach[part] ** 2 / 12.0 - second
     return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))

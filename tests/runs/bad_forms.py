@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from tests.runs.coarse_case import CONTACT
 
+BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"
+
 FORMS = {
     "unknown key": (
         "duration = 0.6",
@@ -60,6 +62,22 @@ FORMS = {
         "section = { shape = 'polygon', corners = [[0, 0], [1, 0], [0.4, 0.4], [0, 1]], "
         "thicknesses = [0.01, 0.01, 0.01, 0.01] }",
         "segment[1].section: corner 3 turns inwards; plates go once around, every corner outwards",
+    ),
+    "box to be inferred within a taper": (
+        "height_to_width = 1.5",
+        f"{BOX}\nhead_section = {{ height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }}",
+        "segment[2].section: missing, and none is inferred within 'outer', which tapers; give it",
+    ),
+    "head without a section": (
+        "height_to_width = 1.5",
+        "head_section = { height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }",
+        "segment[1].section: missing; a segment with a head_section tapers from it",
+    ),
+    "unknown key at the head": (
+        "height_to_width = 1.5",
+        f"{BOX}\nhead_section = {{ height = 0.4, width = 0.3, flange = 0.0065, wall = 0.0065 }}",
+        "segment[1].head_section.wall: unknown key; known ones are shape, height, width, flange, "
+        "web",
     ),
     "facets without end": (
         "height_to_width = 1.5",

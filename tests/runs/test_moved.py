@@ -8,11 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beam_model.finite_element import finite_element_segments
+from beam_model.lines import lines
+from beam_model.segment_model import gap_system
+from dynamics.excitation import Step
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.fibres import outer_corners
+from runs.pipeline.fibres import Fibres, outer_corners
 from runs.pipeline.run import run_case, silent
 from runs.pipeline.summary import Summary
 
@@ -99,3 +105,28 @@ def test_outer_corners_lie_on_the_outer_surfaces() -> None:
     y, z = outer_corners(six)
     assert np.abs(z).max() == pytest.approx(0.203)
     assert 0.15 < np.abs(y).max() < 0.153
+
+
+def test_fibres_of_a_taper_are_those_of_the_local_section() -> None:
+    """Reference: by hand, −P/A and M z/J of boxes of 0.4, 0.3 and 0.2 m under 10 kN and 1 N."""
+    tail, head = (BoxSection(height, 0.2, 0.01, 0.008) for height in (0.4, 0.2))
+    steel = Material(2.1e11, 0.3, 7850.0)
+    clamp = Support(0.0, "clamped")
+    arm = Segment.of_section("arm", 0.0, 8.0, steel, tail, head_section=head, supports=(clamp,))
+    (arm,) = with_compression([arm], [], [Thrust(0, 8.0, 1e4)])
+    boom = Boom((arm,), (), (Load(0, "z", -1.0, 8.0, Step()),))
+    models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=False)
+    system = gap_system(boom, models, ()).gathered()
+    (line,) = lines(boom, models)
+    fibres = Fibres.of(arm, line)
+    assert fibres is not None
+    state = system.static_response(system.load)
+    for x, height in ((4.0, 0.3), (2.0, 0.35)):
+        box, at = BoxSection(height, 0.2, 0.01, 0.008), int(np.argmax(line.x == x))
+        assert fibres.axial[at] == pytest.approx(-1e4 / box.area, rel=1e-12)
+        top = int(fibres.z[:, at].argmax())
+        assert fibres.z[top, at] == pytest.approx(0.5 * height + 0.005, rel=1e-12)
+        bending = (8.0 - x) * (0.5 * height + 0.005) / box.second_moment_of_area
+        found = fibres.stress(top, state)[at] - fibres.axial[at]
+        # Second order adds to the moment of the load.
+        assert found == pytest.approx(bending, rel=0.02)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from dynamics.gap_system import GapSystem
-from geometry.boom import Boom
+from geometry.boom import Boom, Segment
 from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import Section
+from geometry.section import BoxSection, Section
 from geometry.unequal_box import UnequalBox
 from runs import cli
 from runs.case.build import build_boom
@@ -147,3 +147,47 @@ def test_check_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert "500 x 320 x 8 / 6" in printed
     assert "26.0 high" in printed
     assert "29.0 wide" in printed
+
+
+def _tapering(head: str, own: str = "", inner: str = BOXES[1]) -> str:
+    outer = "{ height = 0.6, width = 0.5, flange = 0.008, web = 0.006 }"
+    return written([f"{outer}\nhead_section = {head}{own}", inner])
+
+
+def test_a_segment_tapers_to_its_head() -> None:
+    """Reference: other code, the segment made in Python of both sections."""
+    case = load(_tapering("{ height = 0.52, width = 0.45, flange = 0.006, web = 0.006 }"))
+    outer, _ = build_boom(case).segments
+    tail, head = BoxSection(0.6, 0.5, 0.008, 0.006), BoxSection(0.52, 0.45, 0.006, 0.006)
+    made = Segment.of_section(
+        "outer", outer.start, outer.end, outer.material, tail, head_section=head
+    )
+    assert (outer.section, outer.head_section) == (tail, head)
+    assert outer.mass_per_length == pytest.approx(made.mass_per_length, rel=1e-12)
+    assert outer.second_moment_of_area == made.second_moment_of_area
+    assert outer.section_at(outer.end).size("z") == pytest.approx(0.52, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("head", "own", "message"),
+    [
+        (
+            "{ shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
+            "bottom = 0.01, web = 0.01 }",
+            "",
+            "segment[1].head_section: has other shapes than the one at the tail; a segment tapers "
+            "between sections of one kind",
+        ),
+        (
+            "{ height = 0.52, width = 0.45, flange = 0.006, web = 0.006 }",
+            "\ntorsion_constant = 1e-3",
+            "segment[1].torsion_constant: of a segment that tapers it follows from the sections; "
+            "leave it out",
+        ),
+    ],
+)
+def test_no_other_head_is_one(head: str, own: str, message: str) -> None:
+    """Reference: the message."""
+    with pytest.raises(BadInput) as fault:
+        load(_tapering(head, own))
+    assert str(fault.value) == f"case.toml: {message}"

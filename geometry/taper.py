@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Sections between the two ends of a segment that tapers, each number on a straight line."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from geometry.section import Section, SectionError
+
+
+def between(tail: Section, head: Section, part: float) -> Section:
+    """The section at a part of the way from the tail's to the head's.
+
+    >>> from geometry.taper import between
+    >>> deep = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.006)
+    >>> between(deep, replace(deep, height=0.2), 0.25).height
+    0.35
+
+    Args:
+        tail, head: alike, see :func:`check_alike`.
+        part: from 0 at the tail to 1 at the head.
+    """
+    shape: Any = tail
+    mixed = {
+        one.name: _mixed(getattr(tail, one.name), getattr(head, one.name), part)
+        for one in fields(shape)
+    }
+    return type(shape)(**mixed)  # type: ignore[no-any-return]
+
+
+def _mixed(tail: Any, head: Any, part: float) -> Any:
+    if isinstance(tail, tuple):
+        return tuple(_mixed(one, other, part) for one, other in zip(tail, head, strict=True))
+    return tail + part * (head - tail)
+
+
+def check_alike(tail: Section, head: Section) -> None:
+    """Whether a segment can taper from one section to another.
+
+    Raises:
+        SectionError: they differ in kind: in shape, plates, faces or mirrors.
+    """
+    for what, one, other in (
+        ("shapes", type(tail), type(head)),
+        ("plates", [plate.name for plate in tail.plates], [plate.name for plate in head.plates]),
+        ("faces", *([face[:3] for face in section.faces] for section in (tail, head))),
+        ("mirrors", tail.mirrors, head.mirrors),
+    ):
+        if one != other:
+            raise SectionError(
+                f"has other {what} than the one at the tail; a segment tapers between sections of "
+                "one kind"
+            )
+    for quarter in (1, 2, 3):
+        between(tail, head, 0.25 * quarter)
+
+
+def half_way(section: Section, head: Section | None) -> Section:
+    """Of a segment that tapers from one section to another, if it does."""
+    return section if head is None else between(section, head, 0.5)
+
+
+def areas(tail: Section, head: Section) -> tuple[float, float, float]:
+    """At the tail, half-way and at the head in m²; a parabola through them is a box's area."""
+    return tail.area, half_way(tail, head).area, head.area
+
+
+def mean_area(section: Section, head: Section | None) -> float:
+    """Along a segment that tapers from one section to another, if it does, in m²."""
+    if head is None:
+        return section.area
+    tail, middle, last = areas(section, head)
+    return (tail + 4.0 * middle + last) / 6.0

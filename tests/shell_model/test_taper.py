@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells that taper follow their beams."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from beam_model.finite_element import finite_element_segments
+from beam_model.segment_model import gap_system
+from dynamics.excitation import Step
+from dynamics.motion import Motion
+from dynamics.splitting import integrate
+from geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
+from geometry.load import Load
+from geometry.profiles import hexagon, u_section
+from geometry.section import COMPONENT, BoxSection, Section
+from geometry.taper import mean_area
+from geometry.unequal_box import UnequalBox
+from runs.studies.sections import LAW, STEEL
+from shell_model.boom_shell import ShellOptions, assemble_segments
+from shell_model.contact.rows import gap_rows
+from shell_model.contact.surface import SurfaceOptions
+from shell_model.reduced_shell import reduce_boom
+from shell_model.stress.lines import lines
+
+ENDS: Mapping[str, tuple[Section, Section]] = {
+    "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
+    "wider head": (BoxSection(0.25, 0.2, 0.006, 0.006), BoxSection(0.4, 0.3, 0.008, 0.006)),
+    "unequal box": (
+        UnequalBox(0.4, 0.3, 0.006, 0.010, 0.006, 0.006),
+        UnequalBox(0.22, 0.25, 0.006, 0.008, 0.005, 0.005),
+    ),
+    "hexagon": (
+        hexagon(0.40, 0.36, 0.2, 0.0065, 0.0065, 0.0065),
+        hexagon(0.25, 0.26, 0.15, 0.005, 0.005, 0.005),
+    ),
+    "U": (
+        u_section(0.40, 0.34, 0.12, 3, top=0.008, bottom=0.006, web=0.006),
+        u_section(0.25, 0.24, 0.08, 3, top=0.006, bottom=0.005, web=0.005),
+    ),
+}
+CLAMP = Support(0.0, "clamped")
+
+
+def cantilever(shape: str) -> Boom:
+    tail, head = ENDS[shape]
+    arm = Segment.of_section(
+        "arm",
+        0.0,
+        8.0,
+        STEEL,
+        tail,
+        head_section=head,
+        supports=(CLAMP,),
+        diaphragms=(Diaphragm(8.0, 0.006),),
+    )
+    return Boom((arm,), (), (Load(0, "z", 1.0, 8.0, Step()),))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ENDS)
+def test_it_bends_as_its_beam(shape: str) -> None:
+    """Reference: other code, Timoshenko elements: the tip within 1 %; the taper of one wall's
+    thickness forgotten would be several.
+    """
+    boom = cantilever(shape)
+    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
+    tips = []
+    for system in (
+        gap_system(boom, models, ()),
+        reduce_boom(boom, [], ShellOptions(mesh_size=0.1), MPI.COMM_SELF).system,
+    ):
+        (load,) = system.excitations
+        tips.append(float(system.observers["tip"].row @ system.static_response(load.load)))
+    beam, shell = tips
+    assert shell == pytest.approx(beam, rel=1.0e-2)
+
+
+@pytest.mark.parametrize("shape", ENDS)
+def test_its_walls_stand_where_the_section_is(shape: str) -> None:
+    """Reference: by hand. All nodes lie on the section at their x; the walls' mass is that of the
+    beam; a uniform load of 1 N/m is as much on each half, the weight is not.
+    """
+    boom = cantilever(shape)
+    (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
+    segment, mesh = boom.segments[0], shell.mesh
+    assert mesh is not None
+    points, walls = mesh.points, np.unique(mesh.triangles[mesh.on_walls])
+    for point in points[walls]:
+        assert segment.section_at(point[0]).on_plates(point[None, 1:]).all()
+    rigid = np.zeros_like(shell.free, dtype=float)
+    rigid[shell.node_dofs[:, 2]] = 1.0
+    whole = shell.uniform("z", None)
+    first = shell.uniform("z", (0.0, 3.0)) @ rigid
+    second = shell.uniform("z", (3.0, 8.0)) @ rigid
+    held = 3.0 - first
+    # What acts on the clamped outline is not there.
+    assert 0.0 < held < 0.1
+    assert second == pytest.approx(5.0, rel=1e-3)
+    assert whole @ rigid == pytest.approx(8.0 - held, rel=1e-3)
+    far = shell.nodes[:, 0] > 4.0
+    beyond = np.zeros_like(rigid)
+    beyond[shell.node_dofs[far, 2]] = 1.0
+    felt = segment.mass_per_length * (shell.plain_loads["z"] @ beyond)
+    weight = 7850.0 * 4.0 * mean_area(segment.section_at(4.0), segment.section_at(8.0))
+    assert felt == pytest.approx(weight, rel=2e-2)
+
+
+def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
+    outer, inner = ENDS["box"][0], BoxSection(0.30, 0.22, 0.006, 0.005)
+    loads = [STEEL.density * one.area for one in (outer, inner)]
+    return Boom(
+        (
+            Segment.of_section(
+                "outer", 0.0, 6.0, STEEL, outer,
+                head_section=BoxSection(0.34, 0.26, 0.008, 0.006), load=loads[0],
+                supports=(CLAMP,),
+            ),
+            Segment.of_section(
+                "inner", 5.0, 10.0, STEEL, inner,
+                head_section=BoxSection(0.18, 0.14, 0.004, 0.004), load=loads[1],
+            ),
+        ),
+        (Joint(0, 1, (5.0, 6.0), clearance=4e-3, pad=pad, lateral_clearance=lateral),),
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lateral", [None, 5e-3])
+def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
+    """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
+    boom = tapered_boom(None, lateral)
+    law = [replace(LAW, clearance=4e-3)]
+    sides = [replace(LAW, clearance=5e-3)] if lateral else []
+    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
+    shell = reduce_boom(
+        boom, law, ShellOptions(0.1, contact_tolerance=0.02), MPI.COMM_SELF, lateral_laws=sides
+    )
+    beam, found = (
+        float(np.abs(integrate(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max())
+        for system in (gap_system(boom, models, law, sides), shell.system)
+    )
+    assert found == pytest.approx(beam, rel=0.02)
+
+
+@pytest.mark.slow
+def test_its_section_forces_are_those_of_statics() -> None:
+    """Reference: by hand, 1 kN at the tip: M = −1000 s and V = 1000 N; without what the inclined
+    flanges carry across, the shear force of the webs would be 60 % of it.
+    """
+    boom = cantilever("box")
+    shell = reduce_boom(boom, [], ShellOptions(mesh_size=0.1), MPI.COMM_SELF)
+    assert shell.fields is not None
+    (line,) = lines(shell.fields, spatial=False)
+    (load,) = shell.system.excitations
+    found = line.read(1000.0 * shell.system.static_response(load.load))
+    inside = (line.x > 0.8) & (line.x < 7.2)
+    s = 8.0 - line.x[inside]
+    np.testing.assert_allclose(found["moment"][inside], -1000.0 * s, rtol=0.01)
+    np.testing.assert_allclose(found["shear"][inside], 1000.0, rtol=0.02)
+
+
+@pytest.mark.parametrize("lateral", [None, 5e-3])
+@pytest.mark.parametrize("pad", [None, PadSize(0.12, 0.05)])
+def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -> None:
+    """Reference: by hand. Moved by 1 m along z or y, all of the inner segment approaches by 1 m;
+    turned in that plane about x = 0 by 1 rad, by x of the pad, inwards of the overlap's ends.
+    """
+    boom = tapered_boom(pad, lateral)
+    shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
+    laws = {"z": [LAW], "y": [LAW]}
+    rows = gap_rows(boom, shells, laws, "near webs", SurfaceOptions())
+    inner = shells[1]
+    directions = [boom.stations[contact.station][1] for contact in rows.contacts]
+    assert len(directions) == (4 if lateral is None else 16)
+    places = [boom.stations[contact.station][0] for contact in rows.contacts]
+    reach = 0.06 if pad else 0.0
+    for contact, direction, place in zip(rows.contacts, directions, places, strict=True):
+        moved, turned = np.zeros((2, inner.free.size))
+        column = inner.node_dofs[:, COMPONENT[direction]]
+        moved[column], turned[column] = 1.0, inner.nodes[:, 0]
+        row = inner.row(contact.reading[1])
+        assert row @ moved == pytest.approx(1.0, rel=1e-9)
+        assert row @ turned == pytest.approx(place + (reach if place == 5.0 else -reach), rel=1e-9)
+
+
+def test_surfaces_are_parallel() -> None:
+    """Reference: the message."""
+    boom = tapered_boom(None, None)
+    options = ShellOptions(mesh_size=0.4, contact_line="surface")
+    with pytest.raises(BoomError, match="'surface' lets parallel walls touch, and 'outer' tapers"):
+        reduce_boom(boom, [LAW], options, MPI.COMM_SELF)
