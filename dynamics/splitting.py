@@ -17,15 +17,23 @@ exact over any time.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array
-from dynamics.contact import Limits
+from dynamics.arrays import Array, Indices
+from dynamics.closed_contacts import ClosedContacts, closable, pressing
+from dynamics.contact import Limits, Terms, contact_limits, contact_terms
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.kernels.compiled import SUMS
-from dynamics.kernels.contact_kicks import contact_energy, contact_forces, elastic_kick
+from dynamics.kernels.contact_kicks import (
+    add_closed_forces,
+    contact_energy,
+    contact_forces,
+    elastic_kick,
+    law_forces,
+)
 from dynamics.kernels.decay import Damping, damp, damping_arrays, drag, kept_after
 from dynamics.kernels.integrator_state import (
     CHANGES,
@@ -46,13 +54,35 @@ from dynamics.kernels.integrator_state import (
     system_arrays,
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
-from dynamics.kernels.modal_flow import ModalFlow, modal_energy, move, tabulate, travel
+from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, move, tabulate, travel
 from dynamics.motion import Motion
 from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
 
-# How many steps may be made at once while nothing touches.
+# How many steps may be made at once while nothing touches, and while contacts stay closed, which
+# dashpots and the recorded peaks want told more finely.
 STRIDES = np.array([1, 8, 64, 512])
+_CLOSED_STRIDES = np.array([1, 4, 16, 64, 256, 1024])
+
+# Part of a contact's force by which its peak may pass what the ends of strides tell.
+_UNTOLD = 0.01
+
+
+@njit(**SUMS)
+def _reach(
+    a: Array, v: Array, omega2: Array, load: Array, now: Array, then: Array, reach: Array
+) -> None:
+    """Speeds that swinging modes do not exceed while nothing touches.
+
+    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
+    under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
+    than the change over ω.
+    """
+    for i in range(a.size):
+        if omega2[i] > 0.0:
+            off = a[i] - (load[i] + now[i]) / omega2[i]
+            growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
+            reach[i] = np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth
 
 
 @njit(**SUMS)
@@ -65,20 +95,14 @@ def _closing_bounds(
     then: Array,
     rows: Array,
     duration: float,
+    reach: Array,
     bounds: Array,
 ) -> None:
     """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
 
-    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
-    under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
-    than the change over ω. Rigid modes fall; those that tip over do so by cosh κt, κ² = −ω².
+    Rigid modes fall; those that tip over do so by cosh κt, κ² = −ω².
     """
-    reach = np.empty(a.size)
-    for i in range(a.size):
-        if omega2[i] > 0.0:
-            off = a[i] - (load[i] + now[i]) / omega2[i]
-            growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
-            reach[i] = np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth
+    _reach(a, v, omega2, load, now, then, reach)
     for j in range(rows.shape[0]):
         swing = 0.0
         speed = 0.0
@@ -95,11 +119,38 @@ def _closing_bounds(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _stride(y: Array, limits: Limits, bounds: Array, step: float, left: int, count: int) -> int:
-    """Position in ``STRIDES`` of the most steps, up to ``left``, that no gap can shut within.
+def _telling(
+    reach: Array,
+    omega2: Array,
+    rows: Array,
+    stiffness: Array,
+    pressed: Array,
+    step: float,
+    strides: Indices,
+) -> int:
+    """How many of the ``strides`` tell the peaks of closed contacts at their ends.
 
-    One of the first ``count``.
+    Between samples T apart a swing of amplitude p passes what they tell by no more than
+    p min(1, (ωT)²/8); all modes together by no more than ``_UNTOLD`` of the force.
     """
+    for s in range(1, strides.size):
+        time = strides[s] * step
+        for j in range(rows.shape[0]):
+            beyond = 0.0
+            for i in range(reach.size):
+                if stiffness[j] != 0.0 and omega2[i] > 0.0:
+                    part = min(1.0, omega2[i] * time * time / 8.0)
+                    beyond += part * abs(rows[j, i]) * reach[i] / np.sqrt(omega2[i])
+            if stiffness[j] * beyond > _UNTOLD * abs(pressed[j]):
+                return s
+    return strides.size
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stride(
+    y: Array, limits: Limits, bounds: Array, step: float, left: int, strides: Indices
+) -> int:
+    """Position in ``strides`` of the most steps, up to ``left``, that no gap can shut within."""
     free = float(left)
     for j in range(y.size):
         reach = bounds[j] * step
@@ -107,7 +158,7 @@ def _stride(y: Array, limits: Limits, bounds: Array, step: float, left: int, cou
             free = min(free, (limits[j]["high"] - y[j]) / reach)
             free = min(free, (y[j] - limits[j]["low"]) / reach)
     stride = 0
-    while stride + 1 < count and STRIDES[stride + 1] <= free:
+    while stride + 1 < strides.size and strides[stride + 1] <= free:
         stride += 1
     return stride
 
@@ -115,21 +166,29 @@ def _stride(y: Array, limits: Limits, bounds: Array, step: float, left: int, cou
 @njit(cache=True, nogil=True, error_model="numpy")
 def _march(
     state: State,
+    strides: Indices,
     flows: Array,
     system: System,
+    springs: tuple[Array, Array, Terms, Limits],
     damping: Damping,
     dry: Dry,
     excitations: Excitations,
     space: Space,
     step: float,
     substeps: int,
+    steady: bool,
     out: tuple[Array, ...],
-) -> None:
-    """Advance by ``len(out[0])`` output intervals and record each.
+) -> int:
+    """Advance by up to ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces), one
     row an interval; velocities may have no columns. ``flows`` has one (9, num_modes) for each of
-    the ``STRIDES`` that may be made, with the rates of damping.
+    the ``strides`` that may be made, with the rates of damping. ``springs`` are the
+    stiffness and the preload (num_rows,) of closed contacts, which are in the modes, and the terms
+    and limits of all laws.
+
+    Gives how many intervals were made: all of them, or, where that is ``steady``, those up to the
+    end of one in which something pressed and nothing opened or closed.
     """
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
     omega2, load, rows, terms, limits = system
@@ -137,23 +196,29 @@ def _march(
     friction_rows, given, _, _ = dry
     loads, _, spans, parts, straight, pushes = excitations
     now, _, then = pushes
+    stiffness, preload, laws, touch = springs
     states, velocities, energies, gaps, means, peaks, frictions = out
-    bounds = np.zeros(y.size)
+    bounds, telling = np.zeros(y.size), strides
+    place, reach = np.zeros((2, a.size))
     piece, undamped = np.zeros((2, *flows[0].shape))
     faded, none = np.zeros(rates.size), np.zeros(a.size)
     tabulate(undamped, omega2, load, none, step)
     kept_after(rates, 0.25 * step, faded)
     dragged = np.zeros((len(flows), dashpot_rates.size))
     for stride in range(len(flows)):
-        kept_after(dashpot_rates, 0.5 * STRIDES[stride] * step, dragged[stride])
+        kept_after(dashpot_rates, 0.5 * strides[stride] * step, dragged[stride])
     damped, dragging = rates.size > 0, dashpot_rates.size > 0
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
-    single = (given[0] * given[1]).any() or straight.max() < STRIDES[1]
+    single = (given[0] * given[1]).any() or straight.max() < strides[1]
     lossy = friction.size > 0 or limits["damping"].any()
-    touching = force.any()
+    touching, closed = force.any(), stiffness.any()
+    pressed = force
+    if closed:
+        pressed = np.zeros(y.size)
+        law_forces(y, laws, pressed)
     for interval in range(states.shape[0]):
-        start = a.copy()
+        start, changes = a.copy(), tally[CHANGES]
         mean[:] = 0.0
         peak[:] = 0.0
         friction[:] = 0.0
@@ -167,9 +232,15 @@ def _march(
                 if not flying:
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
-                    _closing_bounds(a, v, omega2, load, now, then, rows, substeps * step, bounds)
-                stride = _stride(y, limits, bounds, step, until - done, len(flows))
-            flying = not (touching or lossy) and done + STRIDES[stride] < until
+                    _closing_bounds(
+                        a, v, omega2, load, now, then, rows, substeps * step, reach, bounds
+                    )
+                    telling = strides
+                    if closed:
+                        count = _telling(reach, omega2, rows, stiffness, pressed, step, strides)
+                        telling = strides[:count]
+                stride = _stride(y, limits, bounds, step, until - done, telling)
+            flying = not (touching or lossy) and done + strides[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(
                     state, system, damping, dry, excitations, space, step,
@@ -178,8 +249,8 @@ def _march(
                 touching = force.any()
                 continue
             before[:] = y
-            time = STRIDES[stride] * step
-            first, last = parts[k], parts[k + STRIDES[stride]]
+            time = strides[stride] * step
+            first, last = parts[k], parts[k + strides[stride]]
             # The damped flow is exact where nothing presses.
             apart = damped and touching
             within = damped and not touching
@@ -188,29 +259,41 @@ def _march(
                 tally[DAMPING] += damp(v, faded, directions, dragged[0])
             elif dragging:
                 tally[DAMPING] += drag(v, directions, dragged[stride])
+            striding = closed and stride > 0
             if touching:
                 elastic_kick(v, rows, force, 0.5 * step)
+            if touching or (closed and not striding):
                 for j in range(y.size):
-                    mean[j] += 0.5 * force[j] / substeps
+                    mean[j] += 0.5 * pressed[j] / substeps
             if stride == 0 and last > first + 1:
                 for p in range(first, last):
                     tabulate(piece, omega2, load, rates if within else none, spans[p])
                     excite(excitations, p, p + 1, 0.0, 1.0)
                     travel(a, v, piece, spans[p], omega2, load, within, now, then, tally)
-            elif excited or within:
-                excite(excitations, first, last, 0.0, 1.0)
-                travel(a, v, flow, time, omega2, load, within, now, then, tally)
             else:
-                move(a, v, flow)
+                if excited:
+                    excite(excitations, first, last, 0.0, 1.0)
+                if striding:
+                    share = strides[stride] / substeps
+                    mean_place(a, v, flow, time, omega2, load, now, then, place)
+                    add_closed_forces(place, rows, stiffness, preload, share, mean)
+                if excited or within:
+                    travel(a, v, flow, time, omega2, load, within, now, then, tally)
+                else:
+                    move(a, v, flow)
             touching = contact_forces(a, rows, terms, y, force)
-            done += STRIDES[stride]
-            enter(y, before, limits, time, tally)
+            done += strides[stride]
+            enter(y, before, touch, time, tally)
             if touching:
                 elastic_kick(v, rows, force, 0.5 * step)
+            if closed:
+                law_forces(y, laws, pressed)
+            if touching or closed:
                 for j in range(y.size):
-                    mean[j] += 0.5 * force[j] / substeps
-                    if abs(force[j]) > abs(peak[j]):
-                        peak[j] = force[j]
+                    if not striding:
+                        mean[j] += 0.5 * pressed[j] / substeps
+                    if abs(pressed[j]) > abs(peak[j]):
+                        peak[j] = pressed[j]
             if apart:
                 tally[DAMPING] += damp(v, faded, directions, dragged[0])
             elif dragging:
@@ -227,6 +310,53 @@ def _march(
         energies[interval, 0], energies[interval, 1] = modal_energy(a, v, omega2)
         energies[interval, 2] = contact_energy(y, terms)
         energies[interval, 3:] = tally[WORK:]
+        if steady and touching and tally[CHANGES] == changes:
+            return interval + 1
+    return len(states)
+
+
+@dataclass(frozen=True, slots=True)
+class _Steps:
+    """Steps of a system while some of its contacts are closed, as the compiled loop takes them."""
+
+    contacts: ClosedContacts
+    strides: Indices
+    flows: Array
+    system: System
+    damping: Damping
+    dry: Dry
+    space: Space
+    step: float
+
+    @classmethod
+    def of(cls, contacts: ClosedContacts, step: float) -> _Steps:
+        system = contacts.system
+        damping = damping_arrays(system)
+        longest = DRAGGED / (step * damping[2].max(initial=0.0) + 1.0e-300)
+        strides = _CLOSED_STRIDES if contacts.any else STRIDES
+        strides = strides[max(1.0, longest) >= strides]
+        flows = np.array([ModalFlow.over(system, stride * step).stacked() for stride in strides])
+        arrays = (*system_arrays(system)[:3], contacts.terms, contacts.limits)
+        space = space_for(system, damping)
+        return cls(contacts, strides, flows, arrays, damping, friction_arrays(system), space, step)
+
+    def march(
+        self, state: State, first: int, substeps: int, steady: bool, out: tuple[Array, ...]
+    ) -> int:
+        """Advance from the step ``first`` as :func:`_march` does."""
+        contacts, step = self.contacts, self.step
+        times = step * np.arange(first, first + len(out[0]) * substeps + 1)
+        laws = contacts.opened.laws
+        springs = contacts.stiffness, contacts.preload, contact_terms(laws), contact_limits(laws)
+        before = state[3].copy()
+        contacts.enter(state)
+        made: int = _march(
+            state, self.strides, self.flows, self.system, springs, self.damping, self.dry,
+            excitation_arrays(contacts.system, times, step), self.space, step, substeps, steady,
+            out,
+        )  # fmt: skip
+        contacts.leave(state, before, tuple(array[:made] for array in out))
+        return made
 
 
 def integrate(
@@ -255,11 +385,6 @@ def integrate(
     h = output_step / substeps
     state = initial_state(system, a, v)
     y, tally = state[3], state[6]
-    arrays, dry, damping = system_arrays(system), friction_arrays(system), damping_arrays(system)
-    space = space_for(system, damping)
-    longest = DRAGGED / (h * damping[2].max(initial=0.0) + 1.0e-300)
-    strides = STRIDES[max(1.0, longest) >= STRIDES]
-    flows = np.array([ModalFlow.over(system, stride * h).stacked() for stride in strides])
 
     f = len(system.frictions)
     states, frictions = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, f))
@@ -276,15 +401,20 @@ def integrate(
     # What the loads give within one step.
     least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
     chunk = max(1, outputs // 100)
-    for begin in range(1, outputs + 1, chunk):
-        part = slice(begin, min(begin + chunk, outputs + 1))
-        times = h * np.arange((part.start - 1) * substeps, (part.stop - 1) * substeps + 1)
-        out = tuple(array[part] for array in recorded)
-        excitations = excitation_arrays(system, times, h)
-        _march(state, flows, arrays, damping, dry, excitations, space, h, substeps, out)
-        check_energy(energies[: part.stop], h, energy_bound, least)
+    # Impacts keep their steps, which run back as they came.
+    linear = closable(system) & pressing(system, y).any()
+    known: dict[bytes, _Steps] = {}
+    done = 0
+    while done < outputs:
+        closed = linear & pressing(system, y)
+        if closed.tobytes() not in known:
+            known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), h)
+        out = tuple(array[1 + done : 1 + min(done + chunk, outputs)] for array in recorded)
+        steps = known[closed.tobytes()]
+        done += steps.march(state, done * substeps, substeps, bool(linear.any()), out)
+        check_energy(energies[: 1 + done], h, energy_bound, least)
         if progress is not None:
-            progress((part.stop - 1) / outputs)
+            progress(done / outputs)
     return Trajectory.record(
         system,
         time=output_step * np.arange(outputs + 1),

@@ -29,6 +29,14 @@ def contact_forces(a: Array, rows: Array, terms: Terms, y: Array, force: Array) 
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def law_forces(y: Array, terms: Terms, force: Array) -> None:
+    """Fill in the elastic forces of every row at the gaps y (num_rows,) in m."""
+    force[:] = 0.0
+    for t in range(terms.size):
+        force[terms[t]["row"]] += term_force(terms[t], y[terms[t]["row"]])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def contact_energy(y: Array, terms: Terms) -> float:
     """Potential of the elastic forces in J."""
     energy = 0.0
@@ -45,6 +53,19 @@ def elastic_kick(v: Array, rows: Array, force: Array, duration: float) -> None:
             impulse = duration * force[j]
             for i in range(v.size):
                 v[i] -= rows[j, i] * impulse
+
+
+@njit(**SUMS)
+def add_closed_forces(
+    a: Array, rows: Array, stiffness: Array, preload: Array, share: float, force: Array
+) -> None:
+    """Add to ``force`` (num_rows,) in N the part ``share`` of what closed contacts press with."""
+    for j in range(rows.shape[0]):
+        if stiffness[j] != 0.0:
+            y = 0.0
+            for i in range(a.size):
+                y += rows[j, i] * a[i]
+            force[j] += share * (stiffness[j] * y - preload[j])
 
 
 @njit(**SUMS)

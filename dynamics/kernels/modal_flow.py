@@ -184,6 +184,24 @@ def _driven_move(
     return work
 
 
+@njit(**SUMS)
+def mean_place(
+    a: Array,
+    v: Array,
+    flow: Array,
+    time: float,
+    omega2: Array,
+    load: Array,
+    now: Array,
+    then: Array,
+    mean: Array,
+) -> None:
+    """Fill in where the modes are in the mean while they move under a load from now to then."""
+    for i in range(a.size):
+        mean[i] = (1.0 - omega2[i] * flow[7, i]) * a[i] + flow[6, i] / time * v[i]
+        mean[i] += flow[7, i] * (load[i] + now[i]) + flow[8, i] * (then[i] - now[i])
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def travel(
     a: Array,
