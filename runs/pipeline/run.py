@@ -26,6 +26,7 @@ from runs.folder.cache import Cache
 from runs.folder.versions import versions
 from runs.pipeline import answering, members
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.beam_output import BeamOutput
 from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
@@ -53,10 +54,11 @@ HALVINGS = 2
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Results, and by the model's name what each shell leaves."""
+    """Results, and by the model's name what each shell and each beam leaves."""
 
     results: Results
     shells: dict[str, ShellOutput]
+    beams: dict[str, BeamOutput]
 
 
 class Stages:
@@ -106,6 +108,7 @@ def run_case(
     outcomes: dict[str, Finished] = {}
     answered: dict[str, ModelAnswers] = {}
     shells: dict[str, ShellOutput] = {}
+    beams: dict[str, BeamOutput] = {}
     failures: dict[str, str] = {}
     first_failure = None
     for number, model in enumerate(case.models, start=1):
@@ -122,9 +125,11 @@ def run_case(
         except _SharedFailure as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         if outcome is not None:
-            outcomes[model.name], shell, answered[model.name] = outcome
-            if shell is not None:
-                shells[model.name] = shell
+            outcomes[model.name], left, answered[model.name] = outcome
+            if isinstance(left, ShellOutput):
+                shells[model.name] = left
+            else:
+                beams[model.name] = left
     if not first_rank:
         return None
     if first_failure is not None and not outcomes:
@@ -149,7 +154,7 @@ def run_case(
             values.attrs.update(data[name].attrs)
     summary.answers = answering.of_run(boom, case, answered)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
-    return Run(Results(case, data, summary, ensembles), shells)
+    return Run(Results(case, data, summary, ensembles), shells, beams)
 
 
 # What a model's numbers may lead to.
@@ -180,7 +185,7 @@ def _run_model(
     progress: Progress,
     cache: Cache | None,
     kept: Cache | None,
-) -> tuple[Finished, ShellOutput | None, ModelAnswers] | None:
+) -> tuple[Finished, ShellOutput | BeamOutput, ModelAnswers] | None:
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
@@ -219,7 +224,7 @@ def _run_model(
     with stages.stage("answers"):
         answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
     summary.seconds = stages.seconds
-    return moved, shell, answers
+    return moved, shell or BeamOutput.of(model.lines(boom, built), moved.trajectory), answers
 
 
 def _move(

@@ -28,6 +28,7 @@ def render(
     figures: Sequence[Figure],
     snapshots: Sequence[Figure],
     readings: Sequence[TextTable] = (),
+    viewer: str = "",
 ) -> str:
     """The report as HTML: every picture and script inside, no resource from elsewhere.
 
@@ -37,6 +38,7 @@ def render(
         figures: on disk.
         snapshots: on disk.
         readings: tables of a survey of the case's readings.
+        viewer: file beside the report, in which the boom can be turned.
 
     Where plotly is not installed the pictures of curves stand alone.
     """
@@ -67,6 +69,7 @@ def render(
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         case=case,
+        viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",
         models=models,

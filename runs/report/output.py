@@ -5,14 +5,16 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from runs.case import toml
+from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
 from runs.folder.files import beside, whole
@@ -29,9 +31,13 @@ from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
 from runs.report.document import render
+from runs.report.extruded import of_beam
+from runs.report.figure_context import leading
 from runs.report.figures import draw
+from runs.report.moving_surface import MOST_POINTS, MovingSurface
 from runs.report.tables import TextTable
 from runs.report.verdict import Verdict
+from runs.report.viewer import VIEWER, viewer
 from shell_model.pictures.field_series import series_times, write_field_series
 from shell_model.pictures.rendering import RenderingUnavailable
 
@@ -113,11 +119,27 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
             mesh.write(meshes / f"{segment}.vtu")
             gmsh_file = mesh_folder / name / f"{segment}.msh"
             shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
+    surface = _surface(run, fields) if find_spec("plotly") else None
+    if surface is not None:
+        _write_text(folder / VIEWER, viewer(results.case, surface))
     try:
         snapshots.draw_snapshots(results, fields, folder)
     except RenderingUnavailable as reason:
         results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
     write_report(results, verdicts, folder)
+
+
+def _surface(run: Run, fields: Mapping[str, xr.Dataset]) -> MovingSurface | None:
+    """The first shell in motion, or the beam that is read first; none of a finer mesh."""
+    results = run.results
+    for shell in fields.values():
+        if shell.sizes["point"] > MOST_POINTS:
+            return None
+        return MovingSurface.of_shell(shell, results.trajectories.sel(model=shell.attrs["model"]))
+    first = leading(results.case, list(run.beams))
+    with_play = [m.name for m in results.ran if m.name in first and not m.play_free]
+    name = [*first, *with_play][-1]
+    return of_beam(build_boom(results.case), name, run.beams[name])
 
 
 def write_report(
@@ -141,7 +163,8 @@ def write_report(
     (folder / FIGURES).mkdir()
     figures = draw(results, folder / FIGURES)
     pictures = snapshots.describe(results, folder)
-    _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed))
+    there = VIEWER if (folder / VIEWER).is_file() else ""
+    _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed, there))
 
 
 def _write_text(path: Path, text: str) -> None:
