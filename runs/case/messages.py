@@ -40,6 +40,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "start": schema.StartTable,
     "velocity": schema.VelocityTable,
     "damping": schema.DampingTable,
+    "life": schema.LifeTable,
     **SHAPES,
     **KINDS,
 }

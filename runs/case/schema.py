@@ -320,6 +320,20 @@ class DampingTable(Table):
     )
 
 
+class LifeTable(Table):
+    """What the stresses of a run are held against for fatigue."""
+
+    detail_category: Annotated[Positive, In("1")] | None = Field(
+        None,
+        description="the detail category of the worst weld after EN 1993-1-9, its number: 71 for "
+        "71 N/mm^2; without it ranges are counted, and no damage",
+    )
+    partial_factor: Annotated[Positive, In("1")] = Field(
+        1.0, description="the factor gamma_Ff gamma_Mf by which stress ranges count larger"
+    )
+    repeats: Count = Field(1, description="how often in a life the motion of the run comes")
+
+
 if TYPE_CHECKING:
     Model = ModelTable
 else:
@@ -392,6 +406,9 @@ class Case(Table):
     )
     damping: DampingTable = Field(
         DampingTable.model_validate({}), description="the table of the boom's damping"
+    )
+    life: LifeTable = Field(
+        LifeTable.model_validate({}), description="the table of what fatigue is judged by"
     )
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
         alias="model", description="the models to run, one [[model]] each"

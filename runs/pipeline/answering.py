@@ -19,6 +19,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.answers import Answers, AtRest, Mode, ModelAnswers, ModesBeside
 from runs.pipeline.at_rest import NUMERICS, at_rest, positions
 from runs.pipeline.comparisons import reference_of
+from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
 from runs.pipeline.moved import Motions, wall_stresses
 from runs.pipeline.shell_output import ShellOutput
@@ -64,6 +65,7 @@ def of_model(
         # Their shapes are those of the pressed boom to the eye.
         tied_modes=[replace(mode, shapes=[]) for mode in tied.modes],
         moved=replace(motions.told, walls=walls),
+        life=[life(one, case.life) for one in motions.varying] if COUNTS else [],
     )
 
 

@@ -285,6 +285,36 @@ class Moved:
 
 
 @dataclass(frozen=True, slots=True)
+class Life:
+    """What the stress of a segment's outer fibre does to a detail there, where it varies most.
+
+    Args:
+        segment: its name.
+        x, y, z: where, in m.
+        cycles: how many are counted in the run, of whatever range.
+        largest: range in Pa.
+        equivalent: the range in Pa that, once in a run, does as much as all of them at a slope
+            of 3.
+        ranges: (num_classes) the middles of classes of ranges in Pa, rising, and
+        counts: how many cycles each has.
+        damage: of the run, of the case's detail category; None without one.
+        life_damage: of as many runs as the case tells.
+    """
+
+    segment: str
+    x: float
+    y: float
+    z: float
+    cycles: float
+    largest: float
+    equivalent: float
+    ranges: list[float]
+    counts: list[float]
+    damage: float | None
+    life_damage: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class ModelAnswers:
     """Of one model.
 
@@ -295,6 +325,7 @@ class ModelAnswers:
         modes: the first ones at rest under the loads of t = 0; none where it has no rest.
         tied_modes: of what ``tied`` is of, without their shapes.
         moved: over the run.
+        life: of each segment whose section is known, where cycles can be counted.
     """
 
     rests: list[AtRest] = field(default_factory=list)
@@ -302,6 +333,7 @@ class ModelAnswers:
     modes: list[Mode] = field(default_factory=list)
     tied_modes: list[Mode] = field(default_factory=list)
     moved: Moved | None = None
+    life: list[Life] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,6 +28,14 @@ from runs.pipeline.fibres import Fibres
 from runs.pipeline.results import place_names
 
 
+class Varying(NamedTuple):
+    """The stress of a segment at (x, y, z) in m, (num_times,) in Pa."""
+
+    segment: str
+    at: tuple[float, float, float]
+    stress: Array
+
+
 @dataclass(frozen=True, slots=True)
 class Motions:
     """A motion, and the rests that it is held against.
@@ -57,19 +65,20 @@ class Motions:
                 for segment, line in zip(self.boom.segments, self.lines, strict=True)
             ],
             peaks=[*_observed(self), *_section_peaks(self)],
-            fibres=[stress for stress, _ in self.largest_stresses],
+            fibres=[_largest_stress(*of, self) for of in self._fibres()],
             walls=[],
         )
 
     @property
-    def largest_stresses(self) -> list[tuple[FibreStress, Array]]:
-        """Of each segment where it is largest, and (num_times,) in Pa where it varies most."""
-        found = []
+    def varying(self) -> list[Varying]:
+        """The stress of each segment where it varies most."""
+        return [_varying(*of, self.trajectory.states) for of in self._fibres()]
+
+    def _fibres(self) -> Iterator[tuple[Segment, Fibres]]:
         for segment, line in zip(self.boom.segments, self.lines, strict=True):
             fibres = Fibres.of(segment, line)
             if fibres is not None:
-                found.append(_largest_stress(segment, fibres, self))
-        return found
+                yield segment, fibres
 
 
 def _envelope(segment: Segment, line: Line, states: Array) -> Envelope:
@@ -82,36 +91,39 @@ def _envelope(segment: Segment, line: Line, states: Array) -> Envelope:
     )
 
 
-def _largest_stress(
-    segment: Segment, fibres: Fibres, motions: Motions
-) -> tuple[FibreStress, Array]:
-    largest, widest = 0.0, -1.0
-    where, history = (0, 0, 0), np.zeros(motions.trajectory.time.size)
+def _largest_stress(segment: Segment, fibres: Fibres, motions: Motions) -> FibreStress:
+    trajectory, largest, where = motions.trajectory, 0.0, (0, 0, 0)
     for fibre in range(len(fibres.z)):
-        stress = fibres.stress(fibre, motions.trajectory.states)
+        stress = fibres.stress(fibre, trajectory.states)
         step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
         if abs(stress[step, place]) > abs(largest):
             largest, where = float(stress[step, place]), (fibre, int(step), int(place))
-        ranges = np.ptp(stress, axis=0)
-        if ranges.max() > widest:
-            widest, history = float(ranges.max()), stress[:, ranges.argmax()].copy()
     fibre, at_step, at_place = where
     still = [
         float(np.abs(fibres.stress(k, motions.positions)).max())
         for k in range(len(fibres.z))
         if motions.positions.size
     ]
-    told = FibreStress(
+    return FibreStress(
         segment=segment.name,
         x=float(fibres.x[at_place]),
         y=float(fibres.y[fibre, at_place]),
         z=float(fibres.z[fibre, at_place]),
         stress=largest,
-        time=float(motions.trajectory.time[at_step]),
+        time=float(trajectory.time[at_step]),
         utilisation=utilisation(segment, largest),
         at_rest=max(still, default=None),
     )
-    return told, history
+
+
+def _varying(segment: Segment, fibres: Fibres, states: Array) -> Varying:
+    found = []
+    for fibre in range(len(fibres.z)):
+        stress = fibres.stress(fibre, states)
+        place = int(np.ptp(stress, axis=0).argmax())
+        at = float(fibres.x[place]), float(fibres.y[fibre, place]), float(fibres.z[fibre, place])
+        found.append(Varying(segment.name, at, stress[:, place].copy()))
+    return max(found, key=lambda one: float(np.ptp(one.stress)))
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:

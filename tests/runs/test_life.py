@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cycles are counted as the standard counts them, and do what its curves say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rainflow", reason="the cycles are counted by it")
+
+from runs.case.schema import LifeTable
+from runs.pipeline.life import counted, endurance, life
+from runs.pipeline.moved import Varying
+
+
+def test_cycles_are_those_of_the_standard() -> None:
+    """Reference: external. The example of ASTM E1049-85, figure 6: one half and three halves of 3
+    and 4, a half of 6, one of 8, a half of 9.
+    """
+    found = counted([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
+    expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+    assert dict(zip(found.sizes.tolist(), found.counts.tolist(), strict=True)) == expected
+
+
+def test_a_curve_has_the_points_of_the_code() -> None:
+    """Reference: external. EN 1993-1-9, 7.1: category 71 bears 2e6 cycles of 71 N/mm², 5e6 of
+    0.737, 1e8 of 0.549 of these, by hand 52.3 and 28.7 N/mm²; less does nothing.
+    """
+    sizes = 1e6 * np.array([142.0, 71.0, 52.31, 40.0, 28.74, 28.70])
+    expected = [2e6 / 8.0, 2e6, 5e6, 5e6 * (52.31 / 40.0) ** 5, 1e8, np.inf]
+    np.testing.assert_allclose(endurance(sizes, 71e6), expected, rtol=1e-3)
+
+
+def test_a_sine_does_what_its_cycles_do() -> None:
+    """Reference: by hand. Ten cycles of 100 MPa at category 71 and a factor 1.15: the damage of a
+    run 10/2e6 (115/71)³, that of a life 1000 times as much, the equivalent range 10^⅓ 100 MPa.
+    """
+    time = np.linspace(0.0, 10.0, 10 * 400 + 1)
+    stress = 50e6 * np.cos(2.0 * np.pi * time)
+    table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=1000)
+    found = life(Varying("arm", (2.0, 0.0, 0.1), stress), table)
+    assert (found.segment, found.x, found.z) == ("arm", 2.0, 0.1)
+    assert found.cycles == pytest.approx(10.0)
+    assert found.damage == pytest.approx(10.0 / 2e6 * (115.0 / 71.0) ** 3, rel=1e-9)
+    assert found.life_damage == pytest.approx(1000.0 * found.damage)
+    assert found.equivalent == pytest.approx(100e6 * 10.0 ** (1.0 / 3.0), rel=1e-9)
+    assert found.counts[-1] == pytest.approx(10.0)
+    assert sum(found.counts) == pytest.approx(found.cycles)
+
+
+def test_without_a_category_ranges_are_counted_alone() -> None:
+    still = life(Varying("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
+    assert (still.cycles, still.largest, still.equivalent, still.damage) == (0.0, 0.0, 0.0, None)
