@@ -22,8 +22,11 @@ from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
 from runs.pipeline.moved import Motions, wall_stresses
+from runs.pipeline.play import added
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
+from runs.pipeline.summary import Summary
+from runs.pipeline.trust import known
 
 
 class Resting(NamedTuple):
@@ -89,21 +92,31 @@ def _tied(boom: Boom, model: Model, duration: float) -> Resting:
     return _resting(boom.play_free, system.gathered(), lines, duration)
 
 
-def of_run(boom: Boom, case: Case, models: Mapping[str, ModelAnswers]) -> Answers:
-    """What all of them answer together."""
+def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:
+    """What all of them answer together.
+
+    Args:
+        boom: of the case.
+        case: of the run.
+        summary: of the run, without answers.
+        models: those that ran.
+    """
     found = statics(case, boom)
-    return Answers(
+    ran = [model for model in case.models if model.name in models]
+    answers = Answers(
         models=dict(models),
         reactions=[] if found is None else reactions(boom, found.played),
         tied_reactions=[] if found is None else reactions(boom.play_free, found.tied),
-        modes=_beside(boom, case, models),
+        modes=_beside(boom, ran, models),
+        play=added(ran, models) if boom.joints else [],
     )
+    return replace(answers, trust=known(summary, answers, case.time.duration))
 
 
-def _beside(boom: Boom, case: Case, models: Mapping[str, ModelAnswers]) -> ModesBeside | None:
-    with_modes = [
-        model for model in case.models if model.name in models and models[model.name].modes
-    ]
+def _beside(
+    boom: Boom, ran: Sequence[Model], models: Mapping[str, ModelAnswers]
+) -> ModesBeside | None:
+    with_modes = [model for model in ran if models[model.name].modes]
     reference = reference_of(with_modes)
     others = [m.name for m in with_modes if not m.play_free and m.name != reference]
     if reference is None or not others:

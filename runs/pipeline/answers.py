@@ -337,6 +337,66 @@ class ModelAnswers:
 
 
 @dataclass(frozen=True, slots=True)
+class Added:
+    """What play adds to a number.
+
+    Args:
+        what: as of :class:`Peak`, or ``deflection at rest``, ``first frequency``, ``stress``.
+        where: the place; empty where it is of the whole boom.
+        unit: of the SI.
+        played, tied: the number with play and without, by its absolute value.
+    """
+
+    what: str
+    where: str
+    unit: str
+    played: float
+    tied: float
+
+    @property
+    def added(self) -> float:
+        """In the unit."""
+        return self.played - self.tied
+
+    @property
+    def share(self) -> float | None:
+        """Of the number without play; None where that is nothing."""
+        return self.added / self.tied if self.tied else None
+
+
+@dataclass(frozen=True, slots=True)
+class PlayAdds:
+    """What play adds in one model.
+
+    Args:
+        model: with play.
+        beside: the case's own model without play, whose motion is the other one; None where there
+            is none, and rests and frequencies alone are known.
+        alike: whether that one differs by the play alone.
+        numbers: rests and frequencies beside those of the same model without play (of a shell
+            those of Timoshenko elements), then those of the motions.
+    """
+
+    model: str
+    beside: str | None
+    alike: bool
+    numbers: list[Added]
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """How far numbers can be trusted: one line.
+
+    Args:
+        what: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
+        line: says it.
+    """
+
+    what: str
+    line: str
+
+
+@dataclass(frozen=True, slots=True)
 class Answers:
     """Of a run.
 
@@ -346,9 +406,13 @@ class Answers:
             where there is no rest.
         tied_reactions: the same without play.
         modes: of the models side by side; None where fewer than two have any.
+        play: of each model with play.
+        trust: how far to trust them.
     """
 
     models: dict[str, ModelAnswers]
     reactions: list[Reaction] = field(default_factory=list)
     tied_reactions: list[Reaction] = field(default_factory=list)
     modes: ModesBeside | None = None
+    play: list[PlayAdds] = field(default_factory=list)
+    trust: list[Known] = field(default_factory=list)

@@ -152,7 +152,7 @@ def run_case(
         ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
         for name, values in ensembles.data_vars.items():
             values.attrs.update(data[name].attrs)
-    summary.answers = answering.of_run(boom, case, answered)
+    summary.answers = answering.of_run(boom, case, summary, answered)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Run(Results(case, data, summary, ensembles), shells, beams)
 

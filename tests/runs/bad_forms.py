@@ -39,6 +39,16 @@ FORMS = {
         "segment[1].section.shape: must be 'box', 'unequal box', 'polygon', 'hexagon', 'octagon' "
         "or 'U', got 'star'",
     ),
+    "category that is none": (
+        "[material]",
+        "[life]\ndetail_category = 0.0\n\n[material]",
+        "life.detail_category: must be above 0, got 0.0",
+    ),
+    "unknown key of a life": (
+        "[material]",
+        "[life]\ncategory = 71.0\n\n[material]",
+        "life.category: unknown key; known ones are detail_category, partial_factor, repeats",
+    ),
     "missing key of a hexagon": (
         "height_to_width = 1.5",
         "section = { shape = 'hexagon', height = 0.5, width = 0.3, top = 0.01, bottom = 0.01, "

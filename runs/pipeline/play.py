@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What play adds: every number of a boom beside that of the same boom tied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from runs.case.schema import Model
+from runs.pipeline.answers import Added, ModelAnswers, PlayAdds
+
+
+def added(models: list[Model], answers: Mapping[str, ModelAnswers]) -> list[PlayAdds]:
+    """Of each model with play.
+
+    Args:
+        models: of the case, those that ran.
+        answers: of each.
+    """
+    tied = next((model for model in models if model.play_free), None)
+    return [
+        PlayAdds(
+            model.name,
+            None if tied is None else tied.name,
+            tied is not None and (model.kind, model.describe()) == (tied.kind, tied.describe()),
+            [
+                *_at_rest(answers[model.name]),
+                *(() if tied is None else _in_motion(model, answers, answers[tied.name])),
+            ],
+        )
+        for model in models
+        if not model.play_free
+    ]
+
+
+def _at_rest(own: ModelAnswers) -> Iterator[Added]:
+    tied = {rest.time: rest for rest in own.tied}
+    both = [(rest, tied[rest.time]) for rest in own.rests if rest.time in tied]
+    if both:
+        rest, other = max(both, key=lambda pair: abs(pair[0].tip))
+        yield Added("deflection at rest", "tip", "m", abs(rest.tip), abs(other.tip))
+    if own.modes and own.tied_modes:
+        first = own.modes[0]
+        alike = (mode.frequency for mode in own.tied_modes if mode.way == first.way)
+        yield Added("first frequency", first.way, "Hz", first.frequency, next(alike, 0.0))
+
+
+def _in_motion(
+    model: Model, answers: Mapping[str, ModelAnswers], tied: ModelAnswers
+) -> Iterator[Added]:
+    own = answers[model.name]
+    if own.moved is None or tied.moved is None:
+        return
+    others = {(peak.what, peak.where): peak.largest for peak in tied.moved.peaks}
+    for peak in own.moved.peaks:
+        # What a series lacks of a moment at a kink is no effect of play.
+        bends = model.smooth and peak.what == "bending moment"
+        if (named := (peak.what, peak.where)) in others and not bends:
+            yield Added(*named, peak.unit, peak.largest, others[named])
+    if model.smooth:
+        return
+    stresses = {fibre.segment: abs(fibre.stress) for fibre in tied.moved.fibres}
+    for fibre in own.moved.fibres:
+        if fibre.segment in stresses:
+            here = abs(fibre.stress), stresses[fibre.segment]
+            yield Added("stress", fibre.segment, "Pa", *here)
+    damages = {life.segment: life.life_damage for life in tied.life}
+    for life in own.life:
+        other = damages.get(life.segment)
+        if life.life_damage is not None and other is not None:
+            yield Added("damage", life.segment, "1", life.life_damage, other)
