@@ -42,7 +42,7 @@ FORMS = {
     "category that is none": (
         "[material]",
         "[life]\ndetail_category = 0.0\n\n[material]",
-        "life.detail_category: must be above 0, got 0.0",
+        "life.detail_category: must be a number greater than 0, got 0.0",
     ),
     "unknown key of a life": (
         "[material]",
