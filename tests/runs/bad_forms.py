@@ -47,7 +47,7 @@ FORMS = {
     "unknown key of a life": (
         "[material]",
         "[life]\ncategory = 71.0\n\n[material]",
-        "life.category: unknown key; known ones are detail_category, partial_factor, repeats",
+        "life.category: unknown key; the nearest known one is detail_category",
     ),
     "missing key of a hexagon": (
         "height_to_width = 1.5",
