@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
@@ -33,21 +31,6 @@ from shell_model.verification.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 
 _SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)
-
-_SHORT_MOTION = """
-import json
-from dataclasses import replace
-from mpi4py import MPI
-from shell_model.boom_shell import ShellOptions, assemble_boom
-from shell_model.verification.unreduced import integrate_directly
-from tests.shell_model.booms import LAW, flat_boom
-comm = MPI.COMM_WORLD
-law = replace(LAW, stiffness=1.0e9, exponent=1.0)
-full = assemble_boom(flat_boom(friction=0.2), {"z": [law]}, ShellOptions(1.0), comm)
-motion = integrate_directly(full, 0.1, 5.0e-4)
-if comm.rank == 0:
-    print(json.dumps([comm.size, motion.observed["tip"].tolist(), motion.energy_residual]))
-"""
 
 
 def _dense(matrix: PETSc.Mat) -> Array:
@@ -207,20 +190,6 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     assert (np.abs(motion.contact_forces).max(axis=0) > 0.0).any()
     assert pushed.sum(axis=0) == pytest.approx(given, rel=2.0e-3)
     assert motion.energy_residual < 1.0e-3
-
-
-@pytest.mark.slow
-def test_two_ranks_give_the_serial_motion(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> None:
-    """Reference: the serial run, to 1e-9 of the range."""
-    done = two_ranks(_SHORT_MOTION)
-    assert done.returncode == 0, done.stderr
-    ranks, tip, residual = json.loads(done.stdout.strip().splitlines()[-1])
-    serial = integrate_directly(_full(flat_boom(friction=0.2), 1.0), 0.1, 5.0e-4)
-    assert ranks == 2
-    assert np.abs(tip - serial.observed["tip"]).max() < 1.0e-9 * np.ptp(tip)
-    assert residual == pytest.approx(serial.energy_residual, rel=1.0e-3)
 
 
 @pytest.mark.parametrize(

@@ -13,14 +13,16 @@ import pytest
 from mpi4py import MPI
 
 from dynamics.failure import NumericsError
-from shell_model.boom_shell import ShellOptions
+from shell_model.boom_shell import ShellOptions, assemble_boom
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.reduction.symmetry import together
 from shell_model.verification.eigenmodes import natural_frequencies
+from shell_model.verification.unreduced import integrate_directly
 from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import box_shell
+from tests.shell_model.test_surface_contact import compliances
 
 pytestmark = pytest.mark.slow
 
@@ -42,6 +44,9 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
         "frequencies": frequencies(comm),
         "spatial": spatial(comm),
         "rubbing": rubbing(comm),
+        "pressed": compliances(comm),
+        "stresses": stresses(comm),
+        "moved": moved(comm),
         "told": failure(comm),
     }
 
@@ -74,6 +79,25 @@ def rubbing(comm: MPI.Comm) -> dict[str, Any]:
         **{f"observer {name}": observer.row for name, observer in system.observers.items()},
     }
     return {name: part.tolist() for name, part in parts.items()}
+
+
+def stresses(comm: MPI.Comm) -> list[Any]:
+    """Of the outer segment at rest under its load, on rank 0."""
+    shell = reduce_boom(flat_boom(), [LAW], ShellOptions(0.5), comm)
+    if shell.fields is None:
+        return []
+    own = shell.fields["coordinates_1"].values
+    state = own @ shell.system.load / (own @ shell.system.omega2)
+    found: list[Any] = np.tensordot(state, shell.fields["stress_1"].values, axes=1).tolist()
+    return found
+
+
+def moved(comm: MPI.Comm) -> dict[str, Any]:
+    """The unreduced shell with friction."""
+    law = replace(LAW, stiffness=1.0e9, exponent=1.0)
+    full = assemble_boom(flat_boom(friction=0.2), {"z": [law]}, ShellOptions(1.0), comm)
+    motion = integrate_directly(full, 0.1, 5.0e-4)
+    return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}
 
 
 def failure(comm: MPI.Comm) -> list[str] | None:
@@ -139,6 +163,26 @@ def test_ranks_give_the_serial_motion(
     assert np.count_nonzero(serial["friction_rows"]) > 0
     assert two_ranks["rubbing"] == serial
     assert four == serial
+
+
+def test_two_ranks_find_the_same_points(two_ranks: dict[str, Any]) -> None:
+    """Reference: the serial run."""
+    assert two_ranks["pressed"] == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
+
+
+def test_two_ranks_recover_the_serial_stresses(two_ranks: dict[str, Any]) -> None:
+    """Reference: the serial run."""
+    expected = np.array(stresses(MPI.COMM_SELF))
+    assert np.abs(expected).max() > 1.0e4
+    assert np.abs(two_ranks["stresses"] - expected).max() < 1e-4 * np.abs(expected).max()
+
+
+def test_two_ranks_give_the_serial_motion_of_all(two_ranks: dict[str, Any]) -> None:
+    """Reference: the serial run, to 1e-9 of the range."""
+    found, serial = two_ranks["moved"], moved(MPI.COMM_SELF)
+    tip = np.array(found["tip"])
+    assert np.abs(tip - serial["tip"]).max() < 1.0e-9 * np.ptp(tip)
+    assert found["residual"] == pytest.approx(serial["residual"], rel=1.0e-3)
 
 
 def test_what_fails_on_one_rank_fails_on_all(two_ranks: dict[str, Any]) -> None:

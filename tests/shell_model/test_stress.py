@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -21,7 +19,7 @@ from shell_model.reduced_shell import reduce_boom
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
-from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
+from tests.shell_model.booms import LAW, STEEL, box_segment, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
 
 E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
@@ -217,32 +215,3 @@ def test_a_tied_boom_keeps_each_segments_stresses() -> None:
     moment = -83.16 * (10.0 - middle) ** 2 / 2.0
     moment -= sum(s.load * s.length * (0.5 * (s.start + s.end) - middle) for s in boom.segments[1:])
     assert sum(f.moment for f in forces.values()) == pytest.approx(moment, rel=0.01)
-
-
-_ON_RANKS = """
-import json
-import numpy as np
-from mpi4py import MPI
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from tests.shell_model.booms import LAW, flat_boom
-shell = reduce_boom(flat_boom(), [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
-if MPI.COMM_WORLD.rank == 0:
-    system, own = shell.system, shell.fields["coordinates_1"].values
-    state = own @ system.load / (own @ system.omega2)
-    print(json.dumps(np.tensordot(state, shell.fields["stress_1"].values, axes=1).tolist()))
-"""
-
-
-@pytest.mark.slow
-def test_two_ranks_recover_the_serial_stresses(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> None:
-    """Reference: the serial run."""
-    done = two_ranks(_ON_RANKS)
-    assert done.returncode == 0, done.stderr
-    found = np.array(json.loads(done.stdout.strip().splitlines()[-1]))
-    _, serial = at_rest(flat_boom(), 0.5)
-    expected = np.tensordot(serial.states[0][0], serial.modes[0], axes=1)
-    assert np.abs(expected).max() > 1.0e4
-    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -201,17 +199,6 @@ def test_contact_over_a_surface_keeps_energy() -> None:
     assert surface.first_contact > lines.first_contact
 
 
-_ROWS = """
-import json
-from mpi4py import MPI
-from tests.shell_model.test_surface_contact import FEW, compliances
-comm = MPI.COMM_WORLD
-found = compliances(comm)
-if comm.rank == 0:
-    print(json.dumps(found))
-"""
-
-
 def compliances(comm: MPI.Comm) -> list[float]:
     """What each contact row gives way under its own force, in m/N at 10 Hz."""
     found = []
@@ -226,17 +213,6 @@ def compliances(comm: MPI.Comm) -> list[float]:
         slow = (2.0 * np.pi * 10.0) ** 2
         found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()
     return found
-
-
-@pytest.mark.slow
-def test_two_ranks_find_the_same_points(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> None:
-    """Reference: the serial run."""
-    done = two_ranks(_ROWS)
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout.strip().splitlines()[-1])
-    assert found == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
 
 
 @pytest.mark.slow

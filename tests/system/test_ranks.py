@@ -107,7 +107,7 @@ def test_two_ranks_run_beams_once(two_ranks: Ranks, tmp_path: Path) -> None:
 def test_a_mistake_ends_both_ranks_with_one_line(
     two_ranks: Ranks, arguments: list[str], status: int, line: str
 ) -> None:
-    answer = two_ranks(COMMAND, *arguments)
+    answer = two_ranks("from runs import cli; cli.main()", *arguments)
     assert (answer.returncode, complaints(answer)) == (status, [line])
 
 
