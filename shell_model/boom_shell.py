@@ -25,7 +25,6 @@ from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_seg
 from geometry.observation import Quantity, Read
 from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
-from shell_model.contact.local_compliance import full_compliance, local_compliance
 from shell_model.contact.rows import gap_rows, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.cross_section import Outline, Reading, Row
@@ -149,19 +148,6 @@ class BoomShell:
         shell = self.shells[number]
         rows = [shell.row(reading[number]) for reading in readings if number in reading]
         return np.array(rows).reshape(-1, shell.free.size).T
-
-    def local_compliance(self, whole: Array) -> Array:
-        """(num_contacts,) in m/N; NaN where nothing touches on the other side of the station.
-
-        Args:
-            whole: (num_contacts, num_contacts) the compliance of the contacts.
-        """
-        laws = [contact.law for contact in self.rows.contacts]
-        return local_compliance(whole, laws, [contact.station for contact in self.rows.contacts])
-
-    def full_compliance(self) -> Array:
-        """(num_contacts, num_contacts) of the contacts, all degrees of freedom in. Collective."""
-        return full_compliance(self.shells, self.rows.contacts)
 
 
 def assemble_boom(

@@ -17,7 +17,12 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.mesh import SegmentMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
-from shell_model.contact.local_compliance import compliance, extrapolated_error
+from shell_model.contact.local_compliance import (
+    compliance,
+    extrapolated_error,
+    full_compliance,
+    local_compliance,
+)
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
@@ -91,9 +96,14 @@ def reduce_boom(
         if fields is not None:
             fields = coordinates.of_fields(fields)
     with stages.stage("mesh error"):
-        local = full.local_compliance(_compliance(full, reduced))
         coarse = assemble_boom(boom, planes, options.coarser, comm)
-        coarse_local = coarse.local_compliance(coarse.full_compliance())
+        local, coarse_local = (
+            local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
+            for whole, rows in (
+                (_compliance(full, reduced), full.rows.contacts),
+                (full_compliance(coarse.shells, coarse.rows.contacts), coarse.rows.contacts),
+            )
+        )
         mesh_error = extrapolated_error(local, coarse_local, options.order)
     return ReducedShell(
         system=system,
