@@ -273,9 +273,11 @@ class _Basis:
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
         self.x = segment.start + 0.5 * segment.length * (nodes + 1.0)
         self.weights = 0.5 * segment.length * weights
+        self._slopes = [function.deriv() for function in functions]
+        self._curvatures = [function.deriv(2) for function in functions]
         self.value, self.slope, self.curvature = (
-            np.array([(f.deriv(order) if order else f)(self.x) for f in functions])
-            for order in (0, 1, 2)
+            np.array([function(self.x) for function in derived])
+            for derived in (functions, self._slopes, self._curvatures)
         )
         self.integral = self.value @ self.weights
 
@@ -285,11 +287,11 @@ class _Basis:
 
     def slope_at(self, x: float) -> Array:
         """(num_functions,) slopes at one place in m."""
-        return np.array([function.deriv()(x) for function in self.functions])
+        return np.array([slope(x) for slope in self._slopes])
 
     def curvature_at(self, x: float) -> Array:
         """(num_functions,) second derivatives at one place in m."""
-        return np.array([function.deriv(2)(x) for function in self.functions])
+        return np.array([curvature(x) for curvature in self._curvatures])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:

@@ -2,8 +2,8 @@
 """Design charts of a sweep, as PNG.
 
 One varied key: a panel for each quantity, a line for each model. Two keys: a map of each model for
-the first three quantities. More: lines over the first key for each combination of the ends of the
-others.
+each quantity. More: lines over the first key for each combination of the ends of the others. What
+does not change, and what is noise, is left out.
 """
 
 from __future__ import annotations
@@ -22,10 +22,20 @@ from matplotlib.figure import Figure as Sheet
 from geometry.arrays import Array
 from runs.report import theme
 from runs.report.figure_context import new_sheet
+from runs.report.theme import number
 from runs.sweep.quantities import QUANTITIES, Quantity
 
-# What two keys are mapped for; the others are for checking, and in the files.
-MAPPED = QUANTITIES[:3]
+CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
+# Numbers along axes are whole: none is to be added to another one at their end.
+RC = {**theme.RC, "axes.formatter.useoffset": False}
+# Cells of a map that can be read, along each axis.
+MOST_CELLS = 10
+# From so many of a unit on, or below so many, the numbers of a key are shown in another one.
+_LARGE = {"N": (1.0e3, 1.0e-3, "kN"), "N m": (1.0e3, 1.0e-3, "kN m"), "Pa": (1.0e5, 1.0e-6, "MPa"),
+          "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
+_SMALL = {"m": (1.0, 1.0e3, "mm")}
+# What changes by less than this part is the same.
+SAME = 1.0e-6
 # From this ratio of the largest to the smallest value on an axis is logarithmic.
 DECADES = 100.0
 # Labels along an axis that do not run into one another.
@@ -44,23 +54,51 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
         play_free: models without play.
         folder: where the PNG files go; it must exist.
     """
+    data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     strokes = theme.strokes([str(name) for name in data["model"].values], play_free)
-    with matplotlib.rc_context(theme.RC):
+    with matplotlib.rc_context(RC):
         if len(keys) == 2:
-            for quantity in MAPPED:
-                if np.isfinite(data[quantity.name].values).any():
-                    _map(data, quantity, keys, folder)
+            for quantity in _changing(data):
+                _map(data, quantity, keys, folder)
             return
         ends = [(data[key].values[0], data[key].values[-1]) for key in keys[1:]]
         for count, others in enumerate(product(*ends), start=1):
             there = dict(zip(keys[1:], others, strict=True))
             part = data.sel(there)
             # Where everything failed there is nothing to draw.
-            if np.isfinite(part[MAPPED[0].name].values).any():
+            if _changing(part):
                 title = f"Sweep over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
                 name = f"sweep-lines-{count}.png" if ends else "sweep-lines.png"
                 _lines(part, strokes, title, folder / name)
+
+
+def _changing(data: xr.Dataset) -> list[Quantity]:
+    """Those that a chart says something of; where nothing changes, all that are known."""
+    known = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
+
+    def changes(one: Quantity) -> bool:
+        values = data[one.name]
+        keys = [dim for dim in values.dims if dim != "model"]
+        spans = (values.max(keys) - values.min(keys)).values
+        return bool(np.nanmax(spans) > SAME * np.nanmax(np.abs(values.values)))
+
+    return [one for one in known if changes(one)] or known
+
+
+def in_shown_units(data: xr.Dataset) -> xr.Dataset:
+    """The same with keys in mm, kN and so forth where their numbers are of that size."""
+    coordinates = {}
+    for name, along in data.coords.items():
+        unit = along.attrs.get("units", "")
+        largest = float(np.abs(along.values).max()) if unit in {*_LARGE, *_SMALL} else 0.0
+        for known, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
+            bound, factor, shown = known.get(unit, (0.0, 0.0, ""))
+            if shown and largest and fits(bound):
+                # As a person would write them.
+                values = np.array([float(f"{factor * value:.12g}") for value in along.values])
+                coordinates[name] = (along.dims, values, {**along.attrs, "units": shown})
+    return data.assign_coords(coordinates)
 
 
 def draw_frequencies(data: xr.Dataset, path: Path) -> None:
@@ -70,10 +108,11 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         data: of :func:`runs.sweep.frequencies.gather`.
         path: of the PNG file.
     """
+    data = in_shown_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
     strokes = theme.strokes([str(name) for name in data["model"].values], ())
     modes = data["mode"].values
-    with matplotlib.rc_context(theme.RC):
+    with matplotlib.rc_context(RC):
         sheet, panels = new_sheet(len(modes), 1.2 + 1.8 * len(modes))
         for axes, mode in zip(panels, modes, strict=True):
             for name, stroke in strokes.items():
@@ -98,7 +137,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
 def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, path: Path) -> None:
     """All quantities over the one key that is left."""
     (key,) = (str(dim) for dim in data["failed"].dims if dim != "model")
-    shown = [q for q in QUANTITIES if np.isfinite(data[q.name].values).any()]
+    shown = _changing(data)
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
     for axes, quantity in zip(panels, shown, strict=True):
         for name, stroke in strokes.items():
@@ -136,7 +175,11 @@ def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path
         _scale(axes, "y", data[keys[1]])
         of_model = values.sel(model=name).values
         mesh = axes.pcolormesh(*edges, of_model, vmin=low, vmax=high, cmap="viridis")
-        if min(of_model.shape) >= LEAST_FOR_CONTOURS and np.nanmax(of_model) > np.nanmin(of_model):
+        if max(of_model.shape) <= MOST_CELLS:
+            _label_cells(axes, places, of_model, 0.5 * (low + high))
+        elif min(of_model.shape) >= LEAST_FOR_CONTOURS and np.nanmax(of_model) > np.nanmin(
+            of_model
+        ):
             lines = axes.contour(*places, of_model, colors="white", linewidths=0.8)
             axes.clabel(lines, fontsize=9.0)
         rows, columns = np.nonzero(failed.sel(model=name).values)
@@ -155,6 +198,21 @@ def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
     path = folder / f"sweep-{quantity.name.replace('_', '-')}.png"
     _finish(sheet, title + quantity.shown_unit, path)
+
+
+def _label_cells(axes: Axes, places: tuple[Array, Array], values: Array, middle: float) -> None:
+    """The value in each cell, white on dark ones."""
+    for row, column in np.argwhere(np.isfinite(values)):
+        value = float(values[row, column])
+        axes.text(
+            places[0][column],
+            places[1][row],
+            number(value),
+            ha="center",
+            va="center",
+            fontsize=8.5,
+            color="white" if value < middle else theme.INK,
+        )
 
 
 def _spans_decades(values: Array) -> bool:

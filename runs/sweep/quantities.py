@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a sweep charts of each model's motion."""
+"""What a sweep charts of each model: at rest, in motion, and what it is worth."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.boom import Boom
+from runs.case.build import build_boom
+from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.results import Results
 
 # Name of the quantity → its value in SI, None where a model has none.
@@ -23,7 +26,7 @@ ROUND_OFF = 1.0e-12
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """One number of a model's motion.
+    """One number of a model.
 
     Args:
         name: in files.
@@ -32,6 +35,7 @@ class Quantity:
         factor: from the SI unit to the shown one.
         shown_unit: of tables and charts.
         logarithmic: whether it spans decades.
+        charted: whether it is a curve and no noise.
     """
 
     name: str
@@ -40,33 +44,75 @@ class Quantity:
     factor: float
     shown_unit: str
     logarithmic: bool = False
+    charted: bool = True
 
 
+# Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
+    Quantity("tip_at_rest", "m", "tip at rest", 1.0e3, "mm"),
     Quantity("tip_amplitude", "m", "tip amplitude", 1.0e3, "mm"),
-    Quantity("peak_contact_force", "N", "peak contact force", 1.0e-3, "kN"),
+    Quantity("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
+    Quantity("contact_force", "N", "contact force", 1.0e-3, "kN"),
+    Quantity("stress", "Pa", "stress", 1.0e-6, "MPa"),
+    Quantity("wall_stress", "Pa", "wall stress", 1.0e-6, "MPa"),
+    Quantity("damage", "1", "damage", 1.0, "–", logarithmic=True),
+    Quantity("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
+    Quantity("mass", "kg", "mass", 1.0, "kg"),
     Quantity("settling_time", "s", "settling time", 1.0, "s"),
     Quantity("first_contact", "s", "first contact", 1.0, "s"),
-    Quantity("energy_residual", "1", "energy residual", 1.0, "–", logarithmic=True),
+    Quantity("peak_contact_force", "N", "peak of a blow", 1.0e-3, "kN", charted=False),
+    Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
 )
 
 
 def measure(results: Results, model: str) -> Measured:
     """The quantities of one model of a run.
 
-    The tip's amplitude is half the way between its highest and its lowest place, without what it
-    sags by at rest; the peak contact force the largest at any station.
+    The tip at rest is that under the largest loads, the deflection's static part; the tip's
+    amplitude, its dynamic part, is half the way between its highest and its lowest place. The
+    dynamic factor is the largest deflection over the largest at rest. The contact force is the
+    largest mean of an output interval at any station, the peak of a blow what no pad feels as long;
+    the stress that of an outer fibre, of section forces, the wall stress a shell's own over a
+    patch, the damage that of a life at the worst place.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
-    summary = results.summary.models[model]
+    summary, answers = results.summary.models[model], results.summary.answers
     return {
+        **_answered(ModelAnswers() if answers is None else answers.models[model]),
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "peak_contact_force": summary.peak_contact_force,
+        "mass": mass(build_boom(results.case)),
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,
     }
+
+
+def _answered(own: ModelAnswers) -> Measured:
+    """What a model answers."""
+    peaks = () if own.moved is None else own.moved.peaks
+    fibres, walls = ((), ()) if own.moved is None else (own.moved.fibres, own.moved.walls)
+    tip = next((peak for peak in peaks if peak.what == "deflection"), None)
+    contacts = (peak.largest for peak in peaks if peak.what == "contact force")
+    damages = (one.life_damage for one in own.life if one.life_damage)
+    return {
+        "tip_at_rest": None if tip is None else tip.at_rest,
+        "dynamic_factor": None if tip is None else tip.factor,
+        "contact_force": max(contacts, default=None),
+        "stress": max((abs(fibre.stress) for fibre in fibres), default=None),
+        "wall_stress": max((wall.patch for wall in walls), default=None),
+        "damage": max(damages, default=None),
+        "first_frequency": own.modes[0].frequency if own.modes else None,
+    }
+
+
+def mass(boom: Boom) -> float:
+    """Of all segments and of what they carry, in kg."""
+    return sum(
+        segment.mass_per_length * segment.length + sum(point.mass for point in segment.masses)
+        for segment in boom.segments
+    )
 
 
 def settling_time(time: Array, tip: Array) -> float | None:
