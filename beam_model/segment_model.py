@@ -43,7 +43,7 @@ def gap_system(
         law = laws_along[pad.direction][pad.number]
         approach, slide = (_relative(modes, pad, along) for along in (pad.direction, pad.rubs))
         points = [(pad.side, pad.weight, approach)]
-        pressing = rows.press(pad.station, law, points)
+        pressing = rows.press(pad.station, law, points, pad.raised)
         rows.drag(pad.station, pad.joint.dashpot, points)
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:

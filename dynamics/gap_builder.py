@@ -81,12 +81,17 @@ class GapBuilder(Generic[R]):
     grounded: list[int] = field(default_factory=list)
 
     def press(
-        self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]
+        self,
+        station: int,
+        law: ContactLaw,
+        points: Iterable[tuple[int, float, R]],
+        raised: float = 0.0,
     ) -> tuple[int, ...]:
         """Contact through points: on each the side, the part of the law there, and the approach.
 
         Side 1 touches where the approach is positive, −1 where it is negative, 0 both ways by the
-        whole law. On a side where the law never touches there is no row.
+        whole law. On a side where the law never touches there is no row. What is raised, by so many
+        m, touches so much earlier.
 
         Returns:
             The positions of the rows.
@@ -96,6 +101,7 @@ class GapBuilder(Generic[R]):
             there = law if side == 0 else law.one_sided(side)
             if there is not None:
                 part = there.shared(weight) if side else there
+                part = part.behind(part.clearance - raised) if raised else part
                 self.contacts.append(Contact(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 

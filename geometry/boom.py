@@ -14,9 +14,10 @@ from geometry.cylinder import Cylinder, forces
 from geometry.fault import BoomError
 from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
-from geometry.joint import Joint, PadSize, Stop
+from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
 from geometry.observation import IN_SPACE, KINDS, Observation, Quantity
+from geometry.pad_checks import check_pads
 from geometry.section import Direction
 from geometry.segment import (
     SAME_PLACE,
@@ -45,6 +46,7 @@ __all__ = [
     "PadSize",
     "PointMass",
     "Segment",
+    "SlidePad",
     "Stop",
     "Support",
 ]
@@ -101,8 +103,7 @@ class Boom:
             self._check_space()
         for number, joint in enumerate(self.joints, start=1):
             _check_friction(f"joint[{number}]", joint, self.spatial)
-            if joint.pad is not None:
-                _check_pad(f"joint[{number}]", joint, joint.pad, self)
+            check_pads(f"joint[{number}]", joint, self)
         for number, joint in enumerate(self.joints, start=1):
             self._check_contact_length(f"joint[{number}]", joint)
         self._check_loads()
@@ -398,33 +399,6 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
             f"{outer.name!r}; it must be between {outer.start:g} and {end:g} m",
         )
     check_room(where, joint, outer, inner)
-
-
-def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
-    if joint.tied:
-        raise BoomError(f"{where}.pad", "the joint is tied, and nothing touches; leave it out")
-    start, end = boom.overlap(joint)
-    if not 0.0 < pad.length <= end - start:
-        raise BoomError(
-            f"{where}.pad.length",
-            f"must be above 0 and not above the overlap of {end - start:g} m, got {pad.length:g} m",
-        )
-    inner = boom.segments[joint.inner]
-    if inner.section is None:
-        return
-    room = 0.5 * min(
-        face.width
-        for x in joint.stations
-        for face in inner.section_at(x).faces
-        if face.direction in boom.directions
-    )
-    if not 0.0 < pad.width <= room - pad.offset:
-        beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
-        raise BoomError(
-            f"{where}.pad.width",
-            f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m"
-            f"{beside}, got {pad.width:g} m",
-        )
 
 
 def _check_friction(where: str, joint: Joint, spatial: bool) -> None:

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint, Stop
+from geometry.boom import Boom, Direction, Joint, PadSize, Stop
 from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
 
@@ -26,6 +26,9 @@ ContactLine = Literal["near webs", "across", "surface"]
 # box: about 0.1 m in the paper's boom, as slide pads are long.
 _OF_OVERLAP = 0.1
 _OF_HEIGHT = 0.2
+
+_SIDES: tuple[Side, Side] = (1, -1)
+_BOTH: tuple[Side] = (0,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +100,7 @@ class Pad:
         normal_force: of its friction in N; None where its own contact presses.
         pressed: what it presses of the corners of the inner and of the outer segment.
         patch: the wall that it covers; None where it is a point.
+        raised: how far it stands out beyond the joint's clearance in m.
     """
 
     station: int
@@ -112,6 +116,7 @@ class Pad:
     normal_force: float | None
     pressed: tuple[Stretch, Stretch]
     patch: Patch | None
+    raised: float = 0.0
 
     @property
     def half(self) -> int:
@@ -165,9 +170,10 @@ def pads(boom: Boom) -> list[Pad]:
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
                 pressed = Stretch.on(inner_segment, x, length), Stretch.on(outer_segment, x, length)
-                for side, inner, outer, weight in _points(boom, joint, direction, x):
-                    found.append(
-                        Pad(
+                for side, inner, outer, whole in _points(boom, joint, direction, x):
+                    for size, share, shim in joint.pads_of(direction, side):
+                        weight = whole * share
+                        pad = Pad(
                             station=station,
                             joint=joint,
                             number=number,
@@ -183,9 +189,10 @@ def pads(boom: Boom) -> list[Pad]:
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
                             pressed=pressed,
-                            patch=_patch(boom, joint, x),
+                            patch=_patch(boom, joint, size, x),
+                            raised=shim,
                         )
-                    )
+                        found.append(pad)
                 station += 1
     return found
 
@@ -195,12 +202,12 @@ def _points(
 ) -> Iterator[tuple[Side, Offset, Offset, float]]:
     """Side, inner and outer point, and weight of the pads at one station along one direction."""
     if joint.lateral_clearance is None:
-        yield 0, (0.0, 0.0), (0.0, 0.0), 1.0
+        for side in _SIDES if joint.pads else _BOTH:
+            yield side, (0.0, 0.0), (0.0, 0.0), 1.0
         return
     inner, outer = (boom.segments[number].section_at(x) for number in (joint.inner, joint.outer))
     clearance = joint.clearance if direction == "z" else joint.lateral_clearance
-    sides: tuple[Side, Side] = (1, -1)
-    for side in sides:
+    for side in _SIDES:
         touching, surface = inner.face(direction, side), outer.face(direction, side).inside
         for corner in (touching.low, touching.high):
             within, around = (corner, surface - side * clearance), (corner, surface)
@@ -209,13 +216,12 @@ def _points(
             yield side, within, around, 0.5
 
 
-def _patch(boom: Boom, joint: Joint, x: float) -> Patch | None:
+def _patch(boom: Boom, joint: Joint, size: PadSize | None, x: float) -> Patch | None:
     """The wall that a pad covers; None where pads are points, or plates not known.
 
     It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
     its offset from the corner of the inner box.
     """
-    size = joint.pad
     if size is None or boom.segments[joint.inner].section is None:
         return None
     first, last = boom.overlap(joint)

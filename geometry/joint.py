@@ -3,7 +3,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
+
+from geometry.section import Direction, Side
+
+PadSide = Literal["above", "below", "left", "right"]
+
+# Left is where y is positive.
+SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
+    "above": ("z", 1),
+    "below": ("z", -1),
+    "left": ("y", 1),
+    "right": ("y", -1),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +32,29 @@ class PadSize:
     length: float
     width: float
     offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SlidePad(PadSize):
+    """One of several pads at each station of a joint: a pair, beside both corners of a wall.
+
+    >>> short = pt.SlidePad(length=0.1, width=0.03, side="below", stiffness=2e8)
+    >>> short.touches("z", -1), short.touches("z", 1)
+    (True, False)
+
+    Args:
+        side: on which wall of the inner segment.
+        stiffness: beside which those of the same side share its force, in N/m.
+        shim: in m by which it stands out beyond the joint's clearance.
+    """
+
+    side: PadSide = "below"
+    stiffness: float = 1.0
+    shim: float = 0.0
+
+    def touches(self, direction: Direction, side: Side) -> bool:
+        """Whether it is on this side."""
+        return SIDES[self.side] == (direction, side)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +75,7 @@ class Joint:
             is the contact force of the other plane.
         tied: the segments deflect (and in space twist) alike at the stations, without play.
         pad: of the slide pads in the corners; shells touch in the corners themselves without it.
+        pads: in place of it, where there are several at each station.
         contact_length: of these in m; a tenth of the overlap unless given.
         dashpot: of each station along each direction in N·s/m, across the play.
         locked_at: x in m where the inner segment's axial force enters the outer one, at a pin;
@@ -54,14 +92,30 @@ class Joint:
     normal_forces: tuple[float, ...] = ()
     tied: bool = False
     pad: PadSize | None = None
+    pads: tuple[SlidePad, ...] = ()
     contact_length: float | None = None
     dashpot: float = 0.0
     locked_at: float | None = None
 
     @property
+    def padded(self) -> bool:
+        """Whether it has pads of a size."""
+        return self.pad is not None or bool(self.pads)
+
+    def pads_of(
+        self, direction: Direction, side: Side
+    ) -> list[tuple[PadSize | None, float, float]]:
+        """Size, share of the side's force, and shim in m of all pads there; of a side 0 on both."""
+        if not self.pads:
+            return [(self.pad, 1.0, 0.0)]
+        here = [pad for pad in self.pads if pad.touches(direction, side)]
+        whole = sum(pad.stiffness for pad in here)
+        return [(pad, pad.stiffness / whole, pad.shim) for pad in here]
+
+    @property
     def without_play(self) -> Joint:
         """The same with the segments tied at its stations."""
-        return replace(self, tied=True, pad=None, contact_length=None, dashpot=0.0)
+        return replace(self, tied=True, pad=None, pads=(), contact_length=None, dashpot=0.0)
 
 
 @dataclass(frozen=True, slots=True)

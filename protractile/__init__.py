@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from geometry.boom import Joint as Joint
     from geometry.boom import Load as Load
     from geometry.boom import PadSize as PadSize
+    from geometry.boom import SlidePad as SlidePad
     from geometry.boom import Stop as Stop
     from geometry.compression import Compression as Compression
     from geometry.observation import Observation as Observation
@@ -101,7 +102,7 @@ _HOMES = {
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.trajectory": "Trajectory",
         "geometry.axial": "Thrust with_compression",
-        "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize Stop",
+        "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize SlidePad Stop",
         "geometry.compression": "Compression",
         "geometry.observation": "Observation",
         "geometry.polygon": "PolygonSection closed_polygon",

@@ -113,13 +113,17 @@ def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[C
     own, laws = model.contact, []
     for number, joint in enumerate(case.joints, start=1):
         try:
-            laws.append(joint.law(direction) if own is None else own.law(joint, direction))
+            law = joint.law(direction) if own is None else own.law(joint, direction)
+            for pad in joint.slide_pads:
+                law.behind(law.clearance - pad.shim)
         except ValueError:
+            key = "interference" if not joint.pads else "pads"
             raise BoomError(
-                f"joint[{number}].interference",
+                f"joint[{number}].{key}",
                 f"what presses from both sides of a joint needs a law of the exponent 1, and model "
                 f"{model.name!r} has another; give it one, or leave interference out",
             ) from None
+        laws.append(law)
     return laws
 
 
@@ -178,6 +182,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         normal_forces=table.normal_forces,
         tied=table.tied,
         pad=None if table.pad is None else table.pad.size,
+        pads=table.slide_pads,
         contact_length=table.contact_length,
         dashpot=table.dashpot,
         locked_at=None if table.locked_at is None else at(table.locked_at, tail, head),

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from geometry.boom import Direction, PadSize
+from geometry.boom import Direction, PadSize, SlidePad
+from geometry.section import Side
 from runs.case.limits import (
     MOST_STATIONS,
     Exponent,
@@ -76,8 +77,8 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
         ValidationError: at the key that is missing, or given in vain.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
-    pad = isinstance(table, JointTable) and table.pad is not None and table.pad.thickness
-    given = "pad.thickness" if pad else next(iter(tables), None)
+    pad = isinstance(table, JointTable) and table.thick_pads
+    given = pad or next(iter(tables), None)
     if given is not None:
         others = tables if pad else []
         keys = others + [key for key in of_power if getattr(table, key) is not None]
@@ -143,6 +144,24 @@ class PadTable(Table):
     def stiffness(self) -> float | None:
         """k = E A/t in N/m."""
         return None if self.thickness is None else self.modulus * self.area / self.thickness
+
+
+class SlidePadTable(PadTable):
+    """One of several pads at each station: a pair of them, beside both corners of a wall."""
+
+    side: Literal["above", "below", "left", "right"] = Field(
+        description="the wall of the inner segment that it is on; left is where y is positive"
+    )
+    thickness: Length = Field(description="the thickness in m, from which its stiffness follows")
+    shim: Annotated[NotNegative, In("m")] = Field(
+        0.0, description="how far in m it stands out beyond the play that the joint leaves"
+    )
+
+    @property
+    def made(self) -> SlidePad:
+        """Where it is, and how stiff."""
+        covered = self.length, self.width, self.offset
+        return SlidePad(*covered, self.side, self.modulus * self.area / self.thickness, self.shim)
 
 
 class JointTable(Table):
@@ -231,6 +250,11 @@ class JointTable(Table):
         description="the table of the slide pads' size, which shells alone heed; the corners of "
         "the boxes along contact_length unless given",
     )
+    pads: Annotated[tuple[SlidePadTable, ...], Few] = Field(
+        (),
+        description="the tables of several slide pads at each station, in place of pad and of a "
+        "stiffness: on a side they press together, and share the force as they are stiff",
+    )
     locked_at: Place | None = Field(
         None,
         description="the x in m where the inner segment's axial force enters the outer one: of a "
@@ -247,6 +271,25 @@ class JointTable(Table):
         description="the linear dashpot across the play at each station in N s/m, to the sides "
         "too where the boom moves in space",
     )
+
+    @property
+    def thick_pads(self) -> str | None:
+        """The key of pads from whose thickness a stiffness follows."""
+        if self.pads:
+            return "pads"
+        return "pad.thickness" if self.pad is not None and self.pad.thickness else None
+
+    @property
+    def slide_pads(self) -> tuple[SlidePad, ...]:
+        """Those of ``pads``."""
+        return tuple(pad.made for pad in self.pads)
+
+    @model_validator(mode="after")
+    def _pads_or_pad(self) -> Self:
+        if self.pads and self.pad is not None:
+            what = {"what": "pads is given; leave one of them out"}
+            raise fault_at(self, PydanticCustomError("unsuitable", "{what}", what), "pad")
+        return self
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:
@@ -276,6 +319,9 @@ class JointTable(Table):
         Raises:
             ValueError: no law can press from both sides like that.
         """
+        if self.pads:
+            law = _law(self, self._of_side(direction, 1), self._of_side(direction, -1), 1.0)
+            return _behind(law, self.clearances(direction))
         of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None
         exponent = self.exponent if of_pads is None or self.stiffness else 1.0
         if direction == "z":
@@ -288,6 +334,11 @@ class JointTable(Table):
                 self.lateral_exponent or exponent,
             )
         return _behind(law, self.clearances(direction))
+
+    def _of_side(self, direction: Direction, side: Side) -> float:
+        """Stiffness of all pads there in N/m."""
+        pads = (pad for pad in self.slide_pads if pad.touches(direction, side))
+        return PADS_OF_SIDE * sum(pad.stiffness for pad in pads)
 
 
 class ContactTable(Table):

@@ -27,6 +27,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "segment": segment.SegmentTable,
     "restitution": contact.RestitutionTable,
     "pad": contact.PadTable,
+    "pads": contact.SlidePadTable,
     "joint": contact.JointTable,
     "contact": contact.ContactTable,
     "stop": schema.StopTable,

@@ -241,7 +241,7 @@ def _stations(drawing: Drawing, boom: Boom, joint: Joint) -> None:
     for x in joint.stations:
         for ends in zip(_reach(inner, boom, x), _reach(outer, boom, x), strict=True):
             drawing.line([(x, z) for z in ends], **look)
-    what = "slide pads" if joint.pad else "where segments touch"
+    what = "slide pads" if joint.padded else "where segments touch"
     drawing.meanings["tied" if joint.tied else what] = Line2D([], [], **look)
 
 

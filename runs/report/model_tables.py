@@ -132,7 +132,7 @@ def law_table(results: Results) -> Table | None:
         Column("first tip peak\nmm", peaks, ".1f", MILLI),
     )
     notes = ["Force = k · penetrationⁿ, beyond the clearance each way."]
-    if not all(joint.pad for _, joint, _ in found):
+    if not all(joint.pad or joint.pads for _, joint, _ in found):
         notes.append(
             "Without slide pads the segments press in the corners of their boxes. Pads beside "
             "them, on walls that give way, move the paper's first peak by a quarter and more: give "

@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from dynamics.contact import ContactLaw
-from geometry.boom import Direction
+from geometry.arrays import Array
+from geometry.boom import Direction, Joint
+from geometry.joint import SIDES
 from runs.case.build import build_boom, contact_laws
-from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable
+from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
 from runs.pipeline.results import Results
 from runs.report.stress_tables import PER_KILO, PER_MEGA
 from runs.report.tables import Column, Table
@@ -25,7 +28,7 @@ class PressedPad(NamedTuple):
     joint: JointTable
     pad: PadTable
     x: float
-    direction: Direction
+    place: str
     force: float
 
     @property
@@ -49,31 +52,74 @@ def pad_tables(results: Results) -> list[Table]:
         Column("model", [pad.model for pad in pads]),
         Column("joint", [f"{pad.joint.inner} in {pad.joint.outer}" for pad in pads]),
         Column("at\nm", [f"{pad.x:g}" for pad in pads]),
-        Column("along", [pad.direction for pad in pads]),
+        Column("along", [pad.place for pad in pads]),
         Column("peak force\nkN", [pad.force for pad in pads], ".3g", PER_KILO),
         Column("pressure\nMPa", [pad.pressure for pad in pads], ".3g", PER_MEGA),
         Column("utilisation\n%", [pad.utilisation for pad in pads], ".0f", 100.0),
     )
-    note = "The pads of one side of a station share its force evenly, and bear it evenly."
+    note = (
+        "The pads of one side of a station share its force as they are stiff, those of a pair "
+        "evenly, and bear it evenly."
+    )
     return [Table("Slide pads", columns, (note,), "pads")]
 
 
 def _pressed(results: Results) -> Iterator[PressedPad]:
     """Those of every station of joints with play."""
     case = results.case
-    if not any(table.pad for table in case.joints):
+    if not any(table.pad or table.pads for table in case.joints):
         return
     boom = build_boom(case)
-    peaks = abs(results.trajectories["contact_force_peak"])
+    peaks = results.trajectories["contact_force_peak"]
     for model in (model for model in results.ran if not model.play_free):
-        station, largest = count(), peaks.sel(model=model.name).max("time").values
+        station, own = count(), peaks.sel(model=model.name)
+        ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
         for direction in boom.directions:
             laws = contact_laws(case, model, direction)
             for table, joint, law in zip(case.joints, boom.joints, laws, strict=True):
                 for x in () if joint.tied else joint.stations:
-                    force = _of_a_side(float(largest[next(station)]), law) / PADS_OF_SIDE
+                    pushed = ends[next(station)]
                     if table.pad is not None:
+                        largest = float(np.abs(pushed).max())
+                        force = _of_a_side(largest, law) / PADS_OF_SIDE
                         yield PressedPad(model.name, table, table.pad, x, direction, force)
+                    forces = _of_each(joint, direction, law, pushed)
+                    for pad, force in zip(_along(table.pads, direction), forces, strict=True):
+                        yield PressedPad(model.name, table, pad, x, pad.side, force / PADS_OF_SIDE)
+
+
+def _along(pads: Sequence[SlidePadTable], direction: Direction) -> list[SlidePadTable]:
+    return [pad for pad in pads if SIDES[pad.side][0] == direction]
+
+
+def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array) -> list[float]:
+    """The largest force in N of each pair of pads, where all together push by so much.
+
+    Args:
+        joint: of the pads.
+        direction: along which.
+        law: of a station.
+        pushed: (num_pushes,) in N, of those on the side 1 less those on the side −1.
+    """
+    laws = []
+    for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):
+        side = SIDES[pad.side][1]
+        whole = sum(other.stiffness for other in joint.pads if other.side == pad.side)
+        there = law.one_sided(side)
+        assert there is not None
+        part = there.shared(pad.stiffness / whole)
+        laws.append(part.behind(part.clearance - pad.shim))
+    if not laws:
+        return []
+
+    def force(approach: float) -> Array:
+        return np.array([float(one.force(np.array(approach))) for one in laws])
+
+    reach = 1.0e-3
+    while not force(-reach).sum() <= pushed.min() <= pushed.max() <= force(reach).sum():
+        reach *= 2.0
+    approaches = [brentq(lambda y, p=p: force(y).sum() - p, -reach, reach) for p in pushed]
+    return [float(most) for most in np.abs([force(y) for y in approaches]).max(axis=0)]
 
 
 def _of_a_side(both: float, law: ContactLaw) -> float:

@@ -97,10 +97,14 @@ def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
 def _opposite(
     laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Iterator[tuple[int, int]]:
-    """Rows that press up, and those that press down in the same place of their station."""
+    """Rows that press up, and those that press down in the same place of their station.
+
+    Where there are more pads on one side, several have the same one opposite.
+    """
     for station in set(station_of_row):
         there = [i for i, at in enumerate(station_of_row) if at == station]
         above = [i for i in there if laws[i].terms[0].side > 0.0]
         below = [i for i in there if laws[i].terms[0].side < 0.0]
-        if len(above) == len(below):
-            yield from zip(above, below, strict=True)
+        most = max(len(above), len(below)) if above and below else 0
+        for k in range(most):
+            yield above[k * len(above) // most], below[k * len(below) // most]

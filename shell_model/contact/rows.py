@@ -56,7 +56,7 @@ def gap_rows(
     points = surface_points(boom, shells, laws, surface) if line == "surface" else []
     rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
     corners = [CornerLines(shell) for shell in shells]
-    by_points = line == "across" or any(joint.pad for joint in boom.joints)
+    by_points = line == "across" or any(joint.padded for joint in boom.joints)
     walls = [WallPoints(shell) for shell in shells] if by_points else []
     touches = [_touch(pad, corners, walls, line) for pad in places]
     stopped = [flanges(rest, corners[rest.stop.segment]) for rest in resting]
@@ -65,7 +65,7 @@ def gap_rows(
             pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
         else:
             law = laws[pad.direction][pad.number]
-            pressing = rows.press(pad.station, law, touch.points)
+            pressing = rows.press(pad.station, law, touch.points, pad.raised)
         rows.drag(pad.station, pad.joint.dashpot, touch.points)
         rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
     for rest, meeting in zip(resting, stopped, strict=True):
@@ -107,7 +107,7 @@ def _touch(
     """What a pad reads."""
     ends = pad.joint.inner, pad.joint.outer
     lines = [corners[number] for number in ends]
-    if pad.side:  # in the corners, of a boom in space
+    if pad.joint.lateral_clearance is not None:
         touch = corner(pad, *lines)
         if pad.patch is None:
             return touch
@@ -133,7 +133,7 @@ def _check_line(boom: Boom, line: ContactLine) -> None:
             "'across' spreads the force over the flanges of a flat boom; in space the pads sit in "
             "the corners: give 'near webs' or 'surface'",
         )
-    if line != "near webs" and any(joint.pad for joint in boom.joints):
+    if line != "near webs" and any(joint.padded for joint in boom.joints):
         raise BoomError(
             "contact_line",
             f"{line!r} leaves no place to the joints' pads; give 'near webs', or leave pad out",

@@ -78,9 +78,11 @@ def corner(pad: Pad, inner: CornerLines, outer: CornerLines) -> Touch:
 def flange_patches(pad: Pad, patch: Patch, inner: WallPoints, outer: WallPoints) -> Touch:
     """A station of a flat boom with pads of a size; it slides as :func:`near_webs`. Collective."""
     points = []
-    for side in _SIDES:
+    for side in (pad.side,) if pad.side else _SIDES:
         right, left = (_mean_approach(pad, patch, side, half, inner, outer) for half in (1, -1))
-        points.append((side, 1.0, 0.5 * right + 0.5 * left))
+        points.append((side, pad.weight, 0.5 * right + 0.5 * left))
+    if pad.side:
+        return Touch(points, points[0][2])
     return _sliding_as_its_mean(points)
 
 

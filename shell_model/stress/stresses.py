@@ -181,13 +181,18 @@ class ShellStress:
     def row(self, segment: int, x: float) -> Indices:
         """Numbers of the triangles of the row of elements, all around a segment, that holds x (m).
 
-        At a mesh line, of the row towards the tip.
+        At a mesh line, of the row towards the tip. Where edges are finer on some walls than on
+        others, so many rows of the fine ones as hold some of every wall.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = np.unique(self.spans[mine].round(6))
         after = int(np.clip(np.searchsorted(lines, x, side="right"), 1, lines.size - 1))
-        along = self.centroids[:, 0]
-        return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
+        first, last, along = after - 1, after, self.centroids[:, 0]
+        while True:
+            row = np.flatnonzero(mine & (along > lines[first]) & (along < lines[last]))
+            if np.unique(self.wall[row]).size == len(self.plates[segment]):
+                return row
+            first, last = max(first - 1, 0), min(last + 1, lines.size - 1)
 
     def wall_name(self, triangle: int) -> str:
         """What people call the wall or diaphragm of a triangle."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from tests.runs.coarse_case import CONTACT, FROM_EXPONENT
 
+LAW = "stiffness = 1e13\nexponent = 2.0\n"
+
 CONTACTS = {
     "friction without what presses": (
         "exponent = 2.0\n",
@@ -90,6 +92,42 @@ CONTACTS = {
         "exponent = 2.0\n",
         "exponent = 2.0\ntied = true\npad = { length = 0.1, width = 0.06 }\n",
         "joint[1].pad: the joint is tied, and nothing touches; leave it out",
+    ),
+    "several pads without a side": (
+        LAW,
+        "pads = [{ length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].pads[1].side: missing; it is the wall of the inner segment that it is on; left "
+        "is where y is positive",
+    ),
+    "pads on one side alone": (
+        LAW,
+        "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].pads: none is above; give each side one at least",
+    ),
+    "pads to the sides of a flat boom": (
+        LAW,
+        "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].pads[1].side: the boom is flat, and nothing presses to the sides; leave the pad "
+        "out, or give the joints lateral_play",
+    ),
+    "pads on one another": (
+        LAW,
+        "pads = [{ side = 'above', length = 0.1, width = 0.06, thickness = 0.02 }, "
+        "{ side = 'above', length = 0.1, width = 0.06, thickness = 0.02, offset = 0.04 }, "
+        "{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].pads: two lie on one another above, 0.04 m from the corner; give the outer one a "
+        "width of at most 0.04 m",
+    ),
+    "pads beside a pad": (
+        LAW,
+        "pad = { length = 0.1, width = 0.06 }\n"
+        "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].pad: pads is given; leave one of them out",
+    ),
+    "a stiffness beside several pads": (
+        "exponent = 2.0\n",
+        "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]\n",
+        "joint[1].stiffness: pads is given; leave one of them out",
     ),
     "contact longer than the overlap": (
         "exponent = 2.0\n",

@@ -115,3 +115,71 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
 
 def test_corners_bear_no_pressure(tmp_path: Path) -> None:
     assert pad_tables(results(tmp_path, LAW)) == []
+
+
+def pad_on(side: str, width: float, thickness: float, **others: float) -> str:
+    more = "".join(f", {key} = {value}" for key, value in others.items())
+    return f'{{ side = "{side}", length = 0.2, width = {width}, thickness = {thickness}{more} }}'
+
+
+def several(*pads: str) -> str:
+    return f"pads = [{', '.join(pads)}]\n"
+
+
+def test_two_halves_of_a_pad_are_the_pad(tmp_path: Path) -> None:
+    """Reference: another computation, one pad of their size: the same forces at each station."""
+    halves = [
+        pad_on(side, 0.025, 0.02, offset=offset)
+        for side in ("above", "below")
+        for offset in (0.0, 0.05)
+    ]
+    forces, gaps = [], np.linspace(-0.02, 0.02, 9)
+    for joint in (PAD, several(*halves)):
+        case = case_with(tmp_path, joint)
+        system = build(case, build_boom(case), case.models[0]).system
+        pushed = np.array([law.force(gaps) for law in system.laws])
+        forces.append([pushed[system.station_of_row == k].sum(axis=0) for k in (0, 1)])
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-9)
+    assert np.abs(forces[0]).max() > 0.0
+
+
+def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
+    """Reference: by hand. Below, E A/t of 1.9e9 · 0.01/0.02 and of a third of that; a shim of 2 mm
+    lets the softer one touch 2 mm earlier.
+    """
+    below = pad_on("below", 0.05, 0.02), pad_on("below", 0.025, 0.03, offset=0.06, shim=0.002)
+    case = case_with(tmp_path, several(pad_on("above", 0.05, 0.02), *below))
+    system = build(case, build_boom(case), case.models[0]).system
+    tail = [law for law, k in zip(system.laws, system.station_of_row, strict=True) if k == 0]
+    assert [law.clearance for law in tail] == pytest.approx([0.007, 0.007, 0.005])
+    pressed = [float(law.force(np.array(0.008))) for law in tail[:1]]
+    pressed += [float(law.force(np.array(-0.008))) for law in tail[1:]]
+    stiff = 2.0 * 1.9e9 * 0.01 / 0.02
+    assert pressed == pytest.approx([stiff * 1e-3, -stiff * 1e-3, -stiff / 3.0 * 3e-3])
+
+
+def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
+    """Reference: by hand. Below, two pairs of one stiffness per area: the head's largest force over
+    both areas; above nothing presses there beyond what the tail's largest force does.
+    """
+    pads = [
+        pad_on("above", 0.05, 0.02),
+        pad_on("below", 0.03, 0.02, allowable_pressure=2e7),
+        pad_on("below", 0.02, 0.02, offset=0.04),
+    ]
+    found = results(tmp_path, several(*pads))
+    (table,) = pad_tables(found)
+    told = {column.heading: column.cells for column in table.columns}
+    assert told["along"] == ["above", "below", "below"] * 2
+    peaks = found.trajectories["contact_force_peak"].values[0]
+    down, up = -peaks.min(axis=0), peaks.max(axis=0)
+    areas = np.array([0.02, 0.012, 0.008])
+    for station in (0, 1):
+        pressures = np.array(told["pressure\nMPa"][3 * station : 3 * station + 3])
+        assert pressures[0] == pytest.approx(max(up[station], 0.0) / 0.02, rel=1e-6, abs=1.0)
+        assert pressures[1] == pytest.approx(pressures[2], rel=1e-6, abs=1.0)
+        assert pressures[1:] * areas[1:] @ np.ones(2) == pytest.approx(
+            max(down[station], 0.0), rel=1e-6, abs=1.0
+        )
+    assert told["utilisation\n%"][1] == pytest.approx(told["pressure\nMPa"][1] / 2.0e7)
+    assert told["utilisation\n%"][2] is None

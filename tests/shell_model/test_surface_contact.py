@@ -16,9 +16,12 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, PadSize
+from geometry.boom import Boom, BoomError, PadSize, SlidePad
 from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions
+from geometry.contact_places import pads as places_of_pads
+from geometry.joint import PadSide
+from shell_model.boom_shell import ShellOptions, assemble_segments
+from shell_model.contact.rows import gap_rows
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_points import Wall, WallPoints
 from shell_model.cross_section import COMPONENT
@@ -254,3 +257,32 @@ def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
     )
     with pytest.raises(BoomError, match=f"^{message}$"):
         _system(_with_pads(flat_boom()), line)
+
+
+@pytest.mark.parametrize("sides", [("above", "below"), ("above", "below", "left", "right")])
+def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
+    """Reference: by hand. Where both walls rise as the square of the distance from their middle, a
+    pad approaches by the mean of it, (b³ − a³)/3(b − a): each its own; weights as they are stiff.
+    """
+    boom = flat_boom() if len(sides) == 2 else boom_in_space()
+    pads = tuple(
+        SlidePad(0.1, width, offset, side, stiffness)
+        for side in sides
+        for width, offset, stiffness in ((0.03, 0.0, 3e8), (0.02, 0.05, 1e8))
+    )
+    boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
+    shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
+    rows = gap_rows(boom, shells, {"z": [LAW], "y": [LAW]}, "near webs", SurfaceOptions())
+    inner, places = shells[1], places_of_pads(boom)
+    corners = 1 if len(sides) == 2 else 2
+    assert len(rows.contacts) == 2 * len(pads) * corners
+    for contact, pad in zip(rows.contacts, places, strict=True):
+        assert pad.patch is not None
+        across = COMPONENT["y" if pad.direction == "z" else "z"]
+        moved = np.zeros(inner.free.size)
+        moved[inner.node_dofs[:, COMPONENT[pad.direction]]] = inner.nodes[:, across] ** 2
+        near, far = pad.patch.across(inner.section.face(pad.direction, pad.side))
+        mean = (far**3 - near**3) / (3.0 * (far - near))
+        assert inner.row(contact.reading[1]) @ moved == pytest.approx(mean, rel=1e-9)
+        share = (0.75 if pad.patch.offset == 0.0 else 0.25) / corners
+        assert contact.law.terms[0].stiffness == pytest.approx(share * LAW.stiffness)

@@ -134,7 +134,7 @@ class ShellTable(ModelTable):
         return self.stand_in(boom).beam.critical_factor(boom)
 
     def stand_in(self, boom: Boom) -> StandIn:
-        padded = any(joint.pad is not None for joint in boom.joints)
+        padded = any(joint.padded for joint in boom.joints)
         graded = 1.0 if self.contact_tolerance == "any" else _PADDED if padded else _GRADED
         dofs = graded * _DOFS * _surface(boom) / self.mesh_size**2
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
@@ -170,7 +170,7 @@ class ShellTable(ModelTable):
                 "'surface'",
             )
         for number, joint in enumerate(joined.boom.joints, start=1):
-            if joint.pad is not None and line != "near webs":
+            if joint.padded and line != "near webs":
                 raise BoomError(
                     f"{where}.contact_line",
                     f"{line!r} leaves no place to the pads of joint[{number}]; give 'near webs', "

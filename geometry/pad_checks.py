@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether slide pads have room on the walls that they touch."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from geometry.fault import BoomError
+from geometry.joint import SIDES, Joint, PadSize, SlidePad
+
+if TYPE_CHECKING:
+    from geometry.boom import Boom
+
+
+def check_pads(where: str, joint: Joint, boom: Boom) -> None:
+    """Whether all pads of a joint can be.
+
+    Raises:
+        BoomError: one has no room, two lie on one another, a side has none; at a key of ``where``.
+    """
+    if joint.pad is not None:
+        _check_pad(f"{where}.pad", joint, joint.pad, boom)
+    for number, pad in enumerate(joint.pads, start=1):
+        _check_pad(f"{where}.pads[{number}]", joint, pad, boom)
+        if SIDES[pad.side][0] not in boom.directions:
+            raise BoomError(
+                f"{where}.pads[{number}].side",
+                "the boom is flat, and nothing presses to the sides; leave the pad out, or give "
+                "the joints lateral_play",
+            )
+    for side, (direction, _) in SIDES.items():
+        pads = [pad for pad in joint.pads if pad.side == side]
+        if joint.pads and not pads and direction in boom.directions:
+            raise BoomError(f"{where}.pads", f"none is {side}; give each side one at least")
+        for one, other in combinations(pads, 2):
+            _check_apart(f"{where}.pads", one, other)
+
+
+def _check_apart(where: str, one: SlidePad, other: SlidePad) -> None:
+    near, far = sorted((one, other), key=lambda pad: pad.offset)
+    if far.offset < near.offset + near.width:
+        raise BoomError(
+            where,
+            f"two lie on one another {one.side}, {far.offset:g} m from the corner; give the outer "
+            f"one a width of at most {far.offset - near.offset:g} m",
+        )
+
+
+def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
+    if joint.tied:
+        raise BoomError(where, "the joint is tied, and nothing touches; leave it out")
+    start, end = boom.overlap(joint)
+    if not 0.0 < pad.length <= end - start:
+        raise BoomError(
+            f"{where}.length",
+            f"must be above 0 and not above the overlap of {end - start:g} m, got {pad.length:g} m",
+        )
+    inner = boom.segments[joint.inner]
+    if inner.section is None:
+        return
+    room = 0.5 * min(
+        face.width
+        for x in joint.stations
+        for face in inner.section_at(x).faces
+        if face.direction in boom.directions
+    )
+    if not 0.0 < pad.width <= room - pad.offset:
+        beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
+        raise BoomError(
+            f"{where}.width",
+            f"must be above 0 and not above half a wall of the inner segment, {room:.6g} m"
+            f"{beside}, got {pad.width:g} m",
+        )
