@@ -20,9 +20,9 @@ from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.axial_forces import print_axial_forces
+from runs.pipeline.cautions import slips
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
-from runs.pipeline.plausibility import slips
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.

@@ -23,8 +23,7 @@ from runs.case.actions import series_notes
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
-from runs.pipeline.cautions import of_buckling, of_tip
-from runs.pipeline.plausibility import slips
+from runs.pipeline.cautions import of_buckling, of_tip, slips
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"

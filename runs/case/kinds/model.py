@@ -116,6 +116,11 @@ class ModelTable(Table):
     smooth: ClassVar[bool] = False
 
     @property
+    def longest_edge(self) -> float:
+        """Of the mesh of its plates in m; 0 where it has none."""
+        return 0.0
+
+    @property
     def needs_plates(self) -> bool:
         """Whether it cannot do without the sections of the segments."""
         return self.meshed

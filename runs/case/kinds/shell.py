@@ -130,6 +130,10 @@ class ShellTable(ModelTable):
     def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
         return self.stand_in(boom).beam.without_play(boom)
 
+    @property
+    def longest_edge(self) -> float:
+        return self.mesh_size
+
     def critical_factor(self, boom: Boom) -> float | None:
         return self.stand_in(boom).beam.critical_factor(boom)
 

@@ -10,7 +10,7 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.plausibility import slips
+from runs.pipeline.cautions import slips
 from tests.runs.case_texts import STEEL, box, joint
 
 CASE = f"""
@@ -103,6 +103,20 @@ def test_cases_that_come_along_have_none(path: Path) -> None:
 )
 def test_each_slip_is_told(tmp_path: Path, old: str, new: str, slip: str) -> None:
     assert f"caution: {slip}" in slips_of(tmp_path, old, new)
+
+
+def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
+    """Reference: by hand, a chamfer of 50 mm is √2 · 50 mm wide; so at a taper's head alone."""
+    box = "section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }"
+    assert CASE.count(box) == 1
+    fold = (
+        "shape = 'octagon', height = 0.36, width = 0.26, top = 0.006, bottom = 0.006, web = 0.005"
+    )
+    narrow, wide = (f"{{ {fold}, chamfer = {chamfer} }}" for chamfer in (0.05, 0.075))
+    caution = "caution: the mesh size of 'shell', 0.1 m, is larger than a wall of 0.0707 m"
+    assert slips_of(tmp_path, box, f"section = {narrow}") == [caution]
+    assert slips_of(tmp_path, box, f"section = {wide}") == []
+    assert slips_of(tmp_path, box, f"section = {wide}\nhead_section = {narrow}") == [caution]
 
 
 def test_weights_of_the_wrong_sign_are_told(tmp_path: Path) -> None:
