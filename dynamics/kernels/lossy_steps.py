@@ -9,6 +9,7 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
+from dynamics.kernels.compiled import borrowed
 from dynamics.kernels.contact_kicks import contact_forces, damped_kick
 from dynamics.kernels.decay import Damping, damp, kept_after
 from dynamics.kernels.friction_step import (
@@ -84,13 +85,13 @@ def lossy_steps(
     unless ``always``.
     """
     # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
-    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
-    omega2, load, rows, terms, limits = system
-    rates, directions, dashpot_rates = damping
-    friction_rows, given, pressing, masses = dry
-    loads, _, spans, parts, _, pushes = excitations
+    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = borrowed(state)
+    omega2, load, rows, terms, limits = borrowed(system)
+    rates, directions, dashpot_rates = borrowed(damping)
+    friction_rows, given, pressing, masses = borrowed(dry)
+    loads, _, spans, parts, _, pushes = borrowed(excitations)
     start, centre, end = pushes
-    length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = space
+    length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = borrowed(space)
     push, y_ahead, force_ahead = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
