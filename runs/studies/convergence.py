@@ -49,6 +49,7 @@ STUDIES = (
     "second_order",
     "sections",
     "taper",
+    "answers",
 )
 
 

@@ -75,6 +75,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     },
     "damping": {"PressedBoom.of": swung, "_system": one},
     "histories": {},
+    "answers": {},
     "supports": {
         "_MODELS": dict.fromkeys(supports._MODELS, supports._elements),
         "decrement": one,
