@@ -102,6 +102,10 @@ def run(
     ] = None,
     no_cache: NoCache = False,
     large: Large = False,
+    no_pictures: Annotated[
+        bool,
+        typer.Option("--no-pictures", help="Leave snapshots and film to protractile snapshot."),
+    ] = False,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
     from runs.case import reading
@@ -112,6 +116,7 @@ def run(
     from runs.pipeline import estimates
     from runs.pipeline.run import run_case
     from runs.report import output
+    from runs.report.snapshots import draw_snapshots
     from runs.sweep.run import launched_world
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
@@ -132,7 +137,7 @@ def run(
                 finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
             verdicts = judge(finished.results)
-            output.write(finished, verdicts, part, scratch)
+            output.write(finished, verdicts, part, scratch, None if no_pictures else draw_snapshots)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: verdicts})
         return _show_models_that_failed(case, finished.results) or status

@@ -37,6 +37,7 @@ class Curve:
         shown: at first, else on demand.
         panel: position of its panel.
         band: (num_times,) each, the lowest and the highest around it.
+        at: (num_times,) its own abscissa; that of the chart unless given.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Curve:
     shown: bool = True
     panel: int = 0
     band: tuple[Array, Array] | None = None
+    at: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +55,12 @@ class Chart:
     """Curves over one time, in panels above one another.
 
     Args:
-        time: (num_times,) in s.
+        time: (num_times,) in s, or what else the curves are over.
         heading: of the ordinate, with its unit.
         curves: of all panels.
         panels: their titles.
         window: of the time that is shown at first, in s; all of it unless given.
+        along: heading of the abscissa.
     """
 
     time: Array
@@ -65,6 +68,7 @@ class Chart:
     curves: Sequence[Curve]
     panels: Sequence[str] = ("",)
     window: tuple[float, float] | None = None
+    along: str = "time (s)"
 
     @property
     def thinned(self) -> bool:
@@ -77,6 +81,7 @@ class Chart:
         return {
             "time": _packed(self.time, "<f8"),
             "heading": self.heading,
+            "along": self.along,
             "panels": list(self.panels),
             "window": self.window,
             "curves": [self._curve(curve) for curve in self.curves],
@@ -90,7 +95,9 @@ class Chart:
             "shown": curve.shown,
             "panel": curve.panel,
         }
-        if self.thinned:
+        if curve.at is not None:
+            found["time"] = _packed(curve.at, "<f8")
+        elif self.thinned:
             kept = extremes(curve.values, MOST // 2)
             return found | {
                 "time": _packed(self.time[kept], "<f8"),

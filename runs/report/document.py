@@ -10,6 +10,13 @@ from itertools import chain
 from runs.case import toml
 from runs.pipeline.results import Results
 from runs.report import theme
+from runs.report.answer_tables import (
+    answer_tables,
+    first_table,
+    play_note,
+    play_sentence,
+    trust_lines,
+)
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.knowledge import compared_tables, known_tables
@@ -42,15 +49,18 @@ def render(
 
     Where plotly is not installed the pictures of curves stand alone.
     """
+    look = first_table(results)
+    first = _texts([look] if look else [])
+    answers = _texts(answer_tables(results))
     models = _texts([*model_tables(results), *pad_tables(results), *wall_tables(results)])
     known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
-    case, motion, knowledge = (
-        [figure for figure in figures if figure.part == part]
-        for part in ("case", "motion", "knowledge")
+    parts = "case", "motion", "rest", "knowledge", "numerics"
+    case, motion, rest, knowledge, numerics = (
+        [figure for figure in figures if figure.part == part] for part in parts
     )
     shown = [
-        *_numbered("Table", chain(models, known, compared, readings)),
-        *_numbered("Figure", chain(case, motion, knowledge, snapshots)),
+        *_numbered("Table", chain(first, answers, known, compared, readings, models)),
+        *_numbered("Figure", chain(case, motion, rest, snapshots, knowledge, numerics)),
     ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
     judged: list[str] = [verdict.verdict for verdict in verdicts]
@@ -69,6 +79,13 @@ def render(
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         case=case,
+        adds=play_sentence(results),
+        of=play_note(results),
+        first=first,
+        trust=trust_lines(results),
+        answers=answers,
+        rest=rest,
+        numerics=numerics,
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",

@@ -48,7 +48,7 @@ def energies(pen: Pen) -> list[Figure]:
         "is the work of the load, up to the residual of the next figure."
     )
     title = f"{name}: the load's work, and where it is"
-    return [pen.finish(sheet, axes, "energies", title, caption)]
+    return [pen.finish(sheet, axes, "energies", title, caption, part="numerics")]
 
 
 def residuals(pen: Pen) -> list[Figure]:
@@ -67,7 +67,7 @@ def residuals(pen: Pen) -> list[Figure]:
     )
     title = f"Unaccounted energy: up to {theme.scientific(highest(worst), 2)} of the work"
     statements = ("S8",) if pen.rubs else ()
-    return [pen.finish(sheet, axes, "energy-residual", title, caption, statements)]
+    return [pen.finish(sheet, axes, "energy-residual", title, caption, statements, part="numerics")]
 
 
 def _energies(pen: Pen, name: str) -> Array:

@@ -20,6 +20,9 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve
 
+# Where in the report a figure belongs.
+Part = Literal["case", "motion", "rest", "knowledge", "numerics"]
+
 MILLI = 1.0e3
 KILO = 1.0e3
 # Widths of the curves that stand behind the leading ones, as a part of theirs.
@@ -51,7 +54,7 @@ class Figure:
     title: str
     caption: str
     statements: Sequence[str] = ()
-    part: Literal["case", "motion", "knowledge"] = "motion"
+    part: Part = "motion"
     chart: Chart | None = None
 
     @property
@@ -76,6 +79,7 @@ class Pen:
         self.play_free = [model.name for model in results.case.models if model.play_free]
         self.with_play = [name for name in self.models if name not in self.play_free]
         self.strokes = theme.strokes(self.models, self.play_free)
+        self.answers = results.summary.answers
         self.leading = leading(results.case, self.models)
 
     def of(self, name: str, variable: str) -> Array:
@@ -142,7 +146,7 @@ class Pen:
         title: str,
         caption: str,
         statements: Sequence[str] = (),
-        part: Literal["motion", "knowledge"] = "motion",
+        part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
         """Title above, legend below, and onto the disk; the last ones are :class:`Figure`'s."""

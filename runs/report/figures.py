@@ -16,6 +16,7 @@ from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
 from runs.report.energy_figures import energies, residuals
 from runs.report.figure_context import Figure, Pen
 from runs.report.horizon_figures import horizons, slow_peaks
+from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 from runs.report.stress_figures import stress_history
 
 FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
@@ -30,6 +31,9 @@ FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
     contact_peaks,
     friction,
     stress_history,
+    at_rest,
+    envelopes,
+    mode_shapes,
     energies,
     residuals,
 )

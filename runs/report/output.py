@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
@@ -46,6 +46,7 @@ VERDICTS = "verdicts.json"
 STRESSES = "stress.nc"
 SERIES = "fields"
 FIGURES = "figures"
+LATER = "they were not asked for; protractile snapshot draws them"
 
 
 def prepare(out: str, file: str) -> Path:
@@ -81,7 +82,13 @@ def prepare(out: str, file: str) -> Path:
     return folder
 
 
-def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path) -> None:
+def write(
+    run: Run,
+    verdicts: Sequence[Verdict],
+    folder: Path,
+    mesh_folder: Path,
+    draw_snapshots: Callable[..., Any] | None = snapshots.draw_snapshots,
+) -> None:
     """Write everything that a run leaves.
 
     Args:
@@ -89,6 +96,7 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
         verdicts: those that its case asks for.
         folder: an empty one.
         mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
+        draw_snapshots: of the shells; None leaves them to whoever asks for them later.
     """
     results = run.results
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
@@ -123,7 +131,10 @@ def write(run: Run, verdicts: Sequence[Verdict], folder: Path, mesh_folder: Path
     if surface is not None:
         _write_text(folder / VIEWER, viewer(results.case, surface))
     try:
-        snapshots.draw_snapshots(results, fields, folder)
+        if draw_snapshots is not None:
+            draw_snapshots(results, fields, folder)
+        elif fields:
+            results.summary.snapshots = Snapshots(written=[], skipped=LATER)
     except RenderingUnavailable as reason:
         results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
     write_report(results, verdicts, folder)

@@ -19,8 +19,8 @@ from rich.text import Text
 from runs.folder.files import whole
 from runs.report.theme import NONE, count, fixed, number, repeated
 
-# Letters that fit in a line of the report with its usual font, and in one of a file.
-ROOMY = 115
+# Letters that fit in a line of the report with its usual font, on a telephone, and in a file.
+ROOMY, NARROW = 115, 40
 WIDE = 180
 
 
@@ -58,12 +58,21 @@ class TextTable:
     @property
     def crowded(self) -> bool:
         """Whether it takes smaller letters to fit the report's page."""
-        # Headings are broken between words, cells where they say so.
+        return self._letters > ROOMY
+
+    @property
+    def stacked(self) -> bool:
+        """Whether a telephone shows its rows one below the other, each cell with its heading."""
+        return self._letters > NARROW
+
+    @property
+    def _letters(self) -> int:
+        """In a line; headings are broken between words, cells where they say so."""
         letters = [
-            max(len(part) for part in (*heading.split(), *"\n".join(column).split("\n")))
+            max(len(part) for part in ("", *heading.split(), *"\n".join(column).split("\n")))
             for heading, *column in zip(self.headings, *self.rows, strict=True)
         ]
-        return sum(letters) + 2 * len(letters) > ROOMY
+        return sum(letters, start=2 * len(letters))
 
     def show(self, console: Console) -> None:
         """Print it."""

@@ -94,8 +94,8 @@ def test_draws_each_figure_as_png(everything: tuple[list[Figure], dict[str, Shee
     figures, _ = everything
     stems = [figure.path.stem for figure in figures]
     assert stems == [
-        "boom", "tip", "tip-close-up", "head", "contact-first", "contact-peaks", "energies",
-        "energy-residual",
+        "boom", "tip", "tip-close-up", "head", "contact-first", "contact-peaks", "at-rest",
+        "envelopes", "modes", "energies", "energy-residual",
     ]  # fmt: skip
     assert sorted(figures[0].path.parent.iterdir()) == sorted(f.path for f in figures)
     for figure in figures:
@@ -109,8 +109,11 @@ def test_draws_each_figure_as_png(everything: tuple[list[Figure], dict[str, Shee
 
 def test_every_axis_says_its_unit(everything: tuple[list[Figure], dict[str, Sheet]]) -> None:
     _, sheets = everything
-    assert sheets["boom"].axes[1].get_xlabel().endswith("(m)")
-    for stem, sheet in sheets.items() - {("boom", sheets["boom"])}:
+    along = {"boom": 1, "at-rest": -1, "envelopes": -1, "modes": -1}
+    for stem, panel in along.items():
+        assert sheets[stem].axes[panel].get_xlabel().endswith("(m)")
+    for stem in sheets.keys() - along.keys():
+        sheet = sheets[stem]
         assert sheet.axes[-1].get_xlabel() == "time (s)"
         unit = {"tip": "mm", "tip-close-up": "mm", "head": "mm", "energies": "J"}.get(stem, "kN")
         heading = sheet.get_supylabel() or sheet.axes[0].get_ylabel()
@@ -194,7 +197,10 @@ def test_draws_a_play_free_boom_alone(tmp_path: Path) -> None:
     (tmp_path / "figures").mkdir()
     figures = draw(alone, tmp_path / "figures")
     stems = [figure.path.stem for figure in figures]
-    assert stems == ["boom", "tip", "tip-close-up", "head", "energies", "energy-residual"]
+    assert stems == [
+        "boom", "tip", "tip-close-up", "head", "at-rest", "envelopes", "modes", "energies",
+        "energy-residual",
+    ]  # fmt: skip
     assert "chaotic" not in " ".join(figure.caption for figure in figures)
 
 
@@ -202,7 +208,7 @@ def test_draws_around_what_is_not_finite(results: Results, tmp_path: Path) -> No
     broken = results.trajectories.copy(deep=True)
     for variable in broken.data_vars:
         broken[variable][dict(model=1, time=slice(300, None))] = np.nan
-    assert len(draw(replace(results, trajectories=broken), tmp_path)) == 8
+    assert len(draw(replace(results, trajectories=broken), tmp_path)) == 11
 
 
 def test_draws_a_run_shorter_than_its_means(results: Results, tmp_path: Path) -> None:
@@ -234,6 +240,9 @@ def test_each_figure_bears_on_statements(
         "figure-head": ("S6",),
         "figure-contact-first": (),
         "figure-contact-peaks": (),
+        "figure-at-rest": (),
+        "figure-envelopes": (),
+        "figure-modes": (),
         "figure-energies": (),
         "figure-energy-residual": (),
     }

@@ -88,7 +88,7 @@ def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> N
         assert verdict.statement in page.text
         assert verdict.why in page.text
     order = [
-        page.text.index(heading) for heading in ("Verdicts", "Models", "Figures", "Provenance")
+        page.text.index(heading) for heading in ("Verdicts", "Motion", "Numerics", "Provenance")
     ]
     assert order == sorted(order)
 
@@ -128,10 +128,15 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
     closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
     root = ElementTree.fromstring(closed.strip())
     assert root.tag == "html"
-    verdicts, models, steps, laws = (
-        len(list(table.iter("tr"))) - 1 for table in root.iter("table")
-    )
-    assert (verdicts, models, steps, laws) == (len(STATEMENTS), len(MODELS), len(MODELS), 2)
+    verdicts = next(table for table in root.iter("table") if table.get("class") == "verdicts")
+    assert len(list(verdicts.iter("tr"))) - 1 == len(STATEMENTS)
+    rows = {
+        part.get("id"): len(list(part.iter("tr"))) - 1
+        for part in root.iter("div")
+        if part.get("class") == "table"
+    }
+    found = [rows[f"table-{name}"] for name in ("models", "steps", "laws")]
+    assert found == [len(MODELS), len(MODELS), 2]
 
 
 def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) -> None:
@@ -151,8 +156,13 @@ def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]
     found = {key: re.findall(r'href="#([^"]+)">([^<]+)<', row) for key, row in rows.items()}
     figure = ("figure-tip", "Figure\N{NO-BREAK SPACE}1")
     assert found["S1"] == found["S2"] == [figure]
-    assert found["S10"] == [("table-steps", "Table\N{NO-BREAK SPACE}2")]
-    assert found["S9"] == [("table-laws", "Table\N{NO-BREAK SPACE}3")]
+    tables = {key: found[key][0] for key in ("S10", "S9")}
+    assert {key: anchor for key, (anchor, _) in tables.items()} == {
+        "S10": "table-steps", "S9": "table-laws"
+    }  # fmt: skip
+    for anchor, label in tables.values():
+        heading = text[text.index(f'id="{anchor}"') :]
+        assert heading.split("<h3>")[1].startswith(f"{label}. ")
     assert found["S7"] == found["S8"] == []
     assert all(link in text for key in ("S1", "S9") for link, _ in found[key])
 
@@ -165,10 +175,11 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
         pytest.approx(0.0193, rel=0.01),
     )
     text = render(results, judge(results), figures, [])
-    (row,) = re.findall(r"<tr>\s*<td>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL)[
-        :1
-    ]
-    assert "<td>no peak</td>\n<td>within 0.6 s</td>" in row
+    text = text[text.index('id="table-models"') :]
+    (row,) = re.findall(
+        r"<tr>\s*<td[^>]*>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL
+    )[:1]
+    assert re.search(r"<td[^>]*>no peak</td>\n<td[^>]*>within 0.6 s</td>", row)
     lines = {line.split()[0]: line for line in printed(results).splitlines() if line.split()}
     assert re.search("no peak +within 0.6 s", lines["kantorovich-4"])
     assert "no peak" not in lines["beam-fe-tied"]
@@ -178,7 +189,7 @@ def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> 
     table = TextTable("A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",), "readings")
     page = Page(render(results, judge(results), figures, [], [table]))
     assert "A <survey>" in page.text
-    assert {"class": "contradicted"} in page.all("td")
+    assert {"data-name": "S1", "class": "contradicted"} in page.all("td")
     assert {"href": "#readings"} in page.all("a")
     assert {"href": "#readings"} not in Page(render(results, judge(results), figures, [])).all("a")
 

@@ -31,6 +31,11 @@ DEAD = (
     "[...document.links].map(a => a.getAttribute('href'))"
     ".filter(to => to != 'viewer.html' && (to[0] != '#' || !document.getElementById(to.slice(1))))"
 )
+# Tables that have to be drawn to the side to be read.
+CUT = (
+    "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1)"
+    ".map(e => e.getAttribute('aria-label'))"
+)
 # A telephone widens its window with the page: what counts is the width that it was given.
 WIDE = (
     "[...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll, pre') &&"
@@ -80,6 +85,7 @@ def test_a_report_is_whole_on_a_telephone(page: Page, folder: Path) -> None:
     assert page.evaluate(DEAD) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
     assert page.evaluate(WIDE) == []
+    assert page.evaluate(CUT) == []
 
 
 # The middle of a part of the page, after it has been brought to the window's.

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Along the boom: its line and section forces at rest, their envelopes in motion, its modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.typography import signed
+from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
+from runs.report import theme
+from runs.report.charts import Chart, Curve
+from runs.report.figure_context import MILLI, Figure, Pen, new_sheet
+
+# Quantity → heading of its panel, and the factor to its unit.
+_PANELS: Mapping[str, tuple[str, float]] = {
+    "deflection": ("deflection (mm)", MILLI),
+    "lateral": ("to the sides (mm)", MILLI),
+    "normal": ("N (kN)", 1e-3),
+    "shear": ("V (kN)", 1e-3),
+    "moment": ("M (kN m)", 1e-3),
+    "lateral_moment": ("M to the sides (kN m)", 1e-3),
+    "torque": ("T (kN m)", 1e-3),
+}
+# Of an envelope.
+_FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
+# So many modes are drawn.
+MODES = 4
+
+
+class _Line(NamedTuple):
+    """One segment's curve."""
+
+    name: str
+    x: Array
+    values: Array
+    color: str
+    dashes: str
+
+
+def at_rest(pen: Pen) -> list[Figure]:
+    """The boom's line and its section forces at rest, with play and without."""
+    found = {name: own for name, own in _read_first(pen) if own.rests}
+    if not found:
+        return []
+    rests = {name: max(own.rests, key=lambda rest: abs(rest.tip)) for name, own in found.items()}
+    lines = {name: _rest_lines(rest, name, pen.strokes[name].color) for name, rest in rests.items()}
+    tied = next((own for name, own in found.items() if name in pen.with_play and own.tied), None)
+    if tied is not None and not set(found) & set(pen.play_free):
+        rest = max(tied.tied, key=lambda rest: abs(rest.tip))
+        lines["without play"] = _rest_lines(rest, "without play", theme.PLAY_FREE)
+    caption = (
+        "At rest under the largest loads: the line of the boom, and what its sections carry. "
+        "Normal forces pull where they are positive, moments where they are pull at the top; "
+        "where segments overlap each has its own."
+    )
+    far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
+    title = f"At rest: the tip at {signed(f'{MILLI * far:.1f}')} mm"
+    return [_stacked(pen, lines, "at-rest", title, caption)]
+
+
+def envelopes(pen: Pen) -> list[Figure]:
+    """Between what the section forces are in motion."""
+    found = {name: own.moved.envelopes for name, own in _read_first(pen) if own.moved is not None}
+    lines = {
+        name: {
+            what: [
+                line
+                for envelope in several
+                for line in _both_ends(envelope, what, name, pen.strokes[name].color)
+            ]
+            for what in _FORCES
+        }
+        for name, several in found.items()
+    }
+    if not any(line for by_kind in lines.values() for line in by_kind.values()):
+        return []
+    caption = (
+        "Between what the section forces of each segment are over the run: the lowest and the "
+        "highest at every place, whenever they are."
+    )
+    return [_stacked(pen, lines, "envelopes", "Section forces in motion", caption)]
+
+
+def mode_shapes(pen: Pen) -> list[Figure]:
+    """The first modes of the model that is read first."""
+    found = [(name, own.modes) for name, own in _read_first(pen) if own.modes]
+    if not found:
+        return []
+    name, modes = found[0]
+    modes = modes[:MODES]
+    sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
+    colors = theme.PALETTE
+    for axes, mode in zip(panels, modes, strict=True):
+        for number, shape in enumerate(mode.shapes):
+            for what, values in shape.curves.items():
+                if what == _moving(mode):
+                    axes.plot(shape.x, values, color=colors[number % len(colors)], linewidth=1.8)
+        axes.set_title(f"{theme.number(mode.frequency, 4)} Hz, {mode.way}")
+        axes.set_yticks([])
+    panels[-1].set_xlabel("x along the boom (m)")
+    caption = (
+        f"The first modes of {name!r} at rest under the loads of t = 0, its joints pressed as they "
+        "are then. Each segment has its colour; the height is arbitrary."
+    )
+    return [pen.finish(sheet, None, "modes", "Modes of the boom as it works", caption, part="rest")]
+
+
+def _moving(mode: Mode) -> str:
+    """What of a shape moves most."""
+    return {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}[mode.way]
+
+
+def _read_first(pen: Pen) -> Iterator[tuple[str, ModelAnswers]]:
+    if pen.answers is None:
+        return
+    for name in pen.models:
+        if name in pen.leading and name in pen.answers.models:
+            yield name, pen.answers.models[name]
+
+
+def _rest_lines(rest: AtRest, name: str, color: str) -> dict[str, list[_Line]]:
+    lines: dict[str, list[_Line]] = {what: [] for what in _PANELS}
+    dashes = "--" if color == theme.PLAY_FREE else "-"
+    for diagram in rest.diagrams:
+        curves = {"normal": diagram.normal, **diagram.curves}
+        for what in lines.keys() & curves.keys():
+            values = np.array(curves[what])
+            lines[what].append(_Line(name, np.array(diagram.x), values, color, dashes))
+    return lines
+
+
+def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator[_Line]:
+    dashes = "--" if color == theme.PLAY_FREE else "-"
+    for side in (envelope.low, envelope.high):
+        if what in side:
+            yield _Line(name, np.array(envelope.x), np.array(side[what]), color, dashes)
+
+
+def _stacked(
+    pen: Pen,
+    lines: Mapping[str, Mapping[str, Sequence[_Line]]],
+    stem: str,
+    title: str,
+    caption: str,
+) -> Figure:
+    """Panels of the quantities above one another, but those that are nothing."""
+    of = {
+        what: [line for each in lines.values() for line in each.get(what, ())] for what in _PANELS
+    }
+    shown = [what for what, several in of.items() if any(line.values.any() for line in several)]
+    sheet, panels = new_sheet(len(shown), 1.2 + 1.4 * len(shown))
+    curves = []
+    for number, (axes, what) in enumerate(zip(panels, shown, strict=True)):
+        heading, factor = _PANELS[what]
+        for name, each in lines.items():
+            for line in each.get(what, ()):
+                axes.plot(
+                    line.x,
+                    factor * line.values,
+                    color=line.color,
+                    linestyle=line.dashes,
+                    label=name if name not in axes.get_legend_handles_labels()[1] else None,
+                )
+                dashes = "dash" if line.dashes == "--" else "solid"
+                curves.append(
+                    Curve(name, factor * line.values, line.color, dashes, panel=number, at=line.x)
+                )
+        axes.set_title(heading)
+    panels[-1].set_xlabel("x along the boom (m)")
+    ends = np.array([edge(line.x) for edge in (np.min, np.max) for line in of[shown[0]]])
+    chart = Chart(
+        np.sort(ends)[[0, -1]],
+        "",
+        curves,
+        [_PANELS[what][0] for what in shown],
+        along="x along the boom (m)",
+    )
+    return pen.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a designer asks first, as the report says it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import log, pi
+
+import pytest
+
+from protractile.cases import change, run_case
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.answers import Added, PlayAdds
+from runs.pipeline.results import Results
+from runs.report.answer_tables import (
+    answer_tables,
+    first_table,
+    mode_table,
+    play_note,
+    play_sentence,
+    play_table,
+    stress_table,
+    trust_lines,
+)
+from runs.report.tables import Table
+
+PLAYED, TIED = "kantorovich-5", "beam-fe-tied"
+
+
+@pytest.fixture(scope="module")
+def results() -> Results:
+    case = change(case_file.load(str(CASES / "coarse.toml")), **{"damping.modal": 0.02})
+    return run_case(case, [PLAYED, TIED])
+
+
+def cells(table: Table | None) -> dict[str, dict[str, str]]:
+    """Each row by its first cell."""
+    assert table is not None
+    return {row[0]: dict(zip(table.text.headings, row, strict=True)) for row in table.text.rows}
+
+
+def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
+    """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
+    assert results.summary.answers is not None
+    own = results.summary.answers.models[PLAYED]
+    assert own.moved is not None
+    found = cells(first_table(results))
+    said = {
+        asked: row[PLAYED].replace("−", "-").split("\n")[0].split(" ")[0]
+        for asked, row in found.items()
+    }
+    frequency = own.modes[0].frequency
+    assert float(said["Tip at rest at t = 0, mm"]) == pytest.approx(
+        1e3 * own.rests[0].tip, abs=0.06
+    )
+    assert float(said["First frequency, Hz"]) == pytest.approx(frequency, rel=6e-3)
+    assert float(said["A swing takes, s"]) == pytest.approx(1.0 / frequency, rel=6e-3)
+    dying = log(10.0) / (2.0 * pi * 0.02 * frequency)
+    assert float(said["It dies to a tenth in, s"]) == pytest.approx(dying, rel=0.06)
+    hardest = max(p.largest for p in own.moved.peaks if p.what == "contact force")
+    assert float(said["Presses most, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
+    assert found["Presses most, kN"][TIED] == "–"
+    assert "Damage of its life" not in found
+
+
+def test_play_is_said_in_a_sentence(results: Results) -> None:
+    """Reference: by hand, of numbers that are given."""
+    assert results.summary.answers is not None
+    numbers = [
+        Added("deflection at rest", "tip", "m", 0.15, 0.10),
+        Added("first frequency", "bending in z", "Hz", 1.5, 2.0),
+        Added("stress", "inner", "Pa", 9e7, 10e7),
+        Added("stress", "outer", "Pa", 12e7, 10e7),
+    ]
+    answers = replace(results.summary.answers, play=[PlayAdds(PLAYED, TIED, False, numbers)])
+    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    assert play_sentence(told) == (
+        "Play adds 50 mm (+50 %) to the tip at rest and 20 MPa (+20 %) to the largest stress. "
+        "The first frequency is 1.5 Hz in place of 2 Hz."
+    )
+    assert play_note(told) == (
+        "Of the model kantorovich-5, its motion beside that of beam-fe-tied, which differs by more "
+        "than the play."
+    )
+    rows = cells(play_table(told))
+    assert rows["stress, inner"]["play adds"] == "−10 MPa"
+    assert rows["stress, inner"]["%"] == "−10"
+
+
+def test_every_answer_has_its_table(results: Results) -> None:
+    """Reference: what a beam with play leaves."""
+    titles = [table.name for table in answer_tables(results)]
+    assert titles == ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
+    assert trust_lines(results)
+    modes = cells(mode_table(results))
+    own = results.summary.answers
+    assert own is not None
+    first = own.models[TIED].modes[0]
+    assert float(modes[f"{first.way} 1"][f"{TIED}\nHz"]) == pytest.approx(first.frequency, rel=1e-3)
+    table = stress_table(results)
+    assert table is not None
+    assert not any("wall" in heading for heading in table.text.headings)
+
+
+def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
+    """Reference: a summary of an earlier version."""
+    without = replace(results, summary=results.summary.model_copy(update={"answers": None}))
+    assert first_table(without) is None
+    assert answer_tables(without) == []
+    assert play_sentence(without) == play_note(without) == ""
+    assert trust_lines(without) == []
