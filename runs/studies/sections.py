@@ -20,7 +20,7 @@ from geometry.contact_places import Stretch
 from geometry.mesh import mesh_segment
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import Section
+from geometry.section import Direction, Section
 from geometry.shear_flow import shear_centre
 from runs.report.tables import Table
 from runs.studies.study import Proof, Study
@@ -79,6 +79,8 @@ CENTRE_OF_U = -8.64726e-3
 
 # A ring that is short bends as bars do.
 RING, RING_MESH = 0.02, 0.01
+# Of the cantilevers that are turned, in m.
+ARM, ARM_MESH = 4.0, 0.2
 # Around each station, of this thickness in m.
 COLLAR = 0.010
 MESH_SIZE, TOLERANCE = 0.1, 0.01
@@ -187,6 +189,20 @@ def ring_of_shell(section: Section, length: float, size: float) -> float:
     return moved
 
 
+def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
+    """How the tip of a cantilever of shell gives way along a direction, in m/N."""
+    clamp = Support(0.0, "clamped")
+    segment = Segment.of_section("arm", 0.0, ARM, STEEL, section, supports=(clamp,))
+    shell = assemble_segment(
+        MPI.COMM_SELF, segment, mesh_segment(section, {"start": 0.0, "end": ARM}, size)
+    )
+    force = shell.force(ARM, direction)
+    solve = ShiftedSolver(shell, 0.01)
+    moved = float(force @ solve(force[:, None])[:, 0])
+    solve.destroy()
+    return moved
+
+
 def study(tell: Callable[[str], None]) -> Study:
     """Numbers of sections, rings, and first peaks of booms."""
     proofs = list(_numbers())
@@ -208,6 +224,8 @@ def study(tell: Callable[[str], None]) -> Study:
                 what, 1e3 * peaks[1], 1e3 * beam, "mm", "other code", "Timoshenko elements", 0.015
             )
         )
+    tell("turned sections")
+    proofs += _turned()
     columns = {
         "sections": "",
         "beam\nmm": ".4g",
@@ -241,6 +259,21 @@ def _numbers() -> Iterator[Proof]:
     _, height = shear_centre(SHAPES["U"][0].plates)
     what = "U: shear centre above the centroid"
     yield Proof(what, 1e3 * height, 1e3 * CENTRE_OF_U, "mm", "external", _PROGRAM, 1.0e-2)
+
+
+def _turned() -> Iterator[Proof]:
+    """Sections that lie on their side or on their head move as they do upright."""
+    for name, (section, _) in SHAPES.items():
+        upright = tip_of_shell(section, "z", ARM_MESH)
+        over = PolygonSection(tuple((y, -z) for y, z in section.corners), section.thicknesses)
+        turned: tuple[tuple[str, Section, Direction], ...] = (
+            ("rolled by 90°: tip to the side", section.turned(), "y"),
+            ("upside down: tip", over, "z"),
+        )
+        for how, other, direction in turned:
+            moved = tip_of_shell(other, direction, ARM_MESH)
+            what = f"{name} {how} of a cantilever of shell"
+            yield Proof(what, 1e6 * moved, 1e6 * upright, "1e-6 m/N", "other code", "upright", 1e-6)
 
 
 _PROGRAM = "finite elements, sectionproperties 3.10.2"

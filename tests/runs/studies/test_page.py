@@ -80,7 +80,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
         "_MODELS": dict.fromkeys(supports._MODELS, supports._elements),
         "decrement": one,
     },
-    "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one},
+    "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
 }
 # Studies without a proof have no section.
 PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder")]
