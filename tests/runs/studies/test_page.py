@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +17,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.studies import direct, supports, working_load
+from runs.studies import direct, supports, taper, working_load
 from runs.studies.convergence import STUDIES
 from runs.studies.motions import friction_case
 from runs.studies.study import Study
@@ -81,6 +82,9 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
         "decrement": one,
     },
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
+    "taper": {
+        "MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])},
+    },
 }
 # Studies without a proof have no section.
 PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder")]
