@@ -11,8 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -159,7 +158,9 @@ class ContactLaw(ABC):
             # One gap takes less time than numba does to compile the loop over many.
             return np.array(sum(of_term(term, float(gaps)) for term in terms))
         total = np.zeros(gaps.size)
-        _compiled(_add_terms)(_inlined(of_term), terms, gaps.ravel(), total)
+        from dynamics.kernels.terms import COMPILED, add_terms
+
+        add_terms(COMPILED[of_term], terms, gaps.ravel(), total)
         return total.reshape(gaps.shape)
 
 
@@ -281,37 +282,6 @@ def slope_of(term: np.void, y: float) -> float:
         return 0.0
     n = term["exponent"]
     return float(n * term["stiffness"] * depth ** (n - 1.0))
-
-
-def _add_terms(of_term: OfTerm, terms: Terms, y: Array, total: Array) -> None:
-    """Add to ``total`` (num_gaps,) what each term of one law says of each gap."""
-    for t in range(terms.size):
-        for i in range(y.size):
-            total[i] += of_term(terms[t], y[i])
-
-
-@cache
-def _compiled(function: Any, **options: Any) -> Any:
-    from dynamics.kernels import njit
-
-    return njit(nogil=True, error_model="numpy", **options)(function)
-
-
-def _inlined(of_term: OfTerm) -> Any:
-    return _compiled(of_term, cache=True, inline="always")
-
-
-def __getattr__(name: str) -> Any:
-    """``term_force`` and ``term_energy``, compiled into the loops that import them.
-
-    numba takes longer to load than a case to check.
-    """
-    if name not in _OF_LOOPS:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return _inlined(_OF_LOOPS[name])
-
-
-_OF_LOOPS = {"term_force": force_of, "term_energy": energy_of}
 
 
 def restitution_damping(restitution: float, speed: float) -> float:

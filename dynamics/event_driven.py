@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Terms, contact_limits, contact_terms, term_force
+from dynamics.contact import Terms, contact_limits, contact_terms
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
@@ -31,6 +31,7 @@ from dynamics.kernels.contact_series import (
     reach,
 )
 from dynamics.kernels.flight import jump, pulls, safe_time, tabulate
+from dynamics.kernels.terms import term_force
 from dynamics.motion import Motion
 from dynamics.step import closing_speeds
 from dynamics.trajectory import Trajectory

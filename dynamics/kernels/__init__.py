@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The compiled loops of the integrators."""
 
-from numba import njit as njit
-
 from dynamics.kernels.compiled import find_folder
 
 # Before a time loop is compiled; it goes when the process does.

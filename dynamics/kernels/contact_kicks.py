@@ -7,8 +7,9 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms, term_energy, term_force
+from dynamics.contact import Limits, Terms
 from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.terms import term_energy, term_force
 
 
 @njit(**SUMS)

@@ -10,9 +10,10 @@ import numpy as np
 from numba import njit
 from scipy.integrate import odeint, solve_ivp
 
-from dynamics.contact import contact_terms, term_force
+from dynamics.contact import contact_terms
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.terms import term_force
 from geometry.arrays import Array
 
 Rates = Callable[[float, Array], Array]
