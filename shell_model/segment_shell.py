@@ -61,6 +61,18 @@ class SegmentShell(Shell):
         """(num_triangles,) of all plates in m, on rank 0."""
         return None if self.mesh is None else plate_thickness(self.segment, self.mesh)
 
+    @property
+    def axial_stress(self) -> Array | None:
+        """(num_triangles,) what the axial force adds to the stress along x in Pa, on rank 0.
+
+        The plain walls carry it, and hand it on to collars.
+        """
+        if self.mesh is None:
+            return None
+        x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
+        force = self.segment.compression(x) / self.segment.area
+        return -force * _evenly(self.segment, self.mesh) / plate_thickness(self.segment, self.mesh)
+
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
         return _outline(self.comm, self.nodes, self.node_dofs, self.segment.section_at(x), x)

@@ -78,6 +78,7 @@ def gather_fields(
             ),
             "wall": ("triangle", np.concatenate([m.walls for m in meshes]).astype(np.int32)),
             "thickness": ("triangle", np.concatenate(thickness), {"units": "m"}),
+            **_axial_stress(shells),
             "modes": (("mode", "point", "component"), all_modes),
             **_own_stresses(stresses),
         },
@@ -86,6 +87,15 @@ def gather_fields(
             **{f"plate_{k}": list(mesh.plates) for k, mesh in enumerate(meshes, start=1)},
         },
     )
+
+
+def _axial_stress(shells: Sequence[SegmentShell]) -> dict[str, _Variable]:
+    """Where there are axial forces."""
+    if not any(shell.segment.compression for shell in shells):
+        return {}
+    stresses = [shell.axial_stress for shell in shells]
+    whole = np.concatenate([stress for stress in stresses if stress is not None])
+    return {"axial_stress": (("triangle",), whole, {"units": "Pa"})}
 
 
 def _own_stresses(stresses: Sequence[Modes]) -> dict[str, _Variable]:

@@ -84,6 +84,7 @@ class ShellStress:
             of each of its own coordinates.
         states: for each segment (num_times, num_own) these coordinates.
         time: (num_times,) in s.
+        axial: (num_triangles,) in Pa, what axial forces add along x at all times.
     """
 
     centroids: Array
@@ -97,6 +98,7 @@ class ShellStress:
     modes: Sequence[Modes]
     states: Sequence[Modes]
     time: Array
+    axial: npt.NDArray[np.float32]
 
     @classmethod
     def of(cls, fields: xr.Dataset) -> ShellStress:
@@ -113,6 +115,7 @@ class ShellStress:
             modes=[fields[f"stress_{k}"].values for k in numbers],
             states=[(state @ combination.T).astype(np.float32) for combination in own],
             time=np.asarray(fields["time"].values, dtype=float),
+            axial=_axial(fields),
         )
 
     @classmethod
@@ -133,6 +136,7 @@ class ShellStress:
             modes=[modes],
             states=[np.ones((1, 1), dtype=np.float32)],
             time=np.zeros(1),
+            axial=np.zeros(len(mesh.triangles), dtype=np.float32),
         )
 
     def at(self, t: float) -> Stress:
@@ -142,7 +146,9 @@ class ShellStress:
             np.tensordot(state[step], modes, axes=1)
             for state, modes in zip(self.states, self.modes, strict=True)
         ]
-        return _stress(np.concatenate(values))
+        whole = np.concatenate(values)
+        whole[:, 0] += self.axial
+        return _stress(whole)
 
     def over_time(
         self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
@@ -158,15 +164,17 @@ class ShellStress:
         (number,) = np.unique(self.segment[triangles])
         first = int(np.searchsorted(self.segment, number))
         states = self.states[number][steps]
-        modes = self.modes[number][:, triangles - first]
+        modes, axial = self.modes[number][:, triangles - first], self.axial[triangles]
         if means is not None:
-            modes = np.einsum("pt,mtc->mpc", means.astype(np.float32), modes)
+            weights = means.astype(np.float32)
+            modes, axial = np.einsum("pt,mtc->mpc", weights, modes), weights @ axial
         flat = modes.reshape(len(modes), -1)
         piece = max(1, _AT_ONCE // max(1, flat.shape[1]))
         for begin in range(0, len(states), piece):
             part = slice(begin, min(begin + piece, len(states)))
-            values = states[part] @ flat
-            yield part, _stress(values.reshape(len(values), *modes.shape[1:]))
+            values = (states[part] @ flat).reshape(-1, *modes.shape[1:])
+            values[..., 0] += axial
+            yield part, _stress(values)
 
     def holds(self, segment: int, x: float) -> bool:
         """Whether a segment comes to x (m)."""
@@ -265,6 +273,13 @@ def _within(strength: Array, z: Array, sigma: npt.NDArray[np.float32], height: f
     at_centroids = strength @ z**2
     slope = (strength * z) @ sigma / at_centroids
     return float(slope * (strength.sum() * height**2 / 12.0 - at_centroids))
+
+
+def _axial(fields: xr.Dataset) -> npt.NDArray[np.float32]:
+    """(num_triangles,) in Pa; none in folders of booms without axial forces."""
+    if "axial_stress" in fields:
+        return np.asarray(fields["axial_stress"].values, dtype=np.float32)
+    return np.zeros(fields.sizes["triangle"], dtype=np.float32)
 
 
 def _stress(values: npt.NDArray[np.float32]) -> Stress:

@@ -43,6 +43,7 @@ def shell() -> ShellStress:
         modes=[modes],
         states=[states],
         time=TIME,
+        axial=still.axial,
     )
 
 
