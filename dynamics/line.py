@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -35,6 +35,10 @@ class Line:
     def read(self, states: Array) -> dict[Quantity, Array]:
         """(..., num_places) of modal coordinates (..., num_modes)."""
         return {name: states @ row.T for name, row in self.rows.items()}
+
+    def on(self, basis: Array) -> Line:
+        """The same for other coordinates, of which (num_modes, num_others) gives these."""
+        return replace(self, rows={name: row @ basis for name, row in self.rows.items()})
 
     def beside(self, name: Quantity, x: float, side: int) -> Array:
         """(num_modes,) row of a quantity at x in m as it goes on from one side; 0 off the segment.

@@ -11,16 +11,26 @@ import numpy as np
 
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
+from dynamics.tied import tied_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import Answers, AtRest, Mode, ModelAnswers, ModesBeside
+from runs.pipeline.answers import (
+    Answers,
+    AtRest,
+    Life,
+    Mode,
+    ModelAnswers,
+    ModesBeside,
+    Moved,
+)
 from runs.pipeline.at_rest import NUMERICS, at_rest, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
+from runs.pipeline.motion import asked
 from runs.pipeline.moved import Motions, wall_stresses
 from runs.pipeline.play import added
 from runs.pipeline.shell_output import ShellOutput
@@ -55,41 +65,83 @@ def of_model(
         trajectory: its motion.
         shell: what it leaves besides.
     """
-    own = boom.play_free if model.play_free else boom
-    lines, duration = model.lines(boom, built), case.time.duration
-    played = _resting(own, built.system.gathered(), lines, duration)
-    tied = _tied(boom, model, duration)
-    motions = Motions(own, lines, trajectory, played.positions, played.rests, not model.smooth)
-    walls = [] if shell is None else wall_stresses(own, shell.stresses)
-    return ModelAnswers(
-        rests=played.rests,
-        tied=tied.rests,
-        modes=played.modes,
-        # Their shapes are those of the pressed boom to the eye.
-        tied_modes=[replace(mode, shapes=[]) for mode in tied.modes],
-        moved=replace(motions.told, walls=walls),
-        life=[life(one, case.life) for one in motions.varying] if COUNTS else [],
+    played = Shown(
+        boom.play_free if model.play_free else boom,
+        built.system.gathered(),
+        model.lines(boom, built),
     )
+    resting = _resting(played, case.time.duration)
+    moved, lives = _moving(played, resting, trajectory, model, case)
+    walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
+    answers = ModelAnswers(
+        rests=resting.rests, modes=resting.modes, moved=replace(moved, walls=walls), life=lives
+    )
+    if model.play_free or not boom.joints:
+        return answers
+    try:
+        return _beside_tied(answers, _tied(boom, model, played, resting), model, case)
+    except NUMERICS:
+        # Rigid segments that are tied leave nothing to move, for one.
+        return answers
 
 
-def _resting(boom: Boom, system: GapSystem, lines: Sequence[Line], duration: float) -> Resting:
-    found = positions(system, duration)
+class Shown(NamedTuple):
+    """A model of a boom, all that stays constant in the load of its system, and along it."""
+
+    boom: Boom
+    system: GapSystem
+    lines: Sequence[Line]
+
+
+def _resting(shown: Shown, duration: float) -> Resting:
+    found = positions(shown.system, duration)
     if not found:
-        return Resting(np.zeros((0, system.num_modes)), [], [])
+        return Resting(np.zeros((0, shown.system.num_modes)), [], [])
     return Resting(
         np.array(list(found.values())),
-        [at_rest(boom, system, lines, time, position) for time, position in found.items()],
-        modes(boom, system, lines, found[0.0]),
+        [at_rest(*shown, time, position) for time, position in found.items()],
+        modes(*shown, found[0.0]),
     )
 
 
-def _tied(boom: Boom, model: Model, duration: float) -> Resting:
-    try:
-        system, lines = model.without_play(boom)
-    except NUMERICS:
-        # Rigid segments that are tied leave nothing to move.
-        return Resting(np.zeros((0, 0)), [], [])
-    return _resting(boom.play_free, system.gathered(), lines, duration)
+def _moving(
+    shown: Shown, resting: Resting, trajectory: Trajectory, model: Model, case: Case
+) -> tuple[Moved, list[Life]]:
+    motions = Motions(
+        shown.boom,
+        shown.lines,
+        trajectory,
+        resting.positions,
+        resting.rests,
+        jumps=not model.smooth,
+    )
+    lives = [life(one, case.life) for one in motions.varying] if COUNTS else []
+    return motions.told, lives
+
+
+def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:
+    """The same without play."""
+    own = model.without_play(boom)
+    if own is not None:
+        return Shown(boom.play_free, own[0].gathered(), own[1])
+    system, basis = tied_system(played.system, list(resting.positions))
+    return Shown(boom.play_free, system, [line.on(basis) for line in played.lines])
+
+
+def _beside_tied(answers: ModelAnswers, tied: Shown, model: Model, case: Case) -> ModelAnswers:
+    from dynamics.integrators import suited
+
+    resting = _resting(tied, case.time.duration)
+    motion, _ = asked(tied.system, case, model)
+    moved, lives = _moving(tied, resting, suited(motion)(motion), model, case)
+    return replace(
+        answers,
+        tied=resting.rests,
+        # Their shapes are those of the pressed boom to the eye.
+        tied_modes=[replace(mode, shapes=[]) for mode in resting.modes],
+        tied_moved=moved,
+        tied_life=lives,
+    )
 
 
 def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:

@@ -321,11 +321,14 @@ class ModelAnswers:
     Args:
         rests: under the loads of t = 0, and where these change also those of the instants at which
             they are largest; none where it has no rest.
-        tied: the same without play; of a shell those of Timoshenko elements.
+        tied: the same without play.
         modes: the first ones at rest under the loads of t = 0; none where it has no rest.
         tied_modes: of what ``tied`` is of, without their shapes.
         moved: over the run.
+        tied_moved: what it would have gone through without play; None without any, and where that
+            cannot be computed. Walls of shells are left out.
         life: of each segment whose section is known, where cycles can be counted.
+        tied_life: likewise without play.
     """
 
     rests: list[AtRest] = field(default_factory=list)
@@ -333,7 +336,9 @@ class ModelAnswers:
     modes: list[Mode] = field(default_factory=list)
     tied_modes: list[Mode] = field(default_factory=list)
     moved: Moved | None = None
+    tied_moved: Moved | None = None
     life: list[Life] = field(default_factory=list)
+    tied_life: list[Life] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -370,16 +375,11 @@ class PlayAdds:
 
     Args:
         model: with play.
-        beside: the case's own model without play, whose motion is the other one; None where there
-            is none, and rests and frequencies alone are known.
-        alike: whether that one differs by the play alone.
-        numbers: rests and frequencies beside those of the same model without play (of a shell
-            those of Timoshenko elements), then those of the motions.
+        numbers: at rest, of the modes, of the motions, each beside that of the same model without
+            play.
     """
 
     model: str
-    beside: str | None
-    alike: bool
     numbers: list[Added]
 
 

@@ -16,19 +16,11 @@ def added(models: list[Model], answers: Mapping[str, ModelAnswers]) -> list[Play
         models: of the case, those that ran.
         answers: of each.
     """
-    tied = next((model for model in models if model.play_free), None)
     return [
-        PlayAdds(
-            model.name,
-            None if tied is None else tied.name,
-            tied is not None and (model.kind, model.describe()) == (tied.kind, tied.describe()),
-            [
-                *_at_rest(answers[model.name]),
-                *(() if tied is None else _in_motion(model, answers, answers[tied.name])),
-            ],
-        )
+        PlayAdds(model.name, [*_at_rest(own), *_in_motion(own)])
         for model in models
         if not model.play_free
+        for own in [answers[model.name]]
     ]
 
 
@@ -44,26 +36,19 @@ def _at_rest(own: ModelAnswers) -> Iterator[Added]:
         yield Added("first frequency", first.way, "Hz", first.frequency, next(alike, 0.0))
 
 
-def _in_motion(
-    model: Model, answers: Mapping[str, ModelAnswers], tied: ModelAnswers
-) -> Iterator[Added]:
-    own = answers[model.name]
-    if own.moved is None or tied.moved is None:
+def _in_motion(own: ModelAnswers) -> Iterator[Added]:
+    if own.moved is None or own.tied_moved is None:
         return
-    others = {(peak.what, peak.where): peak.largest for peak in tied.moved.peaks}
+    others = {(peak.what, peak.where): peak.largest for peak in own.tied_moved.peaks}
     for peak in own.moved.peaks:
-        # What a series lacks of a moment at a kink is no effect of play.
-        bends = model.smooth and peak.what == "bending moment"
-        if (named := (peak.what, peak.where)) in others and not bends:
+        if (named := (peak.what, peak.where)) in others:
             yield Added(*named, peak.unit, peak.largest, others[named])
-    if model.smooth:
-        return
-    stresses = {fibre.segment: abs(fibre.stress) for fibre in tied.moved.fibres}
+    stresses = {fibre.segment: abs(fibre.stress) for fibre in own.tied_moved.fibres}
     for fibre in own.moved.fibres:
         if fibre.segment in stresses:
             here = abs(fibre.stress), stresses[fibre.segment]
             yield Added("stress", fibre.segment, "Pa", *here)
-    damages = {life.segment: life.life_damage for life in tied.life}
+    damages = {life.segment: life.life_damage for life in own.tied_life}
     for life in own.life:
         other = damages.get(life.segment)
         if life.life_damage is not None and other is not None:

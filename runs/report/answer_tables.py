@@ -89,10 +89,7 @@ def play_note(results: Results) -> str:
     found = _play(results)
     if found is None:
         return ""
-    if found.beside is None:
-        return f"Of the model {found.model}, beside the same boom without play."
-    other = "" if found.alike else ", which differs by more than the play"
-    return f"Of the model {found.model}, its motion beside that of {found.beside}{other}."
+    return f"Of the model {found.model}, beside the same without play."
 
 
 def play_table(results: Results) -> Table | None:

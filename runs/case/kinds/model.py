@@ -179,9 +179,9 @@ class ModelTable(Table):
     def lines(self, boom: Boom, built: Built) -> list[Line]:
         """What is read along each segment of the model as it was built, on the first rank."""
 
-    @abstractmethod
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
-        """The same boom without play, by itself or by what stands in for it, and along it."""
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
+        """The same boom without play, and along it; None where contacts are to be tied for that."""
+        return None
 
     @abstractmethod
     def stand_in(self, boom: Boom) -> StandIn:

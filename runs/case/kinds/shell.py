@@ -16,7 +16,6 @@ from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
 if TYPE_CHECKING:
-    from dynamics.gap_system import GapSystem
     from dynamics.line import Line
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduction.krylov import KrylovOptions
@@ -126,9 +125,6 @@ class ShellTable(ModelTable):
         assert built.shell is not None
         assert built.shell.fields is not None
         return lines(built.shell.fields, spatial=boom.spatial)
-
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
-        return self.stand_in(boom).beam.without_play(boom)
 
     @property
     def longest_edge(self) -> float:
