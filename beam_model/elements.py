@@ -181,7 +181,7 @@ def _shear_flexibility(segment: Segment, theory: Theory) -> float:
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
     """Φ = 12 E J / (G A_s h²), zero for a beam that is rigid in shear."""
-    if theory == "euler-bernoulli" or segment.section is None:
+    shear_stiffness = segment.shear_stiffness
+    if theory == "euler-bernoulli" or shear_stiffness is None:
         return 0.0
-    shear_stiffness = segment.material.shear_modulus * segment.section.shear_area
     return 12.0 * segment.bending_stiffness / (shear_stiffness * h**2)

@@ -7,8 +7,9 @@ are the flat boom and the one in space, which has more components and more pads.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
@@ -20,6 +21,27 @@ from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
 from geometry.cylinder import ground_lines
 from geometry.observation import Observation, Quantity
+from geometry.section import Offset
+
+
+class Touch(NamedTuple):
+    """Where beams touch.
+
+    Args:
+        sides: of a pad or stop that presses both ways, see ``GapBuilder.press``.
+        x: m of a pad's approach, and of its slide.
+        offsets: (y, z) in m of a pad's inner and outer point.
+    """
+
+    sides: Sequence[int]
+    x: Callable[[Pad], tuple[float, float]]
+    offsets: Callable[[Pad], tuple[Offset, Offset]]
+
+
+# At the stations, by the whole law on the axis.
+AT_STATIONS = Touch((0,), lambda pad: (pad.x, pad.x), lambda pad: (pad.inner, pad.outer))
+# Where a shell's pads are, each side by itself, as a shell's walls do.
+AT_PADS = Touch((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.covered)
 
 
 def gap_system(
@@ -27,6 +49,7 @@ def gap_system(
     models: Sequence[SegmentModel],
     laws: Sequence[ContactLaw],
     lateral_laws: Sequence[ContactLaw] = (),
+    touch: Touch = AT_STATIONS,
 ) -> GapSystem:
     """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
 
@@ -35,19 +58,24 @@ def gap_system(
         models: one for each segment.
         laws: one for each joint, along z.
         lateral_laws: one for each joint, along y; none for a flat boom.
+        touch: where its pads are read.
     """
     modes = BoomModes(boom, models)
     laws_along = {"z": laws, "y": lateral_laws}
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
         law = laws_along[pad.direction][pad.number]
-        approach, slide = (_relative(modes, pad, along) for along in (pad.direction, pad.rubs))
-        points = [(pad.side, pad.weight, approach)]
+        pressed, slid = touch.x(pad)
+        approach = _relative(modes, pad, pad.direction, pressed, touch.offsets(pad))
+        slide = _relative(modes, pad, pad.rubs, slid, (pad.inner, pad.outer))
+        sides = (pad.side,) if pad.side else touch.sides
+        points = [(side, pad.weight, approach) for side in sides]
         pressing = rows.press(pad.station, law, points, pad.raised)
         rows.drag(pad.station, pad.joint.dashpot, points)
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
-        rows.stop(station, stop, [(0, 1.0, modes.displacement(stop.segment, stop.x, "z"))])
+        row = modes.displacement(stop.segment, stop.x, "z")
+        rows.stop(station, stop, [(side, 1.0, row) for side in touch.sides])
     members = [_Member(modes, number) for number in range(len(models))]
     return rows.system(
         lambda row: row,
@@ -69,10 +97,12 @@ def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     return gap_system(boom.play_free, models, ())
 
 
-def _relative(modes: BoomModes, pad: Pad, direction: Direction) -> Array:
-    """(num_modes,) row that reads u − w of a pad's two points."""
-    inner = modes.displacement(pad.joint.inner, pad.x, direction, pad.inner)
-    return inner - modes.displacement(pad.joint.outer, pad.x, direction, pad.outer)
+def _relative(
+    modes: BoomModes, pad: Pad, direction: Direction, x: float, offsets: tuple[Offset, Offset]
+) -> Array:
+    """(num_modes,) row that reads u − w of a pad's two points at x in m."""
+    inner = modes.displacement(pad.joint.inner, x, direction, offsets[0])
+    return inner - modes.displacement(pad.joint.outer, x, direction, offsets[1])
 
 
 def _observed(boom: Boom, modes: BoomModes) -> dict[str, Observed[Array]]:

@@ -101,6 +101,7 @@ class Pad:
         pressed: what it presses of the corners of the inner and of the outer segment.
         patch: the wall that it covers; None where it is a point.
         raised: how far it stands out beyond the joint's clearance in m.
+        across: how far the middle of what it covers is from its points, across its wall, in m.
     """
 
     station: int
@@ -117,11 +118,29 @@ class Pad:
     pressed: tuple[Stretch, Stretch]
     patch: Patch | None
     raised: float = 0.0
+    across: float = 0.0
 
     @property
     def half(self) -> int:
         """On which half of its wall it sits in space: 1 where the coordinate across is positive."""
         return int(np.sign(self.inner[0] if self.direction == "z" else self.inner[1]))
+
+    @property
+    def middle(self) -> float:
+        """x in m of the middle of what it covers, through which its resultant goes."""
+        return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
+
+    @property
+    def slid(self) -> float:
+        """x in m where its slide is read: of a flat boom in its middle, in space at its corner."""
+        return self.middle if self.joint.lateral_clearance is None else self.x
+
+    @property
+    def covered(self) -> tuple[Offset, Offset]:
+        """(y, z) in m of the middles of what it covers of both segments, from their axes."""
+        step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
+        (a, b), (c, d) = self.inner, self.outer
+        return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +192,7 @@ def pads(boom: Boom) -> list[Pad]:
                 for side, inner, outer, whole in _points(boom, joint, direction, x):
                     for size, share, shim in joint.pads_of(direction, side):
                         weight = whole * share
+                        patch = _patch(boom, joint, size, x)
                         pad = Pad(
                             station=station,
                             joint=joint,
@@ -189,12 +209,30 @@ def pads(boom: Boom) -> list[Pad]:
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
                             pressed=pressed,
-                            patch=_patch(boom, joint, size, x),
+                            patch=patch,
                             raised=shim,
+                            across=_across(boom, joint, patch, x, direction, side, inner),
                         )
                         found.append(pad)
                 station += 1
     return found
+
+
+def _across(
+    boom: Boom,
+    joint: Joint,
+    patch: Patch | None,
+    x: float,
+    direction: Direction,
+    side: Side,
+    corner: Offset,
+) -> float:
+    """How far the middle of a patch is from the corner beside which it lies in space, in m."""
+    if patch is None or joint.lateral_clearance is None:
+        return 0.0
+    face = boom.segments[joint.inner].section_at(x).face(direction, side)
+    end = corner[0] if direction == "z" else corner[1]
+    return float(np.sign(end) * 0.5 * sum(patch.across(face)) - end)
 
 
 def _points(

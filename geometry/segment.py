@@ -143,6 +143,7 @@ class Segment:
         collars, diaphragms: what stiffens the plates; beams do not know of them, and the numbers
             above are those of the plain box.
         compression: the axial force that it carries, see :func:`geometry.axial.with_compression`.
+        shear_stiffnesses: G A_s in N along z and along y, where they are not the section's.
     """
 
     name: str
@@ -162,6 +163,7 @@ class Segment:
     collars: tuple[Collar, ...] = ()
     diaphragms: tuple[Diaphragm, ...] = ()
     compression: Compression = UNPRESSED
+    shear_stiffnesses: tuple[float, float] | None = None
 
     @classmethod
     def of_section(
@@ -268,6 +270,15 @@ class Segment:
         return self.material.youngs_modulus * self.second_moment_of_area
 
     @property
+    def shear_stiffness(self) -> float | None:
+        """G A_s in N; None where neither it nor the section is known."""
+        if self.shear_stiffnesses is not None:
+            return self.shear_stiffnesses[0]
+        if self.section is None:
+            return None
+        return self.material.shear_modulus * self.section.shear_area
+
+    @property
     def rigid_modes(self) -> int:
         """How many motions along z the supports leave free of strain."""
         held = sum(
@@ -307,6 +318,7 @@ class Segment:
             supports=tuple(support.turned() for support in self.supports),
             section=None if self.section is None else self.section.turned(),
             head_section=None if self.head_section is None else self.head_section.turned(),
+            shear_stiffnesses=self.shear_stiffnesses and self.shear_stiffnesses[::-1],
             lateral=replace(
                 self.lateral,
                 second_moment_of_area=self.second_moment_of_area,

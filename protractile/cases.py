@@ -95,7 +95,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
     """
     chosen = reading.select(case, _CASE, models)
     comm = None
-    if any(model.meshed for model in chosen.models):
+    if any(model.needs_shell for model in chosen.models):
         from mpi4py import MPI
 
         comm = MPI.COMM_SELF

@@ -385,7 +385,7 @@ def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
     from runs.case.messages import BadInput
 
     for number, model in enumerate(case.models, start=1):
-        if model.meshed:
+        if model.needs_shell:
             try:
                 import_module("shell_model.boom_shell")
                 from mpi4py import MPI

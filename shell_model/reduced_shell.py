@@ -15,6 +15,7 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
+from geometry.far_field import FarField
 from geometry.mesh import SegmentMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
 from shell_model.contact.local_compliance import (
@@ -25,6 +26,7 @@ from shell_model.contact.local_compliance import (
 )
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
+from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.stress.fields import gather_fields
@@ -46,10 +48,12 @@ class ReducedShell:
         mesh_error: the largest part of the local compliance by which the mesh may be off; NaN where
             there is none.
         seconds: wall time of each stage: mesh, assembly, rows (of contacts and readings, their
-            values for each coordinate), reduction, fields (of displacement and stress), mesh error.
+            values for each coordinate), reduction, fields (of displacement and stress), mesh error,
+            far field.
         meshes: of the segments, on rank 0.
         critical_factor: of the axial forces with the joints pressed, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
+        far_fields: of the segments, which tell what beams they are.
     """
 
     system: GapSystem
@@ -61,6 +65,7 @@ class ReducedShell:
     seconds: dict[str, float]
     meshes: Sequence[SegmentMesh]
     critical_factor: float | None = float("inf")
+    far_fields: Sequence[FarField] = ()
 
 
 def reduce_boom(
@@ -105,6 +110,8 @@ def reduce_boom(
             )
         )
         mesh_error = extrapolated_error(local, coarse_local, options.order)
+    with stages.stage("far field"):
+        far_fields = [far_field(boom, number, shell) for number, shell in enumerate(full.shells)]
     return ReducedShell(
         system=system,
         num_dofs=full.num_dofs,
@@ -119,6 +126,7 @@ def reduce_boom(
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
         critical_factor=_critical_factor(boom, full, reduced),
+        far_fields=far_fields,
     )
 
 

@@ -144,9 +144,9 @@ def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
     """The models with the shells changed as an option says."""
-    if not any(model.meshed for model in models):
+    if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
-    return tuple(model.model_copy(update=update) if model.meshed else model for model in models)
+    return tuple(model.with_shells(update) for model in models)
 
 
 def _read(path: str) -> dict[str, object]:

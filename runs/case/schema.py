@@ -414,6 +414,15 @@ class Case(Table):
         alias="model", description="the models to run, one [[model]] each"
     )
 
+    @model_validator(mode="after")
+    def _calibrators(self) -> Case:
+        """Names of shells that calibrate beams give way to their tables, which stand alone."""
+        by_name = {model.name: model for model in self.models}
+        resolved = tuple(model.calibrated_among(by_name) for model in self.models)
+        if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
+            object.__setattr__(self, "models", resolved)
+        return self
+
     @property
     def system(self) -> System:
         """In whose units tables and sweeps show it."""

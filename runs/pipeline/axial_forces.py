@@ -34,7 +34,7 @@ def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
     cautions: list[str] = []
     for model in case.models:
         # A shell would have to be computed first.
-        name = f"{model.name}, as beam elements" if model.meshed else model.name
+        name = f"{model.name}, as beam elements" if model.needs_shell else model.name
         factor = model.critical_factor(boom)
         cautions += of_buckling(name, factor)
         row = "unknown", "unknown"

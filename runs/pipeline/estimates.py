@@ -66,7 +66,7 @@ class Cost:
 def of_run(case: Case) -> Cost:
     """What a run of a checked case takes."""
     boom = build_boom(case)
-    shell = any(model.meshed for model in case.models)
+    shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
     # What overflows is found when it is run.
     with np.errstate(all="ignore"):

@@ -160,8 +160,8 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
     given += [support.dashpot for segment in boom.segments for support in segment.supports]
     for model in case.models if any(given) else ():
         # A shell would have to be computed first.
-        beam = model.stand_in(boom).beam if model.meshed else model
-        name = f"{model.name}, as beam elements" if model.meshed else model.name
+        beam = model.stand_in(boom).beam if model.needs_shell else model
+        name = f"{model.name}, as beam elements" if model.needs_shell else model.name
         table.add_row(name, *islice(_ratios(case, boom, beam), SHOWN_MODES))
     return table
 

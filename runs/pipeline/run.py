@@ -189,12 +189,12 @@ def _run_model(
     """What a model leaves, on rank 0; None elsewhere."""
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
-    if model.meshed or first_rank:
+    if model.needs_shell or first_rank:
         tools = None if comm is None else workshop(comm, mesh_folder, stages.tell, cache)
         try:
             built = build(case, boom, model, tools)
         except _NUMERICS as error:
-            if comm is None or comm.size == 1 or not model.meshed:
+            if comm is None or comm.size == 1 or not model.needs_shell:
                 raise
             raise _SharedFailure(_reason(error)) from error
         stages.seconds |= built.seconds

@@ -194,7 +194,7 @@ def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
     outcome = Outcome({}, {})
     for model in case.models:
         comm = None
-        if model.meshed:
+        if model.needs_shell:
             from mpi4py import MPI
 
             comm = MPI.COMM_SELF

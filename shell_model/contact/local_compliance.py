@@ -10,6 +10,7 @@ compliance* of each side. Errors of the compliance are told as parts of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -46,23 +47,24 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
     return found
 
 
-def shell_compliance(shell: SegmentShell, rows: Array) -> Array:
+def shell_compliance(shell: SegmentShell, rows: Array, frequency: float = SLOW) -> Array:
     """(num_rows, num_rows) in m/N what forces on the rows of a shell do to each other. Collective.
 
     Args:
         shell: not reduced.
         rows: (num_owned, num_rows).
+        frequency: of the shift in Hz.
     """
     jobs = Folding(shell).jobs(rows, rows[:, :0])
     found = np.zeros((rows.shape[1], rows.shape[1]))
-    for root, family in shared(shell.comm, jobs, _answers):
+    for root, family in shared(shell.comm, jobs, partial(_answers, frequency)):
         found += shell.comm.bcast(family, root)
     return found
 
 
-def _answers(_: int, job: Job) -> Array:
+def _answers(frequency: float, _: int, job: Job) -> Array:
     """(num_rows, num_rows) the same of a family."""
-    solve = ShiftedSolver(job.shell(), SLOW)
+    solve = ShiftedSolver(job.shell(), frequency)
     answers = job.forces.T @ solve(job.forces)
     solve.destroy()
     return answers

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from tests.runs.bad_booms import NUMBERS
+from tests.runs.bad_calibrations import CALIBRATIONS
 from tests.runs.bad_contacts import CONTACTS
 from tests.runs.bad_forms import FORMS
 from tests.runs.bad_stiffeners import STIFFENERS
 from tests.runs.bad_supports import SUPPORTS
 
-BAD_EDITS = FORMS | NUMBERS | CONTACTS | STIFFENERS | SUPPORTS
+BAD_EDITS = FORMS | NUMBERS | CALIBRATIONS | CONTACTS | STIFFENERS | SUPPORTS

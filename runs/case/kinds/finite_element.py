@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
@@ -11,11 +11,19 @@ from pydantic import Field
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
-from runs.case.kinds.model import BeamTable, Joined, StandIn
+from runs.case.kinds.calibration import CalibratedTable
+from runs.case.kinds.model import Joined, StandIn
+from runs.case.kinds.shell import ShellTable
 from runs.case.limits import Flag, Length
+
+if TYPE_CHECKING:
+    from dynamics.gap_system import GapSystem
 
 # A dense eigenproblem of more elements is a slip of the pen.
 MOST_ELEMENTS = 5_000
+
+# Coordinates of each segment with the fields of its section, at most.
+FIELDS = 40
 
 # Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n². Measured.
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
@@ -23,28 +31,41 @@ _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
 _BUILT = 400
 
 
-class FiniteElementTable(BeamTable):
+class FiniteElementTable(CalibratedTable):
     """Beam finite elements."""
 
     kind: Literal["finite-element"] = Field(description="the kind of model")
     element_length: Length = Field(0.5, description="the length of an element in m, at most")
     theory: Literal["euler-bernoulli", "timoshenko"] = Field(
-        "euler-bernoulli", description="the beam theory"
+        "euler-bernoulli",
+        description="the beam theory; a calibrated beam is always shear-flexible, with the rotary "
+        "inertia of its plates",
     )
     rotary_inertia: Flag = Field(True, description="whether the rotary inertia is kept")
     tied: Flag = Field(
         False, description="whether the segments deflect alike at the stations, without play"
     )
 
+    section_fields: Flag = Field(
+        False,
+        description="whether a calibrated beam has the section's own fields besides: bending and "
+        f"what breathes and distorts, in {FIELDS} coordinates of each segment at most",
+    )
+
     @property
     def needs_plates(self) -> bool:
-        return self.theory == "timoshenko"
+        return self.theory == "timoshenko" or super().needs_plates
 
     @property
     def play_free(self) -> bool:
         return self.tied
 
     def check(self, where: str, joined: Joined) -> None:
+        if self.section_fields and self.calibrated_by is None:
+            raise BoomError(
+                f"{where}.section_fields",
+                "only a calibrated beam has them; give calibrated_by, or leave it out",
+            )
         if self.tied and self.contact:
             raise BoomError(f"{where}.contact", "a tied model has no contact; leave it out")
         length = max(segment.length for segment in joined.boom.segments)
@@ -57,12 +78,27 @@ class FiniteElementTable(BeamTable):
         super().check(where, joined)
 
     def describe(self) -> str:
+        if isinstance(self.calibrated_by, ShellTable):
+            more = " and section fields" if self.section_fields else ""
+            return (
+                f"elements of {self.element_length:g} m, with springs{more} by a shell of "
+                f"{self.calibrated_by.mesh_size:g} m"
+            )
         return f"{self.theory}, elements of {self.element_length:g} m"
 
     def segments(self, boom: Boom) -> list[SegmentModel]:
+        if self.calibrated_by is not None:
+            return finite_element_segments(boom, self.element_length, "timoshenko", True)
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
-    def stand_in(self, boom: Boom) -> StandIn:
+    def fielded(self, beam: GapSystem, shell: GapSystem, boom: Boom) -> GapSystem:
+        from dynamics.condensation import condensed
+
+        if not self.section_fields:
+            return beam
+        return condensed(shell, FIELDS * len(boom.segments))
+
+    def beam_stand_in(self, boom: Boom) -> StandIn:
         nodes = sum(
             np.ceil(segment.length / self.element_length) + 1 + len(boom.stations_of(number))
             for number, segment in enumerate(boom.segments)

@@ -10,14 +10,15 @@ from pydantic import Field
 from beam_model.component import SegmentModel
 from beam_model.kantorovich import check_base, kantorovich_segments
 from geometry.boom import Boom, BoomError
-from runs.case.kinds.model import BeamTable, Joined, StandIn
+from runs.case.kinds.calibration import CalibratedTable
+from runs.case.kinds.model import Joined, StandIn
 from runs.case.limits import Count, Few, Flag
 
 # Beyond this, round-off in the polynomials passes 1e-6 of the lowest frequencies.
 MOST_TERMS = 60
 
 
-class KantorovichTable(BeamTable):
+class KantorovichTable(CalibratedTable):
     """The semi-discrete Ritz series of the paper."""
 
     smooth: ClassVar[bool] = True
@@ -57,7 +58,8 @@ class KantorovichTable(BeamTable):
         return f"terms {' + '.join(map(str, self.terms))}, base {self.base}"
 
     def segments(self, boom: Boom) -> list[SegmentModel]:
-        return kantorovich_segments(boom, self.terms, self.base, self.rotary_inertia)
+        rotary_inertia = self.rotary_inertia or self.calibrated_by is not None
+        return kantorovich_segments(boom, self.terms, self.base, rotary_inertia)
 
-    def stand_in(self, boom: Boom) -> StandIn:
+    def beam_stand_in(self, boom: Boom) -> StandIn:
         return StandIn(self, sum(self.terms) * (3 if boom.spatial else 1))

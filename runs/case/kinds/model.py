@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +21,7 @@ from runs.case.limits import In, Name, Positive, Table
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from beam_model.calibration import Calibration
     from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
     from dynamics.line import Line
@@ -70,6 +71,7 @@ class Built:
         critical_factor: of the axial forces with the joints pressed, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
         shell: what a reduced shell has beyond its system.
+        calibration: what a calibrated beam has read from its shell.
     """
 
     system: GapSystem
@@ -77,6 +79,7 @@ class Built:
     seconds: dict[str, float] = field(default_factory=dict)
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None
+    calibration: Calibration | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +112,7 @@ class ModelTable(Table):
     )
     kind: str = Field(description="the kind of model")
 
-    # Whether it has a mesh of the plates: it takes FEniCSx and a workshop, and leaves fields.
+    # Whether it has a mesh of the plates: it leaves fields.
     meshed: ClassVar[bool] = False
 
     # Whether its section forces run smoothly past the forces that act, as those of a series do.
@@ -121,9 +124,26 @@ class ModelTable(Table):
         return 0.0
 
     @property
+    def needs_shell(self) -> bool:
+        """Whether it takes FEniCSx and a workshop to build."""
+        return self.meshed
+
+    @property
     def needs_plates(self) -> bool:
         """Whether it cannot do without the sections of the segments."""
         return self.meshed
+
+    def with_shells(self, update: Mapping[str, object]) -> Self:
+        """The model with the shell that it is, or that calibrates it, changed."""
+        return self.model_copy(update=update) if self.meshed else self
+
+    def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
+        """The model with the table of the one that calibrates it in place of its name.
+
+        Args:
+            models: of its case, by their names.
+        """
+        return self
 
     @property
     def play_free(self) -> bool:

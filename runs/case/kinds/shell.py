@@ -11,7 +11,6 @@ import numpy as np
 from pydantic import Field
 
 from geometry.boom import Boom, BoomError
-from runs.case.kinds.finite_element import FiniteElementTable
 from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
@@ -134,6 +133,8 @@ class ShellTable(ModelTable):
         return self.stand_in(boom).beam.critical_factor(boom)
 
     def stand_in(self, boom: Boom) -> StandIn:
+        from runs.case.kinds.finite_element import FiniteElementTable
+
         padded = any(joint.padded for joint in boom.joints)
         graded = 1.0 if self.contact_tolerance == "any" else _PADDED if padded else _GRADED
         dofs = graded * _DOFS * _surface(boom) / self.mesh_size**2
@@ -149,6 +150,8 @@ class ShellTable(ModelTable):
             theory="timoshenko",
             rotary_inertia=True,
             tied=False,
+            calibrated_by=None,
+            section_fields=False,
         )
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
         return StandIn(beam, coordinates, _SHORTER, memory, _REDUCTION * dofs)

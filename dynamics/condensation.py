@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A gap system in fewer coordinates: its slow modes, and what else gives way where it is pushed.
+
+The lowest modes stay as they are. Of the others the motions that forces excite are kept, matched
+with ``MOMENTS`` derivatives at rest, so that statics is exact and the inertia of what gives way is
+right to the first orders (MacNeal 1971; Rubin 1975, whose residual modes are the first block).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import eigh
+
+from dynamics.arrays import Array
+from dynamics.gap_system import GapSystem, Observer
+
+# Blocks Ω⁻²ᵏ Bᵀ of what is pushed.
+MOMENTS = 2
+# Blocks take no more than this part of the coordinates, unless one alone does.
+_OF_ALL = 1.0 / 3.0
+# A push that is left with less than this part of its size is in the space already.
+_DEPENDENT = 1.0e-6
+
+
+def condensed(system: GapSystem, most: int) -> GapSystem:
+    """The system in ``most`` coordinates at most, unless what is pushed alone takes more.
+
+    Args:
+        system: without modal damping, which a case adds later.
+        most: of all segments together.
+
+    Raises:
+        ValueError: the system has modal damping.
+    """
+    if system.damping.any():
+        raise ValueError("a system is condensed before it is damped")
+    if system.num_modes <= most:
+        return system
+    order = np.argsort(system.omega2, kind="stable")
+    pushes = _pushes(system)
+    count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
+    moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
+    slow, fast = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
+    omega2 = system.omega2[fast]
+    blocks = [_independent(pushes[:, fast].T)]
+    for _ in range(moments):
+        blocks.append(_independent(blocks[-1] / omega2[:, None]))
+    basis = _independent(np.hstack(blocks[1:]))
+    stiffness, turn = eigh(basis.T @ (omega2[:, None] * basis))
+    shapes = np.zeros((system.num_modes, slow.size + stiffness.size))
+    shapes[slow, np.arange(slow.size)] = 1.0
+    shapes[fast, slow.size :] = basis @ turn
+    return _projected(system, np.concatenate([system.omega2[slow], stiffness]), shapes)
+
+
+def _pushes(system: GapSystem) -> Array:
+    """(num_pushes, num_modes) all that can act."""
+    constant = [system.load, system.released, system.thrown]
+    excited = [excitation.load for excitation in system.excitations]
+    return np.vstack([system.rows, system.friction_rows, system.dashpots, *constant, *excited])
+
+
+def _independent(block: Array) -> Array:
+    """(num_modes, rank) an orthonormal basis of what the columns span, each of the same size."""
+    sizes = np.linalg.norm(block, axis=0)
+    kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
+    basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
+    return np.asarray(basis[:, values > _DEPENDENT * values.max(initial=0.0)])
+
+
+def _projected(system: GapSystem, omega2: Array, shapes: Array) -> GapSystem:
+    """The system in mass-normalised shapes (num_modes, num_shapes) of the frequencies given."""
+    nothing = np.zeros(omega2.size)
+    return replace(
+        system,
+        omega2=omega2,
+        load=system.load @ shapes,
+        rows=system.rows @ shapes,
+        friction_rows=system.friction_rows @ shapes,
+        dashpots=system.dashpots @ shapes,
+        damping=nothing,
+        released=system.released @ shapes,
+        thrown=system.thrown @ shapes,
+        excitations=[replace(x, load=x.load @ shapes) for x in system.excitations],
+        observers={
+            name: Observer(seen.row @ shapes, seen.unit, seen.derivative)
+            for name, seen in system.observers.items()
+        },
+    )

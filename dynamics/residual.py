@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a coarse model of a boom does not give way, added to it as springs without mass.
+
+With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the elastic modes, the
+residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse (MacNeal 1971).
+Both have the same rigid motions, so forces that no support bears are borne by inertia alike, and D
+is what pressed places alone give way. Its positive part D = Σ g gᵀ is as many springs, each a
+coordinate with the rows ω_s g and a frequency ω_s well above the motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.gap_system import GapSystem, Observer
+
+# ω_s/2π in Hz: the swing of a boom is slower by a factor of ten and more.
+SPRING_FREQUENCY = 400.0
+
+# A pattern of forces that gives way by less than this part of what others do, does not.
+_NOTHING = 1.0e-3
+
+
+def elastic_compliance(system: GapSystem) -> Array:
+    """(num_resisting, num_resisting) B Ω⁻² Bᵀ in m/N of rows, friction rows, then dashpots."""
+    elastic = system.omega2 > 0.0
+    rows = _resisting(system)[:, elastic]
+    return np.asarray(rows / system.omega2[elastic] @ rows.T)
+
+
+def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
+    """(num_resisting, num_resisting) D in m/N, not made positive.
+
+    Raises:
+        ValueError: they do not touch, rub and drag in as many places.
+    """
+    if _resisting(coarse).shape[0] != _resisting(fine).shape[0]:
+        raise ValueError("both models must touch, rub and drag in the same places")
+    return elastic_compliance(fine) - elastic_compliance(coarse)
+
+
+def with_springs(system: GapSystem, residual: Array) -> GapSystem:
+    """The system with the positive part of a residual compliance as springs.
+
+    Args:
+        system: the coarse model.
+        residual: (num_resisting, num_resisting) in m/N.
+    """
+    sizes = np.sqrt(np.abs(np.diag(residual)))
+    sizes[sizes == 0.0] = 1.0
+    # Normalised, since friction rows, pads and dashpots differ by orders of magnitude.
+    amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
+    kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
+    spring = 2.0 * np.pi * SPRING_FREQUENCY
+    rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
+    touching, rubbing, dragged = np.split(
+        rows, np.cumsum([len(system.laws), len(system.frictions)])
+    )
+    still = np.zeros(rows.shape[1])
+
+    def beside(row: Array) -> Array:
+        return np.concatenate([row, still])
+
+    return replace(
+        system,
+        omega2=np.concatenate([system.omega2, still + spring**2]),
+        load=beside(system.load),
+        rows=np.hstack([system.rows, touching]),
+        friction_rows=np.hstack([system.friction_rows, rubbing]),
+        dashpots=np.hstack([system.dashpots, dragged]),
+        damping=beside(system.damping),
+        released=beside(system.released),
+        thrown=beside(system.thrown),
+        excitations=[replace(x, load=beside(x.load)) for x in system.excitations],
+        observers={
+            name: Observer(beside(seen.row), seen.unit, seen.derivative)
+            for name, seen in system.observers.items()
+        },
+    )
+
+
+def _resisting(system: GapSystem) -> Array:
+    return np.vstack([system.rows, system.friction_rows, system.dashpots])

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How a segment gives way far from where it is pushed: what a beam of it has to match.
+
+Forces at the segment's ends and stations, moments at its ends and torques where forces are, each
+spread over the section as the stress of a beam is, so that nothing is bent but the segment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from geometry.arrays import Array
+from geometry.boom import Boom
+
+Bent = Literal["z", "y", "twist"]
+
+# Hz: slow beside all elastic motion; forces that leave a free segment at rest feel none of it.
+FAR_SHIFT = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class FarField:
+    """What probes of a segment do to one another.
+
+    Args:
+        places: x in m of forces and torques, rising; the first and the last also of moments.
+        compliance: motion → (num_probes, num_probes) at σ = (2π · ``FAR_SHIFT``)² in m/N, rad/N
+            and rad/(N·m); of bending the forces come first.
+    """
+
+    places: tuple[float, ...]
+    compliance: Mapping[Bent, Array]
+
+
+def far_places(boom: Boom, number: int) -> tuple[float, ...]:
+    """x in m where a segment is probed."""
+    segment = boom.segments[number]
+    return tuple(sorted({segment.start, *boom.stations_of(number), segment.end}))

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Beams that are calibrated by the shell of the same boom."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from time import perf_counter
+from typing import TYPE_CHECKING, Self
+
+from pydantic import Field
+
+from geometry.boom import Boom, BoomError
+from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
+from runs.case.kinds.shell import ShellTable
+from runs.case.limits import Name
+
+if TYPE_CHECKING:
+    from dynamics.gap_system import GapSystem
+
+
+class CalibratedTable(BeamTable):
+    """A beam as it is, or with its stiffness and the springs of its stations read from a shell."""
+
+    calibrated_by: ShellTable | Name | None = Field(
+        None,
+        description="the name of a shell of the case, or the table of another one, from which the "
+        "stiffness of the segments and the springs of the stations are read; the beam is as it is "
+        "unless given",
+    )
+
+    @property
+    def needs_plates(self) -> bool:
+        return self.calibrated_by is not None
+
+    @property
+    def needs_shell(self) -> bool:
+        return self.calibrated_by is not None
+
+    def with_shells(self, update: Mapping[str, object]) -> Self:
+        if not isinstance(self.calibrated_by, ShellTable):
+            return self
+        return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
+
+    def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
+        """The model with the shell that its name stands for; as it is where there is none."""
+        shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
+        if not isinstance(shell, ShellTable):
+            return self
+        return self.model_copy(update={"calibrated_by": shell})
+
+    def check(self, where: str, joined: Joined) -> None:
+        key = f"{where}.calibrated_by"
+        if self.calibrated_by is None:
+            super().check(where, joined)
+            return
+        if not isinstance(self.calibrated_by, ShellTable):
+            raise BoomError(
+                key, f"{self.calibrated_by!r} is not a shell of the case; give the name of one"
+            )
+        if self.play_free:
+            raise BoomError(
+                key, "a tied model has no stations whose springs could be read; leave it out"
+            )
+        if self.calibrated_by.contact_line != "near webs":
+            raise BoomError(
+                key,
+                f"the shell touches by {self.calibrated_by.contact_line!r}, where a beam has no "
+                "springs; give one with contact_line = 'near webs'",
+            )
+        self.calibrated_by.check(key, joined)
+        super().check(where, joined)
+
+    def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
+        if not isinstance(self.calibrated_by, ShellTable):
+            return super().build(joined, workshop)
+        from beam_model.calibration import calibrate
+
+        made = self.calibrated_by.build(joined, workshop)
+        shell = made.shell
+        assert shell is not None
+        begin = perf_counter()
+        boom, laws, lateral = joined.boom, joined.laws, joined.lateral_laws
+        beam, calibration = calibrate(
+            boom, laws, lateral, shell.system, shell.far_fields, self.segments
+        )
+        system = self.fielded(beam, shell.system, boom)
+        seconds = made.seconds | {"calibration": perf_counter() - begin}
+        factor = self.critical_factor(joined.boom)
+        return Built(system, system.num_modes, seconds, factor, calibration=calibration)
+
+    def fielded(self, beam: GapSystem, shell: GapSystem, boom: Boom) -> GapSystem:
+        """What moves: the beam with springs, unless the model says more."""
+        return beam
+
+    @abstractmethod
+    def beam_stand_in(self, boom: Boom) -> StandIn:
+        """What tells how long the beam takes to move."""
+
+    def stand_in(self, boom: Boom) -> StandIn:
+        own = self.beam_stand_in(boom)
+        if not isinstance(self.calibrated_by, ShellTable):
+            return own
+        shell = self.calibrated_by.stand_in(boom)
+        beam = own.beam.model_copy(update={"calibrated_by": None})
+        return StandIn(
+            beam,
+            own.coordinates,
+            own.shorter,
+            own.memory + shell.memory,
+            own.seconds + shell.seconds,
+        )

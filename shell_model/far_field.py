@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The far field of a shell's segment, of which a beam's stiffness is read."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.far_field import FAR_SHIFT, Bent, FarField, far_places
+from shell_model.contact.local_compliance import shell_compliance
+from shell_model.segment_shell import SegmentShell
+
+
+def far_field(boom: Boom, number: int, shell: SegmentShell) -> FarField:
+    """Probe a segment, all degrees of freedom in. Collective.
+
+    Args:
+        boom: in space sideways and about its axis, too.
+        number: of the segment.
+        shell: of it, with mesh lines at its places.
+    """
+    places = far_places(boom, number)
+    probes: dict[Bent, list[Array]] = {
+        direction: [
+            *(shell.force(x, direction) for x in places),
+            *(shell.moment(x, direction) for x in (places[0], places[-1])),
+        ]
+        for direction in boom.directions
+    }
+    if boom.spatial:
+        probes["twist"] = [shell.torque(x) for x in places]
+    whole = shell_compliance(
+        shell, np.array([row for rows in probes.values() for row in rows]).T, FAR_SHIFT
+    )
+    found, first = {}, 0
+    for motion, rows in probes.items():
+        own = slice(first, first + len(rows))
+        found[motion], first = whole[own, own], own.stop
+    return FarField(places, found)

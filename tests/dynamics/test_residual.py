@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Springs for what a coarse model does not give way, and systems in fewer coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics.condensation import condensed
+from dynamics.contact import PowerContact
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.residual import elastic_compliance, residual_compliance, with_springs
+
+MODES = 60
+
+
+def system(num_modes: int = MODES) -> GapSystem:
+    """A free chain's motions: one rigid, the others ever faster, read in two places."""
+    random = np.random.default_rng(3)
+    rows = random.normal(size=(4, MODES))[:, :num_modes]
+    omega = np.concatenate([[0.0], 20.0 * np.arange(1, MODES) ** 1.5])[:num_modes]
+    return GapSystem(
+        omega2=omega**2,
+        load=rows[3],
+        rows=rows[:2],
+        laws=[PowerContact(1e7, 1.0, clearance=0.01)] * 2,
+        station_of_row=np.array([0, 1]),
+        stations=[0.0, 1.0],
+        observers={"tip": Observer(rows[2])},
+        friction_rows=rows[2:3],
+        frictions=[DryFriction(0.2, 0, 100.0, ())],
+    )
+
+
+def test_springs_add_what_the_fine_model_gives_way() -> None:
+    """Reference: analytic, the static compliance of the fine model."""
+    fine, coarse = system(), system(12)
+    residual = residual_compliance(coarse, fine)
+    sprung = with_springs(coarse, residual)
+    assert np.linalg.norm(residual) > 5e-4 * np.linalg.norm(elastic_compliance(fine))
+    np.testing.assert_allclose(elastic_compliance(sprung), elastic_compliance(fine), rtol=1e-10)
+    # Nothing else feels them.
+    assert not sprung.load[12:].any()
+    assert not sprung.observers["tip"].row[12:].any()
+
+
+def test_what_would_push_back_is_no_spring() -> None:
+    """Reference: analytic, D = g gᵀ − h hᵀ has the positive part g gᵀ for orthogonal g and h."""
+    coarse = system(12)
+    g, h = np.array([1.0, 1.0, 1.0]) * 1e-9, np.array([1.0, -1.0, 0.0]) * 1e-10
+    residual = np.outer(g, g) - np.outer(h, h)
+    equal = residual / np.sqrt(np.outer(np.diag(residual), np.diag(residual)))
+    assert np.linalg.eigvalsh(equal)[0] < -1e-3
+    sprung = with_springs(coarse, residual)
+    assert sprung.num_modes == 13
+    spring = np.concatenate([sprung.rows[:, 12], sprung.friction_rows[:, 12]]) / sprung.omega[12]
+    # To the part of h in g: both are as large in the first two places.
+    np.testing.assert_allclose(np.outer(spring, spring), np.outer(g, g), rtol=0.02)
+
+
+def test_models_must_touch_in_the_same_places() -> None:
+    fine = replace(system(), friction_rows=np.zeros((0, MODES)), frictions=())
+    with pytest.raises(ValueError, match="both models must touch, rub and drag in the same places"):
+        residual_compliance(system(12), fine)
+
+
+def test_a_condensed_system_answers_slow_forces_alike() -> None:
+    """Reference: analytic, C(σ) = B (Ω² + σ)⁻¹ Bᵀ of the whole system."""
+    whole = system()
+    few = condensed(whole, 20)
+    assert few.num_modes == 20
+    np.testing.assert_allclose(few.frequencies[:12], whole.frequencies[:12], rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(elastic_compliance(few), elastic_compliance(whole), rtol=1e-9)
+
+    def answer(one: GapSystem) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+        rows = np.vstack([one.rows, one.load])
+        return np.asarray(rows / (one.omega2 + (2.0 * np.pi * 20.0) ** 2) @ rows.T)
+
+    # The truncated modes alone miss by far more.
+    cut = system(20)
+    error = np.abs(answer(few) - answer(whole)).max()
+    assert error < 1e-3 * np.abs(answer(cut) - answer(whole)).max()
+
+
+def test_few_coordinates_are_left_as_they_are() -> None:
+    """Reference: non-regression, the same object."""
+    few = system(12)
+    assert condensed(few, 12) is few
+
+
+def test_a_system_is_condensed_before_it_is_damped() -> None:
+    damped = replace(system(), damping=np.ones(MODES))
+    with pytest.raises(ValueError, match="a system is condensed before it is damped"):
+        condensed(damped, 20)

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Beams that a shell calibrates, from a case file to a motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="a shell calibrates them")
+
+from mpi4py import MPI
+
+from dynamics.gap_system import GapSystem
+from dynamics.residual import elastic_compliance
+from geometry.arrays import Array
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.case.build import build_boom
+from runs.case.kinds.model import Built
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.pipeline.models import build, workshop
+from runs.studies.motions import move
+from runs.studies.working_load import Point, at_point
+from tests.runs.coarse_case import COARSE
+
+pytestmark = pytest.mark.slow
+
+CALIBRATED = """
+[[model]]
+name = "series"
+kind = "kantorovich"
+terms = [12, 12]
+base = "complete"
+contact = { stiffness = 1e9, exponent = 1.0 }
+
+[[model]]
+name = "sprung"
+kind = "finite-element"
+calibrated_by = "shell"
+contact = { stiffness = 1e9, exponent = 1.0 }
+
+[[model]]
+name = "fielded"
+kind = "finite-element"
+calibrated_by = "shell"
+section_fields = true
+contact = { stiffness = 1e9, exponent = 1.0 }
+
+[[model]]
+name = "sprung-series"
+kind = "kantorovich"
+terms = [12, 12]
+base = "complete"
+calibrated_by = "shell"
+contact = { stiffness = 1e9, exponent = 1.0 }
+"""
+# What rubs makes motions comparable from moment to moment.
+RUBBING = COARSE.replace(
+    "exponent = 2.0\n", "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0, 5000.0]\n", 1
+)
+
+
+@pytest.fixture(name="case", scope="module")
+def _case(tmp_path_factory: pytest.TempPathFactory) -> Case:
+    path = tmp_path_factory.mktemp("case") / "case.toml"
+    path.write_text(RUBBING + CALIBRATED, encoding="utf-8")
+    return case_file.load(str(path))
+
+
+@pytest.fixture(name="built", scope="module")
+def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Built]:
+    boom, cache = build_boom(case), Cache(tmp_path_factory.mktemp("cache"))
+    wanted = ("timoshenko", "series", "shell", "sprung", "fielded", "sprung-series")
+    return {
+        model.name: build(
+            case,
+            boom,
+            model,
+            workshop(MPI.COMM_SELF, tmp_path_factory.mktemp(model.name) / "mesh", cache=cache),
+        )
+        for model in case.models
+        if model.name in wanted
+    }
+
+
+def tip(system: GapSystem) -> Array:
+    """At a small play and ten times the load, as gravity does."""
+    point = at_point(system, Point(play=4.0e-3, load=10.0))
+    return np.asarray(move(point, 1.5).data["tip"].values)
+
+
+def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, Built]) -> None:
+    """Reference: other code, the shell's static compliance where it touches and rubs."""
+    shell = elastic_compliance(built["shell"].system)
+    sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))
+
+    def error(name: str) -> float:
+        return float(np.abs((elastic_compliance(built[name].system) - shell) / sizes).max())
+
+    assert error("sprung") < 1e-3
+    assert error("sprung-series") < 1e-3
+    assert error("fielded") < 1e-9
+
+
+def test_it_moves_as_the_shell(built: dict[str, Built]) -> None:
+    """Reference: other code, the shell's tip as a part of its range, which textbook beams miss by
+    several times as much. A series has no shear but that of its springs.
+    """
+    shell = tip(built["shell"].system)
+
+    def error(name: str) -> float:
+        return float(np.abs(tip(built[name].system) - shell).max() / np.ptp(shell))
+
+    names = ("timoshenko", "series", "sprung", "fielded", "sprung-series")
+    errors = {name: error(name) for name in names}
+    assert errors["sprung"] < 0.012, errors
+    assert errors["timoshenko"] > 2.5 * errors["sprung"], errors
+    assert errors["fielded"] < 1e-3, errors
+    assert errors["series"] > 1.5 * errors["sprung-series"], errors
+
+
+def test_all_read_the_same_shell(built: dict[str, Built]) -> None:
+    """Reference: non-regression, one entry of the cache."""
+    assert "reduction" in built["shell"].seconds
+    for name in ("sprung", "fielded", "sprung-series"):
+        assert "cache" in built[name].seconds
+        assert built[name].seconds["calibration"] < 10.0
+
+
+def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> None:
+    """Reference: analytic, the table that the name stands for, as the case is written and read."""
+    alone = case_file.select(case, "", ["sprung"], 0.5)
+    (model,) = alone.models
+    assert model.needs_shell
+    path = tmp_path / "alone.toml"
+    path.write_text(toml.dumps(alone), encoding="utf-8")
+    (read,) = case_file.load(str(path)).models
+    shell = read.model_dump()["calibrated_by"]
+    assert (shell["name"], shell["mesh_size"]) == ("shell", 0.5)
+    assert isinstance(read.calibrated_by, ShellTable)
