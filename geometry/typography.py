@@ -7,3 +7,12 @@ from __future__ import annotations
 def signed(text: str) -> str:
     """A number with a minus sign in place of a hyphen."""
     return text.replace("-", "−")
+
+
+def digits(value: float, count: int = 3) -> str:
+    """A number with so many significant digits, 1020 and never 1.02e+03.
+
+    >>> digits(1023.4), digits(22.68), digits(0.0)
+    ('1020', '22.7', '0')
+    """
+    return signed(f"{float(f'{value:.{count}g}'):.12g}")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +65,7 @@ class ShellOutput:
             trajectory: its motion.
         """
         assert reduced.fields is not None
+        names = [segment.name for segment in boom.segments]
         fields = reduced.fields.assign(
             state=(("time", "mode"), trajectory.states.astype(np.float32)),
             time=("time", trajectory.time, {"units": "s"}),
@@ -71,8 +73,7 @@ class ShellOutput:
             **_stops(boom),
             **_lugs(boom),
             **_modes(reduced),
-        ).assign_attrs(model=name)
-        names = [segment.name for segment in boom.segments]
+        ).assign_attrs(model=name, segments=json.dumps(names))
         shell = ShellStress.of(fields)
         stresses = near_places(shell, _places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))

@@ -106,7 +106,7 @@ def _head(pen: Pen, place: str) -> Figure:
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
     caption += _sampled(pen, place)
     chart = _chart(pen, place)
-    return pen.finish(sheet, None, place, title, caption, statements, chart=chart)
+    return pen.finish(sheet, panels[0], place, title, caption, statements, chart=chart)
 
 
 def lateral_tip(pen: Pen) -> list[Figure]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
@@ -149,10 +150,13 @@ class Pen:
         part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
-        """Title above, legend below, and onto the disk; the last ones are :class:`Figure`'s."""
+        """Title above, a legend of all below, and onto the disk; the last are :class:`Figure`'s."""
         if legend_of is not None:
-            handles, labels = legend_of.get_legend_handles_labels()
-            sheet.legend(handles, labels, loc="outside lower left", ncols=2)
+            named: dict[str, Artist] = {}
+            for axes in sheet.axes:
+                handles, labels = axes.get_legend_handles_labels()
+                named = dict(zip(labels, handles, strict=True)) | named
+            sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=2)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
         sheet.savefig(path)

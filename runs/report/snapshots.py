@@ -103,11 +103,13 @@ def describe_one(results: Results, path: Path) -> Figure:
         return _animation(path, model, motion)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
-    when, tip = _instant(seen["when"], motion)
-    state = f"{when}{tip}"
     above = ", seen from above" if seen["above"] else ""
+    if above:
+        motion = motion.assign(tip=motion["tip_lateral"])
+    when, tip = _instant(seen["when"], motion)
+    state = f"{when}{tip}" + (" to the side" if above and tip else "")
     if seen["view"] == "boom":
-        coloured = "deflection sideways" if above else "deflection"
+        coloured = "amount of deflection" + (" sideways" if above else "")
         supports = "" if above else "; black: supports"
         caption = (
             f"The boom of {model!r}{above}: {state}. Colour: {coloured}; grey: at rest{supports}. "
@@ -118,15 +120,17 @@ def describe_one(results: Results, path: Path) -> Figure:
     if seen["view"] == "stress":
         caption = (
             f"Von Mises stresses of {model!r}{above}: {state}. Above: the whole boom; below: the "
-            f"overlap{which}, cut open. Each triangle has the larger value of its two faces; the "
-            "few beyond the end of the scale have its darkest colour. Displacements and play are "
-            f"magnified by the factors above the picture.{forces}"
+            f"overlap{which}, cut open. The larger value of both faces, the mean of the triangles "
+            "around a point of a wall; the few beyond the end of the scale have its darkest "
+            "colour. Displacements and play are magnified by the factors above the picture."
+            f"{forces}"
         )
         return Figure(path, f"Stress at the overlap{which}{above}: {when}", caption)
     caption = (
         f"The overlap{which} of {model!r}{above}, cut open: {state}. Blue: outer segment; orange: "
-        "inner one; arrows: forces of the inner one on the outer one. Displacements and play are "
-        f"magnified by the factor above the picture.{forces}"
+        "inner one; arrows: forces of the inner one on the outer one. Play, and what moves beside "
+        "the outer segment, are magnified by the factor above the picture; a peak is what a blow "
+        f"reaches, for microseconds.{forces}"
     )
     return Figure(path, f"Overlap{which}{above}: {when}", caption)
 
@@ -134,8 +138,8 @@ def describe_one(results: Results, path: Path) -> Figure:
 def _animation(path: Path, model: str, motion: xr.Dataset) -> Figure:
     last = min(ANIMATED, float(motion["time"].values[-1]))
     caption = (
-        f"The first {last:g} s of {model!r}, in {SHOWN:g} s. Colours and magnification as in the "
-        "pictures of the boom."
+        f"The first {last:g} s of {model!r} in slow motion, in {SHOWN:g} s. Colours and "
+        "magnification as in the pictures of the boom."
     )
     return Figure(path, f"Boom in motion, first {last:g} s", caption)
 

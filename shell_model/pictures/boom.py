@@ -44,12 +44,12 @@ class BoomView:
 
     Args:
         scale: of displacements and play.
-        deflections: the smallest and the largest one in mm.
+        largest: deflection, up or down, in mm.
         camera: sees the boom at every instant.
     """
 
     scale: float
-    deflections: tuple[float, float]
+    largest: float
     camera: Camera
 
     @classmethod
@@ -73,7 +73,7 @@ class BoomView:
             deflection = shell.displacement(instant.time)[:, 2]
             low, high = min(low, deflection.min()), max(high, deflection.max())
         # A scale has two ends, even at rest.
-        deflections = 1.0e3 * low, 1.0e3 * max(high, low + SAME_PLACE)
+        largest = 1.0e3 * max(high, -low, SAME_PLACE)
         begin, end = shell.points[:, 0].min(), shell.points[:, 0].max()
         half = SECTION_DRAWN * shell.points[:, 2].max()
         play = sum(overlap.clearance for overlap in shell.overlaps)
@@ -89,11 +89,15 @@ class BoomView:
         width = max(1.1 * (end - begin), (top - bottom) * pixels[0] / pixels[1])
         centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
         camera = Camera(centre, width, pixels, elevation=10.0)
-        return cls(scale, deflections, camera)
+        return cls(scale, largest, camera)
 
 
 def draw_boom(
-    shell: MovingShell, instants: Iterable[Instant], view: BoomView, until: float
+    shell: MovingShell,
+    instants: Iterable[Instant],
+    view: BoomView,
+    until: float,
+    pace: str = "",
 ) -> Iterator[Image.Image]:
     """The deformed boom, above the deflection of its tip in time.
 
@@ -102,17 +106,20 @@ def draw_boom(
         instants: of the pictures.
         view: scale, colours, camera.
         until: last time in s of the tip's curve.
+        pace: how fast a film shows it.
     """
     camera = view.camera
     time, tip = shell.motion["time"].values, shell.motion["tip"].values
     sheet = Sheet(camera.pixels, floor=325)
     sheet.mark_x(camera, shell.points[:, 0].min(), shell.points[:, 0].max())
     bar = sheet.figure.colorbar(
-        ScalarMappable(Normalize(*view.deflections), theme.DEFLECTION),
+        ScalarMappable(Normalize(0.0, view.largest), theme.DEFLECTION),
         cax=sheet.axes(1110, 150, 420, 40),
         orientation="horizontal",
     )
-    bar.set_label("deflection sideways (mm)" if shell.from_above else "deflection (mm)")
+    bar.set_label(
+        "amount of deflection sideways (mm)" if shell.from_above else "amount of deflection (mm)"
+    )
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, 1.0e3 * tip, color=theme.FAINT, linewidth=2)
     (past,) = curve.plot([], [], color=theme.INK, linewidth=3)
@@ -141,9 +148,9 @@ def draw_boom(
                 "boom",
                 places,
                 shell.triangles,
-                scalars=1.0e3 * moved[:, 2],
+                scalars=1.0e3 * np.abs(moved[:, 2]),
                 cmap=theme.DEFLECTION,
-                clim=view.deflections,
+                clim=(0.0, view.largest),
             )
             scene.outline("edges", places, shell.triangles, theme.INK, 1.2)
             sheet.show(scene.seen_by(camera))
@@ -153,7 +160,7 @@ def draw_boom(
             sheet.write(
                 instant.heading(shell, float(tip[last])),
                 f"{where}drawn: displacements and play × {view.scale:g}, sections × "
-                f"{SECTION_DRAWN:g}; grey: at rest{black}",
+                f"{SECTION_DRAWN:g}; grey: at rest{black}{pace}",
             )
             yield sheet.image()
 

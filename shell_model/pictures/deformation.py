@@ -8,6 +8,7 @@ picture when they touch in the run.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeVar
@@ -98,6 +99,7 @@ class MovingShell:
         motion: trajectories of this shell alone, in which ``tip`` is along the third direction.
         stress: of the triangles.
         from_above: whether y has taken the place of z, see :meth:`views`.
+        names: of the segments.
     """
 
     points: Array
@@ -111,6 +113,7 @@ class MovingShell:
     motion: xr.Dataset
     stress: ShellStress
     from_above: bool
+    names: Sequence[str]
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset) -> list[MovingShell]:
@@ -141,6 +144,7 @@ class MovingShell:
             motion=motion,
             stress=ShellStress.of(fields),
             from_above=False,
+            names=_names(fields),
         )
         sideways = _overlaps(fields, directions, "y")
         if not sideways:
@@ -161,6 +165,31 @@ class MovingShell:
         """(num_points, 3) in m, at the output time next to ``t`` (s)."""
         state = self.state.sel(time=t, method="nearest").values
         return np.asarray(np.tensordot(state, self.modes, axes=1), dtype=np.float64)
+
+    def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
+        """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.
+
+        What moves and turns the part as a whole in the picture's plane is taken from all points:
+        magnified it would tilt a sloping boom, and tells nothing of what touches what.
+
+        Args:
+            t: time in s.
+            segment: whose part seems to rest.
+            between: x of the part's ends in m.
+        """
+        moved = self.displacement(t)
+        mine = self.members(segment)
+        x, _, z = self.points[mine].T
+        mine = mine[(x >= between[0] - SAME_PLACE) & (x <= between[1] + SAME_PLACE)]
+        x, _, z = self.points[mine].T
+        none, unit = np.zeros_like(x), np.ones_like(x)
+        rigid = np.concatenate(
+            [np.stack([unit, none, -z], axis=1), np.stack([none, unit, x], axis=1)]
+        )
+        (along, up, turn), *_ = np.linalg.lstsq(rigid, moved[mine][:, [0, 2]].T.ravel(), rcond=None)
+        x, _, z = self.points.T
+        whole = np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
+        return np.asarray(moved - whole)
 
     def members(self, segment: int) -> Numbers:
         """(num_members,) point numbers of a segment."""
@@ -264,6 +293,13 @@ class MovingShell:
         at_points = np.ones(len(self.points))
         at_points[self.triangles] = of_segments[self.segment][:, None]
         return at_points
+
+
+def _names(fields: xr.Dataset) -> list[str]:
+    """Of the segments, their numbers where a file has none."""
+    given = str(fields.attrs.get("segments", ""))
+    count = int(fields["segment"].max()) + 1
+    return list(json.loads(given)) if given else [f"segment {n + 1}" for n in range(count)]
 
 
 def _overlaps(fields: xr.Dataset, directions: npt.NDArray[np.str_], along: str) -> list[Overlap]:

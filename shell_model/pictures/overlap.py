@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from geometry.arrays import Array, Mask
+from geometry.typography import digits
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Overlap, round_scale
@@ -22,6 +23,9 @@ from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
 CLEARANCE_DRAWN, MARGIN = 0.08, 0.6
 
 PIXELS = (theme.SHEET[0], 625)
+
+# A peak that is not above its mean by this factor is the mean.
+PEAK = 1.02
 
 # Lengths of the arrows, and what is left for them above and below the section, in pixels.
 SHORTEST, LONGEST, ARROW_ROOM = 60.0, 110.0, 120.0
@@ -68,8 +72,9 @@ class OverlapView:
         stations = shell.motion["station"].values[overlap.stations]
         flanges = [shell.flange_in_plane(overlap.outer, side) for side in (-1, 1)]
         tallest = 0.0
+        between = (float(stations.min()), float(stations.max()))
         for instant in instants:
-            places = shell.drawn(shell.displacement(instant.time), scale)
+            places = shell.drawn(shell.beside(instant.time, overlap.outer, between), scale)
             tallest = max(tallest, np.ptp(_ends([places[line] for line in flanges], stations)))
         tallest += shell.wall(overlap)
         room = tallest * pixels[0] / (pixels[1] - 2.0 * ARROW_ROOM)
@@ -92,14 +97,41 @@ class OverlapView:
         return float(0.5 * (stations.min() + stations.max()))
 
     @property
+    def names(self) -> tuple[str, str]:
+        """Of the outer and of the inner segment."""
+        return self.shell.names[self.overlap.outer], self.shell.names[self.overlap.inner]
+
+    @property
     def explanation(self) -> str:
         """What one has to know to read lengths."""
         where = "seen from above, " if self.shell.from_above else ""
         return (
-            f"{where}cut open; drawn: displacements and play × {self.scale:g}, walls not to scale"
+            f"{where}cut open; drawn: play and what moves beside {self.names[0]} × {self.scale:g}, "
+            "walls not to scale"
         )
 
-    def draw(self, scene: Scene, sheet: Sheet, time: float, looks: Mapping[int, Look]) -> None:
+    def places(self, time: float) -> Array:
+        """(num_points, 3) where the points are drawn at a time (s), in m."""
+        stations = self.motion["station"].values
+        between = (float(stations.min()), float(stations.max()))
+        moved = self.shell.beside(time, self.overlap.outer, between)
+        return self.shell.drawn(moved, self.scale)
+
+    def camera(self, places: Array) -> Camera:
+        """Looks at the outer segment where it is drawn, at its stations."""
+        flanges = [places[self.shell.flange_in_plane(self.overlap.outer, side)] for side in (-1, 1)]
+        height = np.mean(_ends(flanges, self.motion["station"].values))
+        centre = np.array([self.middle, 0.0, height])
+        return Camera(centre, self.width, self.pixels, elevation=8.0)
+
+    def draw(
+        self,
+        scene: Scene,
+        sheet: Sheet,
+        time: float,
+        looks: Mapping[int, Look],
+        split: Callable[[Array, Triangles], tuple[Array, Triangles]] = lambda *same: same,
+    ) -> None:
         """Put both segments and the forces between them on a sheet.
 
         Args:
@@ -107,22 +139,22 @@ class OverlapView:
             sheet: gets the picture.
             time: in s.
             looks: of the outer and of the inner segment, by their numbers.
+            split: what the points and triangles of a half box become before they are coloured.
         """
         shell, wall = self.shell, self.shell.wall(self.overlap)
-        places = shell.drawn(shell.displacement(time), self.scale)
+        places = self.places(time)
         flanges = {}
         for number, look in looks.items():
             half_box = shell.triangles[self.behind & (shell.segment == number)]
-            scene.surface(f"half {number}", places, half_box, **theme.MESHED, **look.half)
+            points, triangles = split(places, half_box)
+            scene.surface(f"half {number}", points, triangles, **{**theme.MESHED, **look.half})
             for side in (-1, 1):
                 line = flanges[number, side] = places[shell.flange_in_plane(number, side)]
                 cut = _band(line, wall)
                 scene.surface(f"cut {number} {side}", *cut, color=look.cut, lighting=False)
                 scene.outline(f"rim {number} {side}", *cut, theme.INK, 2.0)
         outer = {side: flanges[self.overlap.outer, side] for side in (-1, 1)}
-        height = np.mean(_ends(list(outer.values()), self.motion["station"].values))
-        centre = np.array([self.middle, 0.0, height])
-        camera = Camera(centre, self.width, self.pixels, elevation=8.0)
+        camera = self.camera(places)
         sheet.show(scene.seen_by(camera))
         sheet.mark_x(camera, self.middle - 0.475 * self.width, self.middle + 0.475 * self.width)
         self._draw_forces(sheet, camera, time, outer)
@@ -145,7 +177,7 @@ class OverlapView:
             sheet.arrow(
                 camera.project(outside),
                 side * (SHORTEST + (LONGEST - SHORTEST) * abs(force) / strongest),
-                f"{abs(force) / 1.0e3:.3g} kN\n(peak {abs(peak) / 1.0e3:.3g} kN)",
+                _forces(abs(force), abs(peak)),
             )
 
     def heading(self, instant: Instant) -> str:
@@ -159,7 +191,10 @@ class OverlapView:
         if not np.nan_to_num(now["contact_force"].values).any():
             return "no contact here"
         interval = float(np.diff(self.motion["time"].values[:2])[0])
-        return f"forces: mean of the last {1.0e3 * interval:.3g} ms (and peak)"
+        return (
+            f"forces: mean of the last {1.0e3 * interval:.3g} ms; peak: what a blow reaches in it, "
+            "for microseconds"
+        )
 
 
 def draw_overlap(
@@ -176,9 +211,9 @@ def draw_overlap(
     sheet = Sheet(PIXELS, floor=90)
     sheet.figure.legend(
         handles=[
-            Patch(color=theme.OUTER, label="outer segment"),
-            Patch(color=theme.INNER, label="inner segment"),
-            Patch(color=theme.FORCE, label="force of the inner segment on the outer one"),
+            Patch(color=theme.OUTER, label=view.names[0]),
+            Patch(color=theme.INNER, label=view.names[1]),
+            Patch(color=theme.FORCE, label=f"force of {view.names[1]} on {view.names[0]}"),
         ],
         loc="upper center",
         bbox_to_anchor=(0.5, 0.86),
@@ -195,6 +230,12 @@ def draw_overlap(
             forces = view.forces_explained(instant.time)
             sheet.write(view.heading(instant), f"{view.explanation}\n{forces}")
             yield sheet.image()
+
+
+def _forces(mean: float, peak: float) -> str:
+    """In kN of forces in N, the peak where it is another number."""
+    text = f"{digits(1e-3 * mean)} kN"
+    return text if peak < PEAK * mean else f"{text}\n(peak {digits(1e-3 * peak)} kN)"
 
 
 def _band(line: Array, thickness: float) -> tuple[Array, Triangles]:

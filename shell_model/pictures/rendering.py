@@ -6,7 +6,7 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -82,23 +82,22 @@ def render_snapshots(
     views = MovingShell.views(fields, trajectories.sel(model=model))
     shell = views[0]
     begin, end = (float(t) for t in shell.motion["time"].values[[0, -1]])
-    when = telling_instants(shell.motion) if times is None else {f"{t:g}s": t for t in times}
+    when = _when(shell.motion, times)
     for t in when.values():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
     require_opengl()
 
-    instants = [
-        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
-        for name, t in when.items()
-    ]
+    instants = _instants(views, when)
     film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
     drawn: dict[str, Image.Image] = {}
     with rc_context(LETTERS):
         scale = StressScale.of(shell, instants)
         for seen in views:
-            view = BoomView.of(seen, [*instants, *film])
             above = "-above" if seen.from_above else ""
+            when = _when(seen.motion, times)
+            instants = _instants(views, when)
+            view = BoomView.of(seen, [*instants, *film])
             for name, picture in zip(when, draw_boom(seen, instants, view, end), strict=True):
                 drawn[f"boom{above}-{name}.png"] = picture
             for number, overlap in enumerate(seen.overlaps, start=1):
@@ -111,11 +110,26 @@ def render_snapshots(
                     for name, picture in zip(when, several, strict=True):
                         drawn[f"{kind}{joint}-{name}.png"] = picture
             if not seen.from_above:
-                moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, film[-1].time)]
+                last = film[-1].time
+                slow = SHOWN / (last - begin) if last > begin else 1.0
+                pace = f"\n{slow:.3g} times slower than it is" if slow > 1.0 else ""
+                moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, last, pace)]
     for name, picture in drawn.items():
         picture.save(folder / name)
     _save_animation(moving, folder / ANIMATION)
     return [folder / name for name in (*drawn, ANIMATION)]
+
+
+def _when(motion: xr.Dataset, times: Sequence[float] | None) -> dict[str, float]:
+    """Times in s by the names that their files have."""
+    return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
+
+
+def _instants(views: Sequence[MovingShell], when: Mapping[str, float]) -> list[Instant]:
+    return [
+        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
+        for name, t in when.items()
+    ]
 
 
 def telling_instants(motion: xr.Dataset) -> dict[str, float]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from PIL import Image
 
+from geometry.typography import digits
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell, Overlap, round_scale
@@ -46,9 +47,12 @@ def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
     counts = [int((shell.segment == n).sum()) for n in (overlap.outer, overlap.inner)]
     sheet.figure.legend(
         handles=[
-            Patch(color=color, label=f"{name} segment: {count} triangles")
+            Patch(color=color, label=f"{name}: {count} triangles")
             for color, name, count in zip(
-                (theme.OUTER, theme.INNER), ("outer", "inner"), counts, strict=True
+                (theme.OUTER, theme.INNER),
+                (shell.names[n] for n in (overlap.outer, overlap.inner)),
+                counts,
+                strict=True,
             )
         ],
         loc="upper center",
@@ -103,8 +107,8 @@ def draw_sections(shell: MovingShell, instant: Instant, overlap: Overlap) -> Ima
     axes = figure.subplots(1, stations.size, sharey=True, squeeze=False)[0]
     for panel, x in zip(axes, stations, strict=True):
         for number, color, name in (
-            (overlap.outer, theme.OUTER, "outer segment"),
-            (overlap.inner, theme.INNER, "inner segment"),
+            (overlap.outer, theme.OUTER, shell.names[overlap.outer]),
+            (overlap.inner, theme.INNER, shell.names[overlap.inner]),
         ):
             places, change = outlines[number, x]
             panel.plot(*(1.0e3 * places).T, color=theme.FAINT, linewidth=1.5, linestyle="--")
@@ -112,7 +116,7 @@ def draw_sections(shell: MovingShell, instant: Instant, overlap: Overlap) -> Ima
             panel.plot(*drawn.T, color=color, linewidth=4.0, label=name)
         force = float(np.nan_to_num(now["contact_force"].sel(station=x).values))
         where = {1.0: "above", -1.0: "below", 0.0: ""}[float(np.sign(force))]
-        touch = f"contact {where} with {abs(force) / 1.0e3:.3g} kN" if force else "no contact"
+        touch = f"contact {where} with {digits(1e-3 * abs(force))} kN" if force else "no contact"
         panel.set_title(f"x = {x:g} m: {touch}")
         panel.set(aspect="equal", xlabel="y (mm)")
     axes[0].set_ylabel("z (mm)")

@@ -14,11 +14,13 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
+from geometry.arrays import Array
+from geometry.typography import digits
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell, Overlap
 from shell_model.pictures.overlap import Look, OverlapView
-from shell_model.pictures.theme import Scene, Sheet
+from shell_model.pictures.theme import Scene, Sheet, Triangles
 from shell_model.stress.stresses import Face
 
 # Of the overlap and of the whole boom, whose displacements are drawn up to this part of its length.
@@ -31,6 +33,9 @@ SHOWN_AREA = 0.995
 
 # Stresses below it are none, in Pa.
 LEAST = 1.0
+
+# Elements across a web from which on its stresses can be read.
+ENOUGH = 4
 
 # Between this part of the scale and its end there is no room for another number.
 LAST_TICK = 0.65
@@ -61,11 +66,11 @@ class StressScale:
             largest = max(largest, float(values.max()))
         return cls(_rounded_down(max(end, LEAST)), largest)
 
-    def look(self, values: npt.NDArray[np.float32]) -> dict[str, Any]:
-        """How triangles with these stresses (num_triangles,) in Pa are drawn."""
+    def look(self, values: Array) -> dict[str, Any]:
+        """How corners of triangles with these stresses (num_triangles, 3) in Pa are drawn."""
         return {
-            "scalars": values / 1.0e6,
-            "preference": "cell",
+            "scalars": values.ravel() / 1.0e6,
+            "preference": "point",
             "cmap": theme.STRESS,
             "clim": (0.0, self.end / 1.0e6),
             **theme.COLOUR_READ,
@@ -76,7 +81,7 @@ class StressScale:
         end, goes_on = self.end / 1.0e6, self.largest > self.end
         bar = sheet.figure.colorbar(
             ScalarMappable(Normalize(0.0, end), theme.STRESS),
-            cax=sheet.axes(1215, 665, 330, 34),
+            cax=sheet.axes(1215, 655, 330, 34),
             orientation="horizontal",
             extend="max" if goes_on else "neither",
         )
@@ -114,11 +119,11 @@ def draw_stress(
     where = "from above; " if shell.from_above else ""
     with Scene(OVERLAP_PIXELS) as scene, Scene(BOOM_PIXELS) as small:
         for instant in instants:
-            values = shell.stress.at(instant.time).largest()
+            values = smoothed(shell, shell.stress.at(instant.time).largest())
             places = shell.drawn(shell.displacement(instant.time), view.scale, SECTION_DRAWN)
-            small.surface("boom", places, shell.triangles, **scale.look(values))
+            small.surface("boom", *apart(places, shell.triangles), **scale.look(values))
             small.outline("edges", places, shell.triangles, theme.INK, 1.2)
-            sheet.inset(small.seen_by(view.camera), 20, 570)
+            sheet.inset(small.seen_by(view.camera), 20, 550)
             looks = {
                 number: Look(
                     scale.look(values[overlap_view.behind & (shell.segment == number)]), color
@@ -128,27 +133,85 @@ def draw_stress(
                     (overlap.inner, theme.CUT_INNER),
                 )
             }
-            overlap_view.draw(scene, sheet, instant.time, looks)
+            overlap_view.draw(scene, sheet, instant.time, looks, apart)
+            _mark_largest(sheet, overlap_view, values, instant.time)
             sheet.write(
                 overlap_view.heading(instant),
                 f"{where}boom: displacements × {view.scale:g}, sections × {SECTION_DRAWN:g}; "
                 f"overlap: cut open, × {overlap_view.scale:g}, cuts white (outer), grey (inner)\n"
-                f"{_largest(shell, overlap, instant.time)};  "
-                f"{overlap_view.forces_explained(instant.time)}",
+                f"{_largest(overlap_view, instant.time)}\n"
+                f"{overlap_view.forces_explained(instant.time)}{_coarse(shell, overlap)}",
             )
             yield sheet.image()
 
 
-def _largest(shell: MovingShell, overlap: Overlap, time: float) -> str:
-    """Which stress is the largest of all, and where."""
+def apart(points: Array, triangles: Triangles) -> tuple[Array, Triangles]:
+    """The same triangles with points of their own, which may differ in colour."""
+    own = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
+    return points[triangles].reshape(-1, 3), own
+
+
+def smoothed(shell: MovingShell, values: npt.ArrayLike) -> Array:
+    """(num_triangles, 3) at the corners: means of the triangles of the same wall around a point.
+
+    Args:
+        shell: whose triangles they are.
+        values: (num_triangles,).
+    """
+    walls = int(shell.stress.wall.max()) + 1
+    of = (shell.triangles.astype(np.int64) * walls + shell.stress.wall[:, None]).ravel()
+    _, corner = np.unique(of, return_inverse=True)
+    weights = np.repeat(shell.stress.areas, 3)
+    total = np.bincount(corner, weights * np.repeat(np.asarray(values, dtype=float), 3))
+    return np.asarray((total / np.bincount(corner, weights))[corner].reshape(-1, 3))
+
+
+def _largest(view: OverlapView, time: float) -> str:
+    """Which stress of a triangle is the largest of the overlap's segments, and where."""
+    shell = view.shell
     stress = shell.stress.at(time)
-    triangle = int(stress.largest().argmax())
+    shown = np.isin(shell.segment, (view.overlap.outer, view.overlap.inner))
+    triangle = int(np.where(shown, stress.largest(), 0.0).argmax())
     x, _, _ = shell.stress.centroids[triangle]
     faces: tuple[Face, ...] = ("outer", "inner")
     face = max(faces, key=lambda name: float(stress.von_mises(name)[triangle]))
     wall = shell.stress.wall_name(triangle)
-    number = int(shell.segment[triangle])
-    names = {overlap.outer: "outer segment", overlap.inner: "inner segment"}
-    segment = names.get(number, f"segment {number + 1}")
     value = float(stress.largest()[triangle]) / 1.0e6
-    return f"largest: {value:.3g} MPa at x = {x:.2f} m ({segment}, {wall} wall, {face} face)"
+    return (
+        f"largest of {' and '.join(view.names)}: {digits(value)} MPa in a triangle at "
+        f"x = {x:.2f} m ({shell.names[int(shell.segment[triangle])]}, {wall} wall, {face} face)"
+    )
+
+
+def _mark_largest(sheet: Sheet, view: OverlapView, values: Array, time: float) -> None:
+    """A ring where the smoothed stress of the half that is seen is largest."""
+    shell = view.shell
+    seen = np.where(
+        view.behind & np.isin(shell.segment, _both(view.overlap)), values.max(axis=1), 0.0
+    )
+    triangle = int(seen.argmax())
+    places = view.places(time)
+    corner = places[shell.triangles[triangle, int(values[triangle].argmax())]]
+    x, y = view.camera(places).project(corner)
+    sheet.ring(float(x), float(y), f"{digits(1e-6 * float(seen[triangle]))} MPa")
+
+
+def _both(overlap: Overlap) -> tuple[int, int]:
+    return overlap.outer, overlap.inner
+
+
+def _coarse(shell: MovingShell, overlap: Overlap) -> str:
+    """A caution where webs have too few elements for how stress changes across them."""
+    fewest = min(_across_web(shell, number) for number in _both(overlap))
+    return "" if fewest >= ENOUGH else f";  webs of {fewest} elements are coarse for stresses"
+
+
+def _across_web(shell: MovingShell, segment: int) -> int:
+    """How many edges of elements are across a web, at most places."""
+    mine = shell.members(segment)
+    half = shell.half_height(segment)
+    x, _, z = shell.points[mine].T
+    inside = np.abs(z - shell.middle(segment)) < 0.999 * half
+    counts = np.unique(x[inside].round(6), return_counts=True)[1]
+    # Two webs, the points of whose ends are not inside.
+    return int(np.median(counts)) // 2 + 1

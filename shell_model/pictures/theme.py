@@ -262,6 +262,15 @@ class Sheet:
             ),
         ]
 
+    def ring(self, x: float, y: float, text: str) -> None:
+        """Ring a place, in pixels, and write beside it; goes with the arrows."""
+        outlined = [withStroke(linewidth=5, foreground="white")]
+        (mark,) = self.picture.plot(
+            [x], [y], "o", ms=26, mfc="none", mec=INK, mew=3, path_effects=outlined
+        )
+        beside: dict[str, Any] = {"color": INK, "size": 18, "path_effects": outlined}
+        self._arrows += [mark, self.picture.annotate(text, (x + 24.0, y - 30.0), **beside)]
+
     def clear_arrows(self) -> None:
         """Remove all arrows."""
         for arrow in self._arrows:

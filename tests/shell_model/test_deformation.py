@@ -9,6 +9,7 @@ import xarray as xr
 
 from shell_model.pictures.deformation import MovingShell, round_scale
 from shell_model.pictures.rendering import where_pressed
+from shell_model.pictures.stress import apart, smoothed
 from tests.shell_model.moving_segments import (
     CLEARANCE,
     INNER,
@@ -78,10 +79,10 @@ def test_what_touches_in_the_run_touches_in_the_picture(
     moved = np.zeros_like(shell.points)
     moved[shell.members(1), 2] = CLEARANCE
     drawn = shell.drawn(moved, scale, section)
-    for side, apart in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
+    for side, gap in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
         outer, inner = (drawn[shell.flange_in_plane(k, side), 2] for k in (0, 1))
         between = side * (outer[0] - inner[0]) - section * shell.wall(overlap)
-        assert between == pytest.approx(apart, abs=1e-9)
+        assert between == pytest.approx(gap, abs=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -168,3 +169,57 @@ def test_from_above_y_points_up(fields: xr.Dataset, trajectories: xr.Dataset) ->
 )
 def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) -> None:
     assert round_scale(largest) == pytest.approx(scale)
+
+
+def test_what_moves_and_turns_an_overlap_as_a_whole_is_left_out(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """Reference: analytic. Of a parabola w = c x² over 1 m a chord's turn is taken, at the chord's
+    middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it."""
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
+    whole, left = shell.displacement(0.5), shell.beside(0.5, 0, (9.0, 10.0))
+    x, _, z = shell.points.T
+    flange = shell.flange_in_plane(0, 1)
+    flange = flange[(x[flange] > 8.99) & (x[flange] < 10.01)]
+    slope = np.polyfit(x[flange], left[flange, 2], 1)[0]
+    assert abs(np.polyfit(x[flange], whole[flange, 2], 1)[0]) > 4e-3
+    assert abs(slope) < 1e-6
+    assert np.abs(left[flange, 2]).max() < 0.02 / 80.0 / 4.0
+    inner = shell.flange_in_plane(1, 1)
+    taken = (whole - left)[inner]
+    turn = np.polyfit(x[inner], taken[:, 2], 1)[0]
+    np.testing.assert_allclose(
+        taken[:, 0], taken[0, 0] - turn * (z[inner] - z[inner][0]), atol=1e-12
+    )
+
+
+def test_smoothed_stresses_keep_to_their_walls(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """Reference: analytic. What is the same all over a wall stays so up to its folds; a field that
+    is linear along x is met between the triangles around a point."""
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
+    walls = shell.stress.wall.astype(float) + 10.0 * shell.segment
+    np.testing.assert_allclose(smoothed(shell, walls), np.repeat(walls[:, None], 3, axis=1))
+    along = shell.stress.centroids[:, 0]
+    corners = smoothed(shell, along)
+    inside = np.abs(shell.points[shell.triangles, 0] - 5.0) < 3.0
+    off = corners - shell.points[shell.triangles, 0]
+    assert np.abs(off[inside]).max() < 0.15  # half an edge
+
+
+def test_points_apart_show_the_same_triangles(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """Reference: the triangles' corners themselves."""
+    (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
+    points, triangles = apart(shell.points, shell.triangles)
+    np.testing.assert_array_equal(points[triangles], shell.points[shell.triangles])
+
+
+def test_segments_have_the_names_that_a_file_knows(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """Reference: the attribute; an earlier file has none."""
+    motion = trajectories.sel(model="shell")
+    assert MovingShell.views(fields, motion)[0].names == ["segment 1", "segment 2"]
+    named = fields.assign_attrs(segments='["base; of", "fly"]')
+    assert MovingShell.views(named, motion)[0].names == ["base; of", "fly"]
