@@ -31,7 +31,7 @@ from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
 from runs.pipeline.motion import asked
-from runs.pipeline.moved import Motions, wall_stresses
+from runs.pipeline.moved import Motions, gone_through, wall_stresses
 from runs.pipeline.play import added
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
@@ -115,8 +115,8 @@ def _moving(
         resting.rests,
         jumps=not model.smooth,
     )
-    lives = [life(one, case.life) for one in motions.varying] if COUNTS else []
-    return motions.told, lives
+    moved, varying = gone_through(motions)
+    return moved, [life(one, case.life) for one in varying] if COUNTS else []
 
 
 def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:

@@ -7,13 +7,13 @@ walls' stresses, so that both are the nominal stress of the same section.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
 
-from dynamics.line import Line
+from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Segment
 from geometry.section import Section
@@ -27,14 +27,16 @@ class Fibres:
     Args:
         x: (num_places,) in m.
         y, z: (num_fibres, num_places) in m.
-        rows: (num_fibres, num_places, num_modes) that read the stress of bending in Pa.
+        of_moment, of_lateral: (num_fibres, num_places) the stress of a moment of 1 N·m, along z and
+            along y, in Pa.
         axial: (num_places,) what the normal force adds in Pa.
     """
 
     x: Array
     y: Array
     z: Array
-    rows: Array
+    of_moment: Array
+    of_lateral: Array
     axial: Array
 
     @classmethod
@@ -45,16 +47,17 @@ class Fibres:
         spatial = "lateral_moment" in line.rows
         there = [segment.local(x) for x in line.x.tolist()]
         y, z = _corners(segment, line.x, spatial)
-        rows = (z / _each(there, "second_moment_of_area"))[..., None] * line.rows["moment"]
-        if spatial:
-            share = y / _each(there, "lateral.second_moment_of_area")
-            rows += share[..., None] * line.rows["lateral_moment"]
+        of_moment = z / _each(there, "second_moment_of_area")
+        of_lateral = y / _each(there, "lateral.second_moment_of_area") if spatial else y
         axial = normal_force(segment.compression, line.x) / _each(there, "section.area")
-        return cls(line.x, y, z, rows, axial)
+        return cls(line.x, y, z, of_moment, of_lateral, axial)
 
-    def stress(self, fibre: int, states: Array) -> Array:
-        """(..., num_places) in Pa of modal coordinates (..., num_modes)."""
-        return np.asarray(states @ self.rows[fibre].T + self.axial)
+    def stress(self, fibre: int, curves: Mapping[Quantity, Array]) -> Array:
+        """(..., num_places) in Pa of section forces (..., num_places)."""
+        stress = self.of_moment[fibre] * curves["moment"] + self.axial
+        if "lateral_moment" in curves:
+            stress += self.of_lateral[fibre] * curves["lateral_moment"]
+        return np.asarray(stress)
 
 
 def _each(segments: Sequence[Segment], number: str) -> Array:
@@ -63,12 +66,14 @@ def _each(segments: Sequence[Segment], number: str) -> Array:
 
 def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
     """(num_fibres, num_places) y and z in m; of a flat boom those that differ in z, at y = 0."""
-    found = np.array([outer_corners(segment.section_at(place)) for place in x.tolist()])
+    different = x.tolist() if segment.head_section is not None else [float(x[0])]
+    corners = np.array([outer_corners(segment.section_at(place)) for place in different])
+    found = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
     y, z = np.moveaxis(found, 0, -1)
     if spatial:
         return y, z
-    _, different = np.unique(z[:, 0], return_index=True)
-    return np.zeros_like(z[different]), z[different]
+    _, heights = np.unique(z[:, 0], return_index=True)
+    return np.zeros_like(z[heights]), z[heights]
 
 
 def outer_corners(section: Section) -> tuple[Array, Array]:

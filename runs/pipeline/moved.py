@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from dynamics.line import Line
+from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment, Support
@@ -56,74 +56,67 @@ class Motions:
     rests: Sequence[AtRest]
     jumps: bool
 
-    @property
-    def told(self) -> Moved:
-        """Of beams, or of a shell but for its walls."""
-        return Moved(
-            envelopes=[
-                _envelope(segment, line, self.trajectory.states)
-                for segment, line in zip(self.boom.segments, self.lines, strict=True)
-            ],
-            peaks=[*_observed(self), *_section_peaks(self)],
-            fibres=[_largest_stress(*of, self) for of in self._fibres()],
-            walls=[],
-        )
 
-    @property
-    def varying(self) -> list[Varying]:
-        """The stress of each segment where it varies most."""
-        return [_varying(*of, self.trajectory.states) for of in self._fibres()]
+class _Gone(NamedTuple):
+    """What a segment has gone through, (num_times, num_places), and at rest (num_rests, ...)."""
 
-    def _fibres(self) -> Iterator[tuple[Segment, Fibres]]:
-        for segment, line in zip(self.boom.segments, self.lines, strict=True):
-            fibres = Fibres.of(segment, line)
-            if fibres is not None:
-                yield segment, fibres
+    segment: Segment
+    line: Line
+    curves: Mapping[Quantity, Array]
+    still: Mapping[Quantity, Array]
 
 
-def _envelope(segment: Segment, line: Line, states: Array) -> Envelope:
-    curves = line.read(states)
+def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
+    """Of beams, or of a shell but for its walls, and the stress where it varies most."""
+    envelopes, peaks = [], list(_observed(motions))
+    fibres, varying = [], []
+    for segment, line in zip(motions.boom.segments, motions.lines, strict=True):
+        curves = line.read(motions.trajectory.states)
+        gone = _Gone(segment, line, curves, line.read(motions.positions))
+        envelopes.append(_envelope(gone))
+        if "moment" in curves:
+            peaks += _section_peaks(motions, gone)
+        if (found := Fibres.of(segment, line)) is not None:
+            largest, most = _stresses(gone, found, motions.trajectory.time)
+            fibres.append(largest)
+            varying.append(most)
+    return Moved(envelopes, peaks, fibres, walls=[]), varying
+
+
+def _envelope(gone: _Gone) -> Envelope:
     return Envelope(
-        segment.name,
-        rounded(line.x),
-        {name: rounded(values.min(axis=0)) for name, values in curves.items()},
-        {name: rounded(values.max(axis=0)) for name, values in curves.items()},
+        gone.segment.name,
+        rounded(gone.line.x),
+        {name: rounded(values.min(axis=0)) for name, values in gone.curves.items()},
+        {name: rounded(values.max(axis=0)) for name, values in gone.curves.items()},
     )
 
 
-def _largest_stress(segment: Segment, fibres: Fibres, motions: Motions) -> FibreStress:
-    trajectory, largest, where = motions.trajectory, 0.0, (0, 0, 0)
+def _stresses(gone: _Gone, fibres: Fibres, time: Array) -> tuple[FibreStress, Varying]:
+    """Where it is largest, and where it varies most."""
+    largest, where = 0.0, (0, 0, 0)
+    found, still = [], []
     for fibre in range(len(fibres.z)):
-        stress = fibres.stress(fibre, trajectory.states)
+        stress = fibres.stress(fibre, gone.curves)
         step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
         if abs(stress[step, place]) > abs(largest):
             largest, where = float(stress[step, place]), (fibre, int(step), int(place))
+        widest = int(np.ptp(stress, axis=0).argmax())
+        at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
+        found.append(Varying(gone.segment.name, at, stress[:, widest].copy()))
+        still.append(np.abs(fibres.stress(fibre, gone.still)).max(initial=0.0))
     fibre, at_step, at_place = where
-    still = [
-        float(np.abs(fibres.stress(k, motions.positions)).max())
-        for k in range(len(fibres.z))
-        if motions.positions.size
-    ]
-    return FibreStress(
-        segment=segment.name,
+    told = FibreStress(
+        segment=gone.segment.name,
         x=float(fibres.x[at_place]),
         y=float(fibres.y[fibre, at_place]),
         z=float(fibres.z[fibre, at_place]),
         stress=largest,
-        time=float(trajectory.time[at_step]),
-        utilisation=utilisation(segment, largest),
-        at_rest=max(still, default=None),
+        time=float(time[at_step]),
+        utilisation=utilisation(gone.segment, largest),
+        at_rest=float(max(still)) if len(gone.still["moment"]) else None,
     )
-
-
-def _varying(segment: Segment, fibres: Fibres, states: Array) -> Varying:
-    found = []
-    for fibre in range(len(fibres.z)):
-        stress = fibres.stress(fibre, states)
-        place = int(np.ptp(stress, axis=0).argmax())
-        at = float(fibres.x[place]), float(fibres.y[fibre, place]), float(fibres.z[fibre, place])
-        found.append(Varying(segment.name, at, stress[:, place].copy()))
-    return max(found, key=lambda one: float(np.ptp(one.stress)))
+    return told, max(found, key=lambda one: float(np.ptp(one.stress)))
 
 
 def utilisation(segment: Segment, stress: float) -> float | None:
@@ -167,20 +160,18 @@ def _observed(motions: Motions) -> Iterator[Peak]:
     return (_peak(one, motions.trajectory.time) for one in found)
 
 
-def _section_peaks(motions: Motions) -> Iterator[Peak]:
-    """Of bending moments, and of what supports bear."""
-    states = motions.trajectory.states
-    for segment, line in zip(motions.boom.segments, motions.lines, strict=True):
-        if "moment" not in line.rows:
-            continue
-        rows = {("bending moment", segment.name, "N m"): line.rows["moment"]}
-        for support in segment.supports if motions.jumps else ():
-            rows |= _support_rows(segment, support, line)
-        for named, of in rows.items():
-            values = states @ of.T
-            most = values[:, np.abs(values).max(axis=0).argmax()]
-            still = [float(np.abs(of @ position).max()) for position in motions.positions]
-            yield _peak(_Measured(*named, most, still), motions.trajectory.time)
+def _section_peaks(motions: Motions, gone: _Gone) -> Iterator[Peak]:
+    """Of the bending moment, and of what supports bear."""
+    moments = gone.curves["moment"]
+    most = moments[:, np.abs(moments).max(axis=0).argmax()]
+    still = np.abs(gone.still["moment"]).max(axis=1).tolist()
+    bent = _Measured("bending moment", gone.segment.name, "N m", most, still)
+    yield _peak(bent, motions.trajectory.time)
+    for support in gone.segment.supports if motions.jumps else ():
+        for named, row in _support_rows(gone.segment, support, gone.line).items():
+            still = (motions.positions @ row).tolist()
+            borne = _Measured(*named, motions.trajectory.states @ row, still)
+            yield _peak(borne, motions.trajectory.time)
 
 
 def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
@@ -213,11 +204,11 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 def _support_rows(
     segment: Segment, support: Support, line: Line
 ) -> Mapping[tuple[str, str, str], Array]:
-    """(1, num_modes) what a support bears: the jump of the shear force, and of the moment."""
+    """(num_modes,) what a support bears: the jump of the shear force, and of the moment."""
     where = f"{segment.name} at {support.x:g} m"
     before, behind = (line.beside("shear", support.x, side) for side in (-1, 1))
-    rows = {("reaction", where, "N"): (before - behind)[None]}
+    rows = {("reaction", where, "N"): before - behind}
     if support.kind == "clamped" or support.rotation_stiffness:
         before, behind = (line.beside("moment", support.x, side) for side in (-1, 1))
-        rows["moment at the support", where, "N m"] = (behind - before)[None]
+        rows["moment at the support", where, "N m"] = behind - before
     return rows

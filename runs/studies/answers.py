@@ -23,7 +23,7 @@ from runs.pipeline.answers import Answers, Diagram, ModelAnswers
 from runs.pipeline.at_rest import at_rest, positions
 from runs.pipeline.life import counted, endurance
 from runs.pipeline.modes import modes
-from runs.pipeline.moved import Motions
+from runs.pipeline.moved import Motions, gone_through
 from runs.pipeline.run import run_case, silent
 from runs.studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from runs.studies.study import Proof, Study
@@ -161,7 +161,8 @@ def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
     told = [at_rest(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)
     motions = Motions(boom, along, motion, rest[None], told, jumps=False)
-    return ModelAnswers(rests=told, modes=modes(boom, system, along, rest), moved=motions.told)
+    moved, _ = gone_through(motions)
+    return ModelAnswers(rests=told, modes=modes(boom, system, along, rest), moved=moved)
 
 
 def _cycles() -> Iterator[Proof]:
