@@ -88,10 +88,15 @@ def calibrate(
         effective_stiffness(segment, far)
         for segment, far in zip(boom.segments, far_fields, strict=True)
     ]
-    stiff = replace(boom, segments=tuple(map(with_stiffness, boom.segments, found)))
+    stiff = stiffened(boom, found)
     beam = gap_system(stiff, segments(stiff), laws, lateral_laws, AT_PADS)
     residual = residual_compliance(beam, shell)
     return with_springs(beam, residual), Calibration(found, residual)
+
+
+def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
+    """The boom with another stiffness of each segment."""
+    return replace(boom, segments=tuple(map(with_stiffness, boom.segments, stiffness)))
 
 
 def effective_stiffness(segment: Segment, far: FarField) -> Stiffness:

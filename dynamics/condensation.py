@@ -24,8 +24,9 @@ _OF_ALL = 1.0 / 3.0
 _DEPENDENT = 1.0e-6
 
 
-def condensed(system: GapSystem, most: int) -> GapSystem:
-    """The system in ``most`` coordinates at most, unless what is pushed alone takes more.
+def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
+    """The system in ``most`` coordinates at most, unless what is pushed alone takes more, and
+    (num_modes, num_coordinates) what these are in its own.
 
     Args:
         system: without modal damping, which a case adds later.
@@ -37,7 +38,7 @@ def condensed(system: GapSystem, most: int) -> GapSystem:
     if system.damping.any():
         raise ValueError("a system is condensed before it is damped")
     if system.num_modes <= most:
-        return system
+        return system, np.eye(system.num_modes)
     order = np.argsort(system.omega2, kind="stable")
     pushes = _pushes(system)
     count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
@@ -52,7 +53,8 @@ def condensed(system: GapSystem, most: int) -> GapSystem:
     shapes = np.zeros((system.num_modes, slow.size + stiffness.size))
     shapes[slow, np.arange(slow.size)] = 1.0
     shapes[fast, slow.size :] = basis @ turn
-    return _projected(system, np.concatenate([system.omega2[slow], stiffness]), shapes)
+    few = _projected(system, np.concatenate([system.omega2[slow], stiffness]), shapes)
+    return few, shapes
 
 
 def _pushes(system: GapSystem) -> Array:

@@ -15,6 +15,7 @@ from mpi4py import MPI
 from dynamics.gap_system import GapSystem
 from dynamics.residual import elastic_compliance
 from geometry.arrays import Array
+from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
@@ -142,3 +143,15 @@ def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> No
     shell = read.model_dump()["calibrated_by"]
     assert (shell["name"], shell["mesh_size"]) == ("shell", 0.5)
     assert isinstance(read.calibrated_by, ShellTable)
+
+
+def test_runs_answer_as_the_shell(case: Case) -> None:
+    """Reference: other code, the shell's first modes with the joints pressed."""
+    results = run_case(case, ["shell", "sprung", "fielded"])
+    assert results.summary.failures == {}
+    answers = results.summary.answers
+    assert answers is not None
+    shell, sprung, fielded = (answers.models[name].modes for name in ("shell", "sprung", "fielded"))
+    for mode, of_springs, of_fields in zip(shell[:2], sprung[:2], fielded[:2], strict=True):
+        assert of_springs.frequency == pytest.approx(mode.frequency, rel=1e-3)
+        assert of_fields.frequency == pytest.approx(mode.frequency, rel=1e-6)

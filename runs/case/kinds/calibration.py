@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
+from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
 from pydantic import Field
 
 from geometry.boom import Boom, BoomError
@@ -17,6 +19,8 @@ from runs.case.limits import Name
 
 if TYPE_CHECKING:
     from dynamics.gap_system import GapSystem
+    from dynamics.line import Line
+    from shell_model.reduced_shell import ReducedShell
 
 
 class CalibratedTable(BeamTable):
@@ -77,21 +81,42 @@ class CalibratedTable(BeamTable):
         from beam_model.calibration import calibrate
 
         made = self.calibrated_by.build(joined, workshop)
-        shell = made.shell
-        assert shell is not None
+        assert made.shell is not None
         begin = perf_counter()
         boom, laws, lateral = joined.boom, joined.laws, joined.lateral_laws
         beam, calibration = calibrate(
-            boom, laws, lateral, shell.system, shell.far_fields, self.segments
+            boom, laws, lateral, made.shell.system, made.shell.far_fields, self.segments
         )
-        system = self.fielded(beam, shell.system, boom)
-        seconds = made.seconds | {"calibration": perf_counter() - begin}
-        factor = self.critical_factor(joined.boom)
-        return Built(system, system.num_modes, seconds, factor, calibration=calibration)
+        built = Built(
+            beam,
+            beam.num_modes,
+            made.seconds,
+            self.critical_factor(boom),
+            calibration=calibration,
+        )
+        moving = self.moving(built, made.shell, boom)
+        seconds = {"calibration": perf_counter() - begin}
+        return replace(moving, seconds=made.seconds | seconds)
 
-    def fielded(self, beam: GapSystem, shell: GapSystem, boom: Boom) -> GapSystem:
+    def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
         """What moves: the beam with springs, unless the model says more."""
-        return beam
+        from beam_model.calibration import stiffened
+        from beam_model.lines import lines
+
+        assert built.calibration is not None
+        stiff = stiffened(boom, built.calibration.segments)
+        along = lines(stiff, self.segments(stiff))
+        # Springs stand behind the beam's own coordinates, and move nothing along it.
+        own = along[0].rows["deflection"].shape[1]
+        basis = np.eye(own, built.system.num_modes)
+        return replace(built, along=[line.on(basis) for line in along])
+
+    def lines(self, boom: Boom, built: Built) -> list[Line]:
+        return list(built.along) or super().lines(boom, built)
+
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
+        # What its springs give way is in its own contacts alone.
+        return super().without_play(boom) if self.calibrated_by is None else None
 
     @abstractmethod
     def beam_stand_in(self, boom: Boom) -> StandIn:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,12 +13,13 @@ from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import Joined, StandIn
+from runs.case.kinds.model import Built, Joined, StandIn
 from runs.case.kinds.shell import ShellTable
 from runs.case.limits import Flag, Length
 
 if TYPE_CHECKING:
-    from dynamics.gap_system import GapSystem
+    from dynamics.line import Line
+    from shell_model.reduced_shell import ReducedShell
 
 # A dense eigenproblem of more elements is a slip of the pen.
 MOST_ELEMENTS = 5_000
@@ -91,12 +93,18 @@ class FiniteElementTable(CalibratedTable):
             return finite_element_segments(boom, self.element_length, "timoshenko", True)
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
-    def fielded(self, beam: GapSystem, shell: GapSystem, boom: Boom) -> GapSystem:
+    def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
         from dynamics.condensation import condensed
 
         if not self.section_fields:
-            return beam
-        return condensed(shell, FIELDS * len(boom.segments))
+            return super().moving(built, shell, boom)
+        system, shapes = condensed(shell.system, FIELDS * len(boom.segments))
+        along: list[Line] = []
+        if shell.fields is not None:
+            from shell_model.stress.lines import lines
+
+            along = [line.on(shapes) for line in lines(shell.fields, spatial=boom.spatial)]
+        return replace(built, system=system, num_dofs=system.num_modes, along=along)
 
     def beam_stand_in(self, boom: Boom) -> StandIn:
         nodes = sum(

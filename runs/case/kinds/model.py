@@ -71,7 +71,8 @@ class Built:
         critical_factor: of the axial forces with the joints pressed, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
         shell: what a reduced shell has beyond its system.
-        calibration: what a calibrated beam has read from its shell.
+        calibration: what a calibrated beam has read from its shell, and
+        along: what is read along its segments, on the first rank.
     """
 
     system: GapSystem
@@ -80,6 +81,7 @@ class Built:
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None
     calibration: Calibration | None = None
+    along: Sequence[Line] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,7 +234,7 @@ class BeamTable(ModelTable):
 
         return lines(boom.play_free if self.play_free else boom, self.segments(boom))
 
-    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]]:
+    def without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
         from beam_model.segment_model import tied_system
 
