@@ -19,7 +19,7 @@ from geometry.compression import Compression
 from geometry.cylinder import forces
 from runs.case.contact import PADS_OF_SIDE
 from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
-from runs.pipeline.results import place_names
+from runs.pipeline.place_names import place_names
 
 # Among so many times between kinks the largest value of a load is looked for.
 _TIMES = 2001
@@ -99,7 +99,7 @@ def at_rest(
             )
             for segment, line in zip(boom.segments, lines, strict=True)
         ],
-        tilts=list(_tilts(boom, system, position)),
+        tilts=list(tilts(boom, system, position)),
         stations=stations,
         cylinders={name: seen[name] for name in forces(boom)},
     )
@@ -147,7 +147,8 @@ def _one_sided(law: ContactLaw, side: int, gap: float) -> float:
     return 0.0 if there is None else float(abs(there.force(np.array(gap))))
 
 
-def _tilts(boom: Boom, system: GapSystem, position: Array) -> Iterator[Tilt]:
+def tilts(boom: Boom, system: GapSystem, position: Array) -> Iterator[Tilt]:
+    """Of the joints with play and two stations at least, at a rest (num_modes,)."""
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
         of_station = [

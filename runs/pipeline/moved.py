@@ -25,7 +25,7 @@ from runs.pipeline.answers import (
     rounded,
 )
 from runs.pipeline.fibres import Fibres
-from runs.pipeline.results import place_names
+from runs.pipeline.place_names import place_names
 
 
 class Varying(NamedTuple):

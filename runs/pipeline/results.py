@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -24,6 +24,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.pipeline.cautions import of_buckling, of_tip, slips
+from runs.pipeline.place_names import place_names
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -224,18 +225,6 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
         },
         attrs={"Conventions": CONVENTIONS},
     )
-
-
-def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
-    """A name for each station: its x in m, behind it ``y`` where it works to the sides.
-
-    ``#2`` and so forth stands behind the name where others are at the same place.
-    """
-    names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
-    before = [names[:i].count(name) for i, name in enumerate(names)]
-    return [
-        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
-    ]
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:

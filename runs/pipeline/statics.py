@@ -18,6 +18,7 @@ from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.answers import Reaction
+from runs.pipeline.at_rest import tilts
 from runs.pipeline.cautions import of_tip
 
 KILO, MILLI = 1.0e3, 1.0e-3
@@ -76,6 +77,13 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     if boom.cylinders:
         console.print(_cylinders(boom, found.played, case.system))
     console.print(_line(found), highlight=False)
+    for tilt in tilts(boom, found.played.system, found.played.position):
+        console.print(
+            f"Play turns {tilt.inner!r} by {tilt.rotation / MILLI:.4g} mrad in {tilt.outer!r}, "
+            f"which moves the tip by {tilt.tip / MILLI:.4g} mm.",
+            highlight=False,
+            markup=False,
+        )
     for caution in of_tip("as beam elements", found.played.tip, boom):
         console.print(caution, markup=False, highlight=False)
 

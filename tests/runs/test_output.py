@@ -17,7 +17,8 @@ from runs.case.messages import BadInput
 from runs.paper import readings
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
 from runs.paper.rules import judge
-from runs.pipeline.results import Results, place_names
+from runs.pipeline.place_names import place_names
+from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
 

@@ -40,6 +40,8 @@ def test_masses_forces_and_tips_are_those_of_hand(capsys: pytest.CaptureFixture[
         line.startswith("At rest the tip is at 143.2 mm, without play at 9.916 mm")
         for line in lines
     )
+    # What 2.2 and 2.8 kN press contacts of 1e13 N/m² in is in it.
+    assert "Play turns 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm." in lines
 
 
 def test_a_boom_without_rest_says_so(capsys: pytest.CaptureFixture[str]) -> None:
