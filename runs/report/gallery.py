@@ -11,14 +11,18 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from matplotlib import rc_context
 from PIL import Image
 
+from runs import CASES
+from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.folder.files import whole
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.process import notices
+from runs.report.boom_drawing import draw_boom_of
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.rendering import TITLES, require_opengl, telling_instants
@@ -37,7 +41,6 @@ COPIED = {
     "space-from-the-side": ("spatial", "snapshots/boom-first-peak.png"),
     "space-from-above": ("spatial", "snapshots/boom-above-first-peak.png"),
     "space-overlap": ("spatial", "snapshots/overlap-above-first-peak.png"),
-    "space-stress": ("spatial", "snapshots/stress-above-first-peak.png"),
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
     "three-segments-overlap": ("three-segments", "snapshots/overlap-2-first-peak.png"),
     "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
@@ -63,6 +66,10 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
                 str(path), "file", "missing; run the case with its shell, or make verify"
             )
         yield name, Image.open(path).convert("RGB")
+    with TemporaryDirectory() as folder:
+        drawing = Path(folder) / "lift.png"
+        draw_boom_of(case_file.load(str(CASES / "lift.toml")), drawing)
+        yield "lift", Image.open(drawing).convert("RGB")
     results = Results.load(runs / "paper")
     motion = results.trajectories.sel(model=MODEL)
     shell = MovingShell.views(read_fields(runs / "paper" / FIELDS), motion)[0]
@@ -83,7 +90,8 @@ def main() -> int:
         for name, picture in pictures(RUNS):
             path = GALLERY / f"{name}.png"
             with whole(path) as part:
-                picture.save(part, optimize=True)
+                # A page loads all of them; no eye sees more colours.
+                picture.quantize(256).save(part, format="PNG", optimize=True)
             print(f"{path}  {path.stat().st_size // 1000} kB")
     except BadInput as error:
         print(f"gallery: {error}", file=sys.stderr)

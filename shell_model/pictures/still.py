@@ -23,7 +23,7 @@ PIXELS = (theme.SHEET[0], 660)
 ELEVATION, BESIDE = 28.0, 0.9
 
 # Changes of shape are drawn up to this part of the outer section's height.
-CHANGE_DRAWN = 0.12
+CHANGE_DRAWN = 0.05
 
 
 def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
