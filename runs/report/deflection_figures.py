@@ -209,7 +209,8 @@ def _sampled(pen: Pen, place: str) -> str:
 
 def _stays_pressed(pen: Pen) -> bool:
     """Whether no contact ever opens, and no impact lets small differences grow."""
-    forces = [pen.of(name, "contact_force") for name in pen.with_play]
+    touching = pen.with_play if "contact_force" in pen.data else ()
+    forces = [pen.of(name, "contact_force") for name in touching]
     return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
 

@@ -156,7 +156,9 @@ def test_figures_have_bands_and_horizons(
 ) -> None:
     """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
     sheets: dict[str, Sheet] = {}
-    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: sheets.update({path.stem: sheet}))
+    monkeypatch.setattr(
+        Sheet, "savefig", lambda sheet, path, **_: sheets.update({path.stem: sheet})
+    )
     captions = {figure.path.stem: figure.caption for figure in draw(run.results, tmp_path)}
     ensembles = run.results.ensembles
     assert ensembles is not None
@@ -192,7 +194,9 @@ def test_slow_peaks_are_drawn_with_their_spreads(
 ) -> None:
     """Reference: the numbers of the summary, in mm."""
     sheets: dict[str, Sheet] = {}
-    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: sheets.update({path.stem: sheet}))
+    monkeypatch.setattr(
+        Sheet, "savefig", lambda sheet, path, **_: sheets.update({path.stem: sheet})
+    )
     known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "knowledge"}
     assert list(known) == ["slow-peaks", "horizons"]
     assert tuple(known["slow-peaks"].statements) == ("S2", "S3")
