@@ -11,12 +11,12 @@ from geometry.section import Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
 
-# Left is where y is positive.
+# Right is where y is positive, as for the plates of a section.
 SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
     "above": ("z", 1),
     "below": ("z", -1),
-    "left": ("y", 1),
-    "right": ("y", -1),
+    "left": ("y", -1),
+    "right": ("y", 1),
 }
 
 

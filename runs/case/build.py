@@ -193,7 +193,7 @@ def _check_plays(where: str, table: JointTable) -> None:
     """A part of a play is not more than it, and shims leave none."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
-        ("lateral_play_left", "lateral_play", "lateral_interference"),
+        ("lateral_play_right", "lateral_play", "lateral_interference"),
     ):
         part, play = getattr(table, key), getattr(table, of)
         if part is not None and not part <= (play or 0.0):

@@ -150,7 +150,7 @@ class SlidePadTable(PadTable):
     """One of several pads at each station: a pair of them, beside both corners of a wall."""
 
     side: Literal["above", "below", "left", "right"] = Field(
-        description="the wall of the inner segment that it is on; left is where y is positive"
+        description="the wall of the inner segment that it is on; right is where y is positive"
     )
     thickness: Length = Field(description="the thickness in m, from which its stiffness follows")
     shim: Annotated[NotNegative, In("m")] = Field(
@@ -229,9 +229,10 @@ class JointTable(Table):
         description="the play to the sides in m, left and right together; with it the boom moves "
         "in space",
     )
-    lateral_play_left: Annotated[NotNegative, In("m")] | None = Field(
+    lateral_play_right: Annotated[NotNegative, In("m")] | None = Field(
         None,
-        description="the part of the lateral play in m towards larger y; half of it unless given",
+        description="the part of the lateral play in m on the right, towards larger y; half of it "
+        "unless given",
     )
     lateral_interference: Annotated[NotNegative, In("m")] = Field(
         0.0, description="the amount in m by which shims press from the sides, without lateral play"
@@ -308,7 +309,7 @@ class JointTable(Table):
             play, first, pressed = self.play, self.play_above, self.interference
         else:
             assert self.lateral_play is not None
-            play, first = self.lateral_play, self.lateral_play_left
+            play, first = self.lateral_play, self.lateral_play_right
             pressed = self.lateral_interference
         first = 0.5 * play if first is None else first
         return first - 0.5 * pressed, play - first - 0.5 * pressed

@@ -124,7 +124,7 @@ def _joints(case: Case, boom: Boom) -> Table:
 
 def _clearances(given: JointTable) -> Iterator[str]:
     """In mm, along z, and in space along y."""
-    sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("left", "right")}
+    sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
     for direction, names in sides.items():
         if direction == "y" and given.lateral_play is None:
             return

@@ -74,8 +74,8 @@ CONTACTS = {
     ),
     "a part of a lateral play that is none": (
         "exponent = 2.0\n",
-        "exponent = 2.0\nlateral_play_left = 0.002\n",
-        "joint[1].lateral_play_left: must be a part of lateral_play, got 0.002 m",
+        "exponent = 2.0\nlateral_play_right = 0.002\n",
+        "joint[1].lateral_play_right: must be a part of lateral_play, got 0.002 m",
     ),
     "shims under a square law": (
         "play = 0.014\nstiffness = 1e13\n",
@@ -96,7 +96,7 @@ CONTACTS = {
     "several pads without a side": (
         LAW,
         "pads = [{ length = 0.1, width = 0.06, thickness = 0.02 }]\n",
-        "joint[1].pads[1].side: missing; it is the wall of the inner segment that it is on; left "
+        "joint[1].pads[1].side: missing; it is the wall of the inner segment that it is on; right "
         "is where y is positive",
     ),
     "pads on one side alone": (
