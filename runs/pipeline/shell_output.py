@@ -13,8 +13,10 @@ import xarray as xr
 from dynamics.damping import pressed_modes
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from geometry.load import Load
 from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
+from shell_model.pictures.deformation import DOWN, MASS, SPRING, UP, Sign
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
 from shell_model.stress.summary import StressSummary
@@ -72,6 +74,7 @@ class ShellOutput:
             **_joints(boom),
             **_stops(boom),
             **_lugs(boom),
+            **_signs(boom),
             **_modes(reduced),
         ).assign_attrs(model=name, segments=json.dumps(names))
         shell = ShellStress.of(fields)
@@ -118,6 +121,29 @@ def _lugs(boom: Boom) -> dict[str, Any]:
         "lug_x": ("lug", np.array([cylinder.x for cylinder in boom.cylinders]), {"units": "m"}),
         "lug_along": ("lug", along),
         "lug_up": ("lug", up),
+    }
+
+
+def _signs(boom: Boom) -> dict[str, Any]:
+    """Elastic supports, masses and point loads along z, as pictures draw them."""
+    found = [
+        Sign(number, support.x, SPRING)
+        for number, segment in enumerate(boom.segments)
+        for support in segment.supports
+        if support.stiffness is not None
+    ]
+    for number, segment in enumerate(boom.segments):
+        found += [Sign(number, mass.x, MASS) for mass in segment.masses]
+    for load in boom.loads:
+        if load.x is not None and load.direction == "z" and type(load) is Load:
+            found.append(Sign(load.segment, load.x, UP if load.magnitude > 0.0 else DOWN))
+    if not found:
+        return {}
+    segments, places, kinds = zip(*dict.fromkeys(found), strict=True)
+    return {
+        "sign_segment": ("sign", np.array(segments, dtype=np.int32)),
+        "sign_x": ("sign", np.array(places), {"units": "m"}),
+        "sign_kind": ("sign", np.array(kinds, dtype=np.int32)),
     }
 
 

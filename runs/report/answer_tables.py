@@ -38,7 +38,7 @@ def first_table(results: Results) -> Table | None:
         "First frequency, Hz": lambda own: number(own.modes[0].frequency) if own.modes else NONE,
         "A swing takes, s": _period,
         "It dies to a tenth in, s": lambda own: _dying(results.case, own),
-        "Presses most, kN": lambda own: _largest_of(own, "contact force"),
+        "Pressed most, kN": lambda own: _largest_of(own, "contact force"),
         "Cylinder, at most, kN": lambda own: _largest_of(own, "cylinder force"),
         "Stress, at most, MPa": _stress,
         "Of the yield strength, %": _utilisation,

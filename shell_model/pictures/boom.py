@@ -15,7 +15,18 @@ from PIL import Image
 from geometry.arrays import Array
 from geometry.typography import signed
 from shell_model.pictures import theme as theme
-from shell_model.pictures.deformation import SAME_PLACE, Lug, MovingShell, Stop, round_scale
+from shell_model.pictures.deformation import (
+    DOWN,
+    MASS,
+    SAME_PLACE,
+    SPRING,
+    UP,
+    Lug,
+    MovingShell,
+    Sign,
+    Stop,
+    round_scale,
+)
 from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
 
 # The whole boom: displacements are drawn up to this part of its length, sections so many times
@@ -23,6 +34,9 @@ from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
 DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
 
 PIXELS = (theme.SHEET[0], 470)
+
+# Lengths in pixels of what a mass hangs by, and of arrows.
+ROPE, PUSH = 34.0, 60.0
 
 
 class Instant(NamedTuple):
@@ -127,7 +141,11 @@ def draw_boom(
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     where, black = ("seen from above; ", "") if shell.from_above else ("", "; black: supports")
     black += " and cylinders" if shell.lugs else ""
-    black += "; grey blocks: stops" if shell.stops else ""
+    springs = [sign for sign in shell.signs if sign.kind == SPRING]
+    grey = [*(["stops"] if shell.stops else []), *(["springs"] if springs else [])]
+    black += f"; grey blocks: {' and '.join(grey)}" if grey else ""
+    black += "; balls: masses" if any(sign.kind == MASS for sign in shell.signs) else ""
+    black += "; arrows: loads" if any(sign.kind in (UP, DOWN) for sign in shell.signs) else ""
     with Scene(camera.pixels) as scene:
         # A little behind the boom, or it would shine through where that hardly moves.
         rest = shell.drawn(np.zeros_like(shell.points), view.scale, SECTION_DRAWN)
@@ -139,6 +157,9 @@ def draw_boom(
         for number, stop in enumerate(shell.stops):
             block = _wedge(_met(shell, rest, stop), stop.side, view.scale * stop.clearance)
             scene.surface(f"stop {number}", *block, color=theme.FAINT)
+        for number, spring in enumerate(springs):
+            block = _wedge(_met(shell, rest, spring))
+            scene.surface(f"spring {number}", *block, color=theme.FAINT)
         for number, lug in enumerate(shell.lugs):
             scene.surface(f"cylinder {number}", *_rod(_met(shell, rest, lug), lug), color=theme.INK)
         for instant in instants:
@@ -154,19 +175,34 @@ def draw_boom(
             )
             scene.outline("edges", places, shell.triangles, theme.INK, 1.2)
             sheet.show(scene.seen_by(camera))
+            _draw_signs(shell, sheet, camera, places)
             last = int(np.abs(time - instant.time).argmin())
             past.set_data(time[: last + 1], 1.0e3 * tip[: last + 1])
             now.set_data(time[[last]], 1.0e3 * tip[[last]])
             sheet.write(
                 instant.heading(shell, float(tip[last])),
                 f"{where}drawn: displacements and play × {view.scale:g}, sections × "
-                f"{SECTION_DRAWN:g}; grey: at rest{black}{pace}",
+                f"{SECTION_DRAWN:g}\ngrey: at rest{black}{pace}",
             )
             yield sheet.image()
 
 
-def _met(shell: MovingShell, rest: Array, place: Stop | Lug) -> Array:
-    """(num_points, 3) where the section that a stop or a cylinder meets is drawn at rest."""
+def _draw_signs(shell: MovingShell, sheet: Sheet, camera: Camera, places: Array) -> None:
+    """Masses that hang from the boom where it is drawn, and arrows of what pushes it."""
+    sheet.clear_arrows()
+    for sign in shell.signs:
+        x, _, z = _met(shell, places, sign).T
+        low, high = (camera.project([x.mean(), 0.0, edge]) for edge in (z.min(), z.max()))
+        if sign.kind == MASS:
+            sheet.hang(low, ROPE)
+        elif sign.kind == DOWN:
+            sheet.arrow(high + np.array([0.0, PUSH]), -PUSH, "")
+        elif sign.kind == UP:
+            sheet.arrow(low - np.array([0.0, PUSH]), PUSH, "")
+
+
+def _met(shell: MovingShell, rest: Array, place: Stop | Lug | Sign) -> Array:
+    """(num_points, 3) where the section that something meets is drawn."""
     mine = shell.members(place.segment)
     return np.asarray(rest[mine[np.abs(shell.points[mine, 0] - place.x) < SAME_PLACE]])
 

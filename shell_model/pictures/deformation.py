@@ -80,7 +80,23 @@ class Lug(NamedTuple):
     up: float
 
 
-_Kind = TypeVar("_Kind", Stop, Lug)
+class Sign(NamedTuple):
+    """What else is on a segment.
+
+    Args:
+        segment: its number.
+        x: m.
+        kind: ``MASS``, ``SPRING``, an elastic support, or a force that pushes ``UP`` or ``DOWN``.
+    """
+
+    segment: int
+    x: float
+    kind: int
+
+
+DOWN, MASS, UP, SPRING = -1, 0, 1, 2
+
+_Kind = TypeVar("_Kind", Stop, Lug, Sign)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +110,7 @@ class MovingShell:
         overlaps: from the base to the tip, where the segments touch along the third direction.
         stops: above and below segments.
         lugs: of cylinders.
+        signs: of what else holds and loads it.
         modes: (num_modes, num_points, 3) in 1/√kg.
         state: (time, mode) modal coordinates.
         motion: trajectories of this shell alone, in which ``tip`` is along the third direction.
@@ -108,6 +125,7 @@ class MovingShell:
     overlaps: Sequence[Overlap]
     stops: Sequence[Stop]
     lugs: Sequence[Lug]
+    signs: Sequence[Sign]
     modes: npt.NDArray[np.float32]
     state: xr.DataArray
     motion: xr.Dataset
@@ -126,7 +144,8 @@ class MovingShell:
                 joints: ``joint_outer``, ``joint_inner``, ``clearance`` and ``lateral_clearance``
                 (joint), ``station_joint`` (station); ``stop_segment``, ``stop_x``, ``stop_side``
                 and ``stop_clearance`` (stop); ``lug_segment``, ``lug_x``, ``lug_along`` and
-                ``lug_up`` (lug). What the boom has none of may be missing.
+                ``lug_up`` (lug); ``sign_segment``, ``sign_x`` and ``sign_kind`` (sign). What the
+                boom has none of may be missing.
             motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
                 ``contact_force`` and ``contact_force_peak`` in N; coordinate ``direction`` of the
                 stations.
@@ -139,6 +158,7 @@ class MovingShell:
             overlaps=_overlaps(fields, directions, "z"),
             stops=_listed(fields, "stop", Stop),
             lugs=_listed(fields, "lug", Lug),
+            signs=_listed(fields, "sign", Sign),
             modes=fields["modes"].values,
             state=fields["state"].load(),
             motion=motion,
@@ -155,6 +175,7 @@ class MovingShell:
             overlaps=sideways,
             stops=[],
             lugs=[],
+            signs=[],
             modes=side.modes @ _FROM_ABOVE.astype(np.float32),
             motion=motion.assign(tip=motion["tip_lateral"]),
             from_above=True,

@@ -112,7 +112,7 @@ def render_snapshots(
             if not seen.from_above:
                 last = film[-1].time
                 slow = SHOWN / (last - begin) if last > begin else 1.0
-                pace = f"\n{slow:.3g} times slower than it is" if slow > 1.0 else ""
+                pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
                 moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, last, pace)]
     for name, picture in drawn.items():
         picture.save(folder / name)

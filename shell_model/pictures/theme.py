@@ -271,6 +271,14 @@ class Sheet:
         beside: dict[str, Any] = {"color": INK, "size": 18, "path_effects": outlined}
         self._arrows += [mark, self.picture.annotate(text, (x + 24.0, y - 30.0), **beside)]
 
+    def hang(self, hook: Array, length: float) -> None:
+        """Hang a mass from a place, (2,) pixels, by so many pixels; goes with the arrows."""
+        x, y = (float(pixel) for pixel in hook)
+        look: dict[str, Any] = {"color": INK, "lw": 3, "clip_on": False}
+        (rope,) = self.picture.plot([x, x], [y, y - length], **look)
+        (mass,) = self.picture.plot([x], [y - length], "o", ms=20, **look)
+        self._arrows += [rope, mass]
+
     def clear_arrows(self) -> None:
         """Remove all arrows."""
         for arrow in self._arrows:

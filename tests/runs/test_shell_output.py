@@ -13,10 +13,12 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from dynamics.excitation import Step
 from dynamics.trajectory import Trajectory
-from geometry.boom import Boom, Cylinder, Stop
+from geometry.boom import Boom, Cylinder, Load, PointMass, Stop
 from runs.pipeline.shell_output import ShellOutput
 from shell_model.boom_shell import ShellOptions
+from shell_model.pictures.deformation import DOWN, MASS, UP
 from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 
@@ -34,11 +36,18 @@ def output(boom: Boom) -> ShellOutput:
 
 def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
     """Reference: the boom. Stations along z, then along y, then the stop inside the overlap,
-    which is above the inner segment alone; a cylinder is where its lug is.
+    which is above the inner segment alone; a cylinder is where its lug is; what pushes one place
+    one way is one sign.
     """
     stop = Stop(1, 9.5, 0.02, 1.0e9, 0.0, 1.0)
     cylinder = Cylinder(0, x=4.0, depth=0.25, ground=(1.0, -4.25), stiffness=1.0e7)
-    left = output(replace(boom_in_space(), stops=(stop,), cylinders=(cylinder,)))
+    boom = boom_in_space()
+    outer = replace(boom.segments[0], masses=(PointMass(4.0, 50.0),))
+    pushes = tuple(Load(1, "z", size, 19.0, Step()) for size in (-2.0, 5.0, 7.0))
+    segments = (outer, boom.segments[1])
+    left = output(
+        replace(boom, segments=segments, stops=(stop,), cylinders=(cylinder,), loads=pushes)
+    )
     fields = left.fields
     assert fields["station_joint"].values.tolist() == [0, 0, 0, 0, -1]
     expected = {
@@ -52,9 +61,12 @@ def test_a_stop_in_an_overlap_is_no_contact_of_the_segments() -> None:
         "lug_x": [4.0],
         "lug_along": [0.6],
         "lug_up": [0.8],
+        "sign_segment": [0, 1, 1],
+        "sign_x": [4.0, 19.0, 19.0],
+        "sign_kind": [MASS, DOWN, UP],
     }
     assert {name: fields[name].values.tolist() for name in expected} == expected
-    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0]
+    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0, 19.0]
     assert left.largest.von_mises == 0.0
     assert left.modes is not None
     moved = np.tensordot(left.modes["state"].values, left.modes["modes"].values, axes=1)

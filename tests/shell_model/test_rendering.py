@@ -11,8 +11,8 @@ from PIL import Image
 
 from geometry.arrays import Array
 from shell_model.pictures import rendering
-from shell_model.pictures.boom import BoomView, Instant, _rod
-from shell_model.pictures.deformation import Lug, MovingShell
+from shell_model.pictures.boom import BoomView, Instant, _rod, draw_boom
+from shell_model.pictures.deformation import DOWN, MASS, SPRING, Lug, MovingShell
 from shell_model.pictures.overlap import draw_overlap
 from shell_model.pictures.rendering import (
     RenderingUnavailable,
@@ -283,6 +283,39 @@ def test_mesh_and_sections_are_drawn(fields: xr.Dataset, trajectories: xr.Datase
         red, _, blue = np.moveaxis(pixels, 2, 0)
         assert (blue > red + 60.0).mean() > share
         assert (red > blue + 100.0).mean() > share
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("_opengl")
+def test_masses_hang_and_loads_push(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
+    """Reference: analytic. A ball of 20 points across and a red arrow of 60 pixels at the tip, of
+    which matplotlib leaves out some at its ends, and a grey block under a spring at 9 m.
+    """
+    marked = fields.assign(
+        sign_segment=("sign", np.int32([1, 1, 0])),
+        sign_x=("sign", [19.0, 19.0, 9.0]),
+        sign_kind=("sign", np.int32([MASS, DOWN, SPRING])),
+    )
+    instant = Instant(0.5)
+    pictures = []
+    for each in (fields, marked):
+        (shell,) = MovingShell.views(each, trajectories.sel(model="shell"))
+        with rc_context(LETTERS):
+            view = BoomView.of(shell, [instant])
+            (picture,) = draw_boom(shell, [instant], view, 2.0)
+        pictures.append(np.asarray(picture, dtype=float)[120:570])
+    differs = np.abs(pictures[1] - pictures[0]).max(axis=2) > 60.0
+    red, green, _ = np.moveaxis(pictures[1], 2, 0)
+    arrow = differs & (red > 120.0) & (green < 70.0)
+    assert arrow.sum(axis=0).max() == pytest.approx(56.0, abs=6.0)
+    (tip, _) = view.camera.project([19.0, 0.0, 0.0])
+    assert abs(np.flatnonzero(arrow.any(axis=0)).mean() - tip) < 60.0
+    ball = differs & (pictures[1].max(axis=2) < 60.0)
+    across = 20.0 * 100.0 / 72.0
+    assert ball.sum() > 0.6 * across**2
+    (spring, _) = view.camera.project([9.0, 0.0, 0.0])
+    columns = np.flatnonzero(differs.any(axis=0))
+    assert (np.abs(columns - spring) < 40.0).any()
 
 
 @pytest.mark.slow

@@ -213,6 +213,25 @@ def test_a_run_without_opengl_says_so_and_goes_on(
 
 
 @pytest.mark.usefixtures("few_figures")
+def test_pictures_can_be_left_to_later(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: a renderer that must not be asked."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+    def refuse(*arguments: object) -> list[Path]:
+        raise AssertionError("nobody asked for pictures")
+
+    monkeypatch.setattr("runs.report.snapshots.render_snapshots", refuse)
+    out = tmp_path / "out"
+    assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
+    later = "they were not asked for; protractile snapshot draws them"
+    assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert summary["snapshots"] == {"written": [], "skipped": later}
+
+
+@pytest.mark.usefixtures("few_figures")
 def test_two_shells_of_a_case_keep_their_files_apart(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
