@@ -56,20 +56,23 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def positions(system: GapSystem, duration: float) -> dict[float, Array]:
-    """Where it rests, (num_modes,), by the instants in s whose loads act; none without a rest.
+    """Where it rests, (num_modes,), by the instants in s whose loads act.
+
+    Instants under whose loads it has no rest are left out; there is none without one at t = 0.
 
     Args:
         system: of a model, all that stays constant in its ``load``.
         duration: of the motion in s.
     """
-    try:
-        with np.errstate(all="ignore"):
-            return {
-                time: equilibrium(system, load_at(system, time))
-                for time in instants(system, duration)
-            }
-    except NUMERICS:
-        return {}
+    found: dict[float, Array] = {}
+    for time in instants(system, duration):
+        try:
+            with np.errstate(all="ignore"):
+                found[time] = equilibrium(system, load_at(system, time))
+        except NUMERICS:
+            if not found:
+                return {}
+    return found
 
 
 def at_rest(

@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, History, Ramp, Sine
+from dynamics.gap_system import GapSystem
 from geometry.compression import Compression
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
-from runs.pipeline.at_rest import normal_force
+from runs.pipeline.at_rest import instants, normal_force, positions
 from runs.pipeline.run import run_case, silent
 from runs.pipeline.summary import Summary
 
@@ -69,3 +73,26 @@ def test_a_normal_force_has_both_sides_of_a_jump() -> None:
     pressed = Compression((0.0, 4.0, 10.0), ((9e3, 7e3), (2e3, 2e3)))
     x = np.array([0.0, 4.0, 4.0, 10.0])
     np.testing.assert_allclose(normal_force(pressed, x), [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
+
+
+def ball(*histories: History) -> GapSystem:
+    """1 kg under its weight on a floor of 1e6 N/m, and 20 N upwards by each history."""
+    floor, one = PowerContact(1e6, 1.0, clearance=0.0).lower(), np.ones(1)
+    lifted = [Excitation(20.0 * one, history) for history in histories]
+    system = GapSystem(0.0 * one, -9.81 * one, one[None], [floor], np.array([0]), [0.0], {})
+    return replace(system, excitations=lifted)
+
+
+def test_loads_are_taken_where_they_are_largest() -> None:
+    """Reference: by hand. A ramp has risen at its end, a sine of 1 Hz peaks at 0.25 and 0.75 s."""
+    assert instants(ball(), 2.0) == [0.0]
+    assert instants(ball(Ramp(0.3)), 2.0) == [0.0, 0.3]
+    assert instants(ball(Sine(1.0)), 1.0) == pytest.approx([0.0, 0.25, 0.75], abs=1e-3)
+
+
+def test_an_instant_without_rest_is_left_out() -> None:
+    """Reference: by hand. The ball rests 9.81 µm deep, flies under 20 N, and 29.81 N press it."""
+    found = positions(ball(Sine(1.0)), 1.0)
+    assert list(found) == pytest.approx([0.0, 0.75], abs=1e-3)
+    np.testing.assert_allclose(np.ravel(list(found.values())), [-9.81e-6, -29.81e-6], rtol=1e-5)
+    assert positions(replace(ball(), rows=-np.ones((1, 1))), 1.0) == {}
