@@ -102,8 +102,11 @@ def play_table(results: Results) -> Table | None:
         Column("", [_named(one.what, one.where) for one in rows]),
         Column("with play", [_amount(one.played, one.unit) for one in rows]),
         Column("tied", [_amount(one.tied, one.unit) for one in rows]),
-        Column("play adds", [_amount(one.added, one.unit) for one in rows]),
-        Column("%", [one.share for one in rows], ".3g", PERCENT),
+        Column(
+            "play adds",
+            ["next to nothing" if _hardly(one) else _amount(one.added, one.unit) for one in rows],
+        ),
+        Column("%", [None if _hardly(one) else one.share for one in rows], ".3g", PERCENT),
     )
     return Table(f"What play adds: {found.model}", columns, (), "play")
 
