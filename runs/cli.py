@@ -67,6 +67,9 @@ SweepFolder = Annotated[
     str | None,
     typer.Option(metavar="DIR", help="Where to write.  [default: runs/out/CASE-sweep]"),
 ]
+Picture = Annotated[
+    str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
+]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 
@@ -102,10 +105,7 @@ def run(
     ] = None,
     no_cache: NoCache = False,
     large: Large = False,
-    no_pictures: Annotated[
-        bool,
-        typer.Option("--no-pictures", help="Leave snapshots and film to protractile snapshot."),
-    ] = False,
+    no_pictures: Annotated[bool, typer.Option("--no-pictures", help="Draw no snapshots.")] = False,
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
     from runs.case import reading
@@ -116,7 +116,6 @@ def run(
     from runs.pipeline import estimates
     from runs.pipeline.run import run_case
     from runs.report import output
-    from runs.report.snapshots import draw_snapshots
     from runs.sweep.run import launched_world
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
@@ -137,7 +136,7 @@ def run(
                 finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
             verdicts = judge(finished.results)
-            output.write(finished, verdicts, part, scratch, None if no_pictures else draw_snapshots)
+            output.write(finished, verdicts, part, scratch, snapshots_now=not no_pictures)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: verdicts})
         return _show_models_that_failed(case, finished.results) or status
@@ -286,28 +285,15 @@ def frequencies(
 
 
 @app.command()
-def check(
-    case: CaseFile,
-    picture: Annotated[
-        str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
-    ] = None,
-) -> int:
+def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print what follows from it."""
-    from runs.case.messages import BadInput
     from runs.case.reading import load
     from runs.pipeline.inferred import print_inferred
 
-    if picture is not None and Path(picture).suffix.lower() != ".png":
-        raise BadInput(case, f"--picture {picture}", "must end in .png")
     checked = load(case)
-    print_inferred(checked, Terminal())
     if picture is not None:
-        from runs.folder.files import whole
-        from runs.report.boom_drawing import draw_boom_of
-
-        with whole(Path(picture)) as part:
-            draw_boom_of(checked, part)
-        print(printable(picture))
+        import_module("runs.report.boom_drawing").save_drawing(checked, case, picture)
+    print_inferred(checked, Terminal())
     return 0
 
 

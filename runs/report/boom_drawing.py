@@ -23,7 +23,9 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Segment, Stop, Support
 from geometry.typography import signed
 from runs.case.build import build_boom
+from runs.case.messages import BadInput
 from runs.case.schema import Case
+from runs.folder.files import whole
 from runs.report import symbols, theme
 from runs.report.acting import Acting, acting, amount
 from runs.report.figure_context import Figure, Pen
@@ -107,6 +109,23 @@ def draw_boom_of(case: Case, path: Path) -> None:
     boom = build_boom(case)
     with rc_context(theme.RC):
         boom_sheet(case, boom).savefig(path, format="png")
+
+
+def save_drawing(case: Case, file: str, picture: str) -> None:
+    """Draw a case's boom into a file, whole or not at all.
+
+    Args:
+        case: whose boom it is.
+        file: how messages call the case.
+        picture: where it goes, as the user gave it.
+
+    Raises:
+        BadInput: that is no PNG file's name.
+    """
+    if Path(picture).suffix.lower() != ".png":
+        raise BadInput(file, f"--picture {picture}", "must end in .png")
+    with whole(Path(picture)) as part:
+        draw_boom_of(case, part)
 
 
 def boom_sheet(case: Case, boom: Boom) -> Sheet:

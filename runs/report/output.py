@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
@@ -87,7 +87,7 @@ def write(
     verdicts: Sequence[Verdict],
     folder: Path,
     mesh_folder: Path,
-    draw_snapshots: Callable[..., Any] | None = snapshots.draw_snapshots,
+    snapshots_now: bool = True,
 ) -> None:
     """Write everything that a run leaves.
 
@@ -96,7 +96,7 @@ def write(
         verdicts: those that its case asks for.
         folder: an empty one.
         mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
-        draw_snapshots: of the shells; None leaves them to whoever asks for them later.
+        snapshots_now: whether they are drawn; else whoever wants some asks for them later.
     """
     results = run.results
     # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
@@ -131,8 +131,8 @@ def write(
     if surface is not None:
         _write_text(folder / VIEWER, viewer(results.case, surface))
     try:
-        if draw_snapshots is not None:
-            draw_snapshots(results, fields, folder)
+        if snapshots_now:
+            snapshots.draw_snapshots(results, fields, folder)
         elif fields:
             results.summary.snapshots = Snapshots(written=[], skipped=LATER)
     except RenderingUnavailable as reason:

@@ -71,8 +71,7 @@ def test_check_prints_what_was_inferred(protractile: Protractile) -> None:
 
 def test_check_draws_the_boom(protractile: Protractile) -> None:
     """Reference: a PNG file's first bytes (W3C 2003), and nothing else in the folder."""
-    answer = protractile("check", "case.toml", "--picture", "boom.png")
-    assert (answer.status, answer.out.splitlines()[-1]) == (0, "boom.png")
+    assert protractile("check", "case.toml", "--picture", "boom.png").status == 0
     assert Path("boom.png").read_bytes().startswith(b"\x89PNG")
     assert sorted(contents(Path.cwd())) == ["boom.png", "case.toml"]
 
