@@ -7,12 +7,14 @@ are the flat boom and the one in space, which has more components and more pads.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
+from beam_model.drawn_rows import travels
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.gap_system import GapSystem
@@ -20,6 +22,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
 from geometry.cylinder import ground_lines
+from geometry.drawing import drives_below
 from geometry.observation import Observation, Quantity
 from geometry.section import Offset
 
@@ -61,23 +64,10 @@ def gap_system(
         touch: where its pads are read.
     """
     modes = BoomModes(boom, models)
-    laws_along = {"z": laws, "y": lateral_laws}
-    rows: GapBuilder[Array] = GapBuilder()
-    for pad in pads(boom):
-        law = laws_along[pad.direction][pad.number]
-        pressed, slid = touch.x(pad)
-        approach = _relative(modes, pad, pad.direction, pressed, touch.offsets(pad))
-        slide = _relative(modes, pad, pad.rubs, slid, (pad.inner, pad.outer))
-        sides = (pad.side,) if pad.side else touch.sides
-        points = [(side, pad.weight, approach) for side in sides]
-        pressing = rows.press(pad.station, law, points, pad.raised)
-        rows.drag(pad.station, pad.joint.dashpot, points)
-        rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
-    for station, stop in boom.numbered_stops:
-        row = modes.displacement(stop.segment, stop.x, "z")
-        rows.stop(station, stop, [(side, 1.0, row) for side in touch.sides])
+    rows_at = partial(_rows, boom, modes, {"z": laws, "y": lateral_laws}, touch)
+    rows = rows_at([0.0] * len(boom.joints))
     members = [_Member(modes, number) for number in range(len(models))]
-    return rows.system(
+    system = rows.system(
         lambda row: row,
         modes.omega2,
         modes.load,
@@ -90,6 +80,7 @@ def gap_system(
         ],
         modes.damping,
     )
+    return replace(system, travels=travels(boom, models, rows_at))
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
@@ -97,12 +88,44 @@ def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     return gap_system(boom.play_free, models, ())
 
 
+def _rows(
+    boom: Boom,
+    modes: BoomModes,
+    laws: Mapping[Direction, Sequence[ContactLaw]],
+    touch: Touch,
+    ways: Sequence[float],
+) -> GapBuilder[Array]:
+    """What touches, rubs and drags where each joint is drawn out by its way in m."""
+    rows: GapBuilder[Array] = GapBuilder()
+    for pad in pads(boom):
+        law, (on_outer, on_inner) = laws[pad.direction][pad.number], pad.ways(ways[pad.number])
+        pressed, slid = touch.x(pad)
+        read = partial(_relative, modes, pad)
+        points_of = touch.offsets(pad), (pad.inner, pad.outer)
+        approach = read(pad.direction, (pressed + on_inner, pressed + on_outer), points_of[0])
+        slide = read(pad.rubs, (slid + on_inner, slid + on_outer), points_of[1])
+        sides = (pad.side,) if pad.side else touch.sides
+        points = [(side, pad.weight, approach) for side in sides]
+        pressing = rows.press(pad.station, law, points, pad.raised)
+        rows.drag(pad.station, pad.joint.dashpot, points)
+        rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
+    for station, stop in boom.numbered_stops:
+        way = sum(ways[number] for number in drives_below(boom.joints, stop.segment))
+        row = modes.displacement(stop.segment, stop.x - way, "z")
+        rows.stop(station, stop, [(side, 1.0, row) for side in touch.sides])
+    return rows
+
+
 def _relative(
-    modes: BoomModes, pad: Pad, direction: Direction, x: float, offsets: tuple[Offset, Offset]
+    modes: BoomModes,
+    pad: Pad,
+    direction: Direction,
+    places: tuple[float, float],
+    offsets: tuple[Offset, Offset],
 ) -> Array:
-    """(num_modes,) row that reads u − w of a pad's two points at x in m."""
-    inner = modes.displacement(pad.joint.inner, x, direction, offsets[0])
-    return inner - modes.displacement(pad.joint.outer, x, direction, offsets[1])
+    """(num_modes,) row that reads u − w of a pad's two points at x in m of inner and outer."""
+    inner = modes.displacement(pad.joint.inner, places[0], direction, offsets[0])
+    return inner - modes.displacement(pad.joint.outer, places[1], direction, offsets[1])
 
 
 def _observed(boom: Boom, modes: BoomModes) -> dict[str, Observed[Array]]:

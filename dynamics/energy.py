@@ -22,17 +22,21 @@ ENERGIES = (
     "contact_loss",
 )
 
+# Where a boom is drawn out, what its drive put in as well.
+DRAWN_ENERGIES = (*ENERGIES, "drive_work")
+
 
 def energy_residual(energies: Array, least: float = 0.0) -> Array:
     """(num_times,) energy that is not accounted for, as a part of the energy put in.
 
     Args:
-        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
+        energies: (num_times, 7) or (num_times, 8), the columns of ``ENERGIES`` or
+            ``DRAWN_ENERGIES`` in J.
         least: an energy in J below which that put in is round-off, as where friction holds all.
     """
     work = energies[:, 3]
     signs = np.ones(energies.shape[1])
-    signs[3] = -1.0
+    signs[3] = signs[len(ENERGIES) :] = -1.0
     initial = float(energies[0, :3].sum())
     # No product of BLAS, whose last bits depend on where in memory the energies lie.
     missing = (energies * signs).sum(axis=1) - initial
@@ -47,7 +51,7 @@ def check_energy(
     """Stop a motion whose numbers cannot be trusted.
 
     Args:
-        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
+        energies: as in :func:`energy_residual`.
         step: of the integrator in s, for the message.
         bound: largest energy residual that passes.
         least: as in :func:`energy_residual`.

@@ -204,6 +204,8 @@ def _march(
 
 def what_hinders(system: GapSystem) -> str | None:
     """What of a system cannot be moved from contact to contact; None if all can."""
+    if any(travel.moves for travel in system.travels):
+        return "rows that move as a boom is drawn out leave no closed form from contact to contact"
     if (system.omega2 < 0.0).any():
         return "a segment that tips over under an axial force has no closed form here"
     if system.damped:

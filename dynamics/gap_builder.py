@@ -154,6 +154,14 @@ class GapBuilder(Generic[R]):
         """All that dashpots read."""
         return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
 
+    def dashpot_rows(self, read: Callable[[R], Array]) -> list[Array]:
+        """(num_modes,) of the dashpots across stations, in 1/√s, by the rows of what they read."""
+        return [
+            np.sqrt(dashpot.coefficient)
+            * sum(part * read(reading) for part, reading in dashpot.parts)
+            for dashpot in self.dashpots.values()
+        ]
+
     def system(
         self,
         read: Callable[[R], Array],
@@ -186,10 +194,6 @@ class GapBuilder(Generic[R]):
             pushes = (push for push, when in loads if isinstance(when, kind))
             return sum(pushes, np.zeros(omega2.size))
 
-        across = [
-            (dashpot.coefficient, sum(part * read(reading) for part, reading in dashpot.parts))
-            for dashpot in self.dashpots.values()
-        ]
         grounded = [(c, row) for _, row, _, c in lines if c > 0.0]
         seen = {
             name: Observer(read(one.reading), one.unit, one.derivative)
@@ -205,7 +209,9 @@ class GapBuilder(Generic[R]):
             stations=[x for x, _ in places],
             observers=seen | pressed,
             damping=np.zeros(0) if damping is None else damping,
-            dashpots=stacked(np.sqrt(c) * row for c, row in (*across, *grounded)),
+            dashpots=stacked(
+                [*self.dashpot_rows(read), *(np.sqrt(c) * row for c, row in grounded)]
+            ),
             friction_rows=stacked(read(friction.reading) for friction in self.frictions),
             frictions=[friction.law for friction in self.frictions],
             excitations=[

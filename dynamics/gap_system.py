@@ -7,6 +7,7 @@
 in mass-normalised modal coordinates a. Segments that only contact couples stand side by
 side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
 D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
+Where a boom is drawn out, its travels say how rows change from what they are at t = 0.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
+from dynamics.travel import KINDS, Travel
 
 
 class Observer(NamedTuple):
@@ -80,6 +82,8 @@ class GapSystem:
         thrown: (num_modes,) modal impulse in N·s/√kg that is given then, for whoever starts a
             motion; zero unless given.
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
+        travels: what draws segments out while they move, and the rows that this changes; all rows
+            stay what they are unless given.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -101,6 +105,7 @@ class GapSystem:
     grounded: Sequence[int] = ()
     released: Array = field(default_factory=lambda: np.zeros(0))
     thrown: Array = field(default_factory=lambda: np.zeros(0))
+    travels: Sequence[Travel] = ()
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
@@ -142,6 +147,11 @@ class GapSystem:
             )
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
+        for number, travel in enumerate(self.travels):
+            if travel.table.coefficients.shape[3] != n:
+                raise ValueError(f"the rows of travel {number} must have {n} modes")
+            if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moving):
+                raise ValueError(f"travel {number} must move rows of the system")
 
     @property
     def num_modes(self) -> int:
@@ -188,7 +198,19 @@ class GapSystem:
         """The same motion, with all that stays constant from t = 0 on in ``load``."""
         constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]
         changing = [x for x in self.excitations if not x.constant]
-        return replace(self, load=np.sum([self.load, *constant], axis=0), excitations=changing)
+        load = np.sum([self.load, *constant], axis=0)
+        moving = [travel for travel in self.travels if travel.moves]
+        return replace(self, load=load, excitations=changing, travels=moving)
+
+    def standing(self, time: float) -> GapSystem:
+        """The system that stands still as it is drawn out at a time in s."""
+        stands = {kind: getattr(self, kind).copy() for kind in KINDS}
+        for travel in self.travels:
+            rows = travel.table(float(travel.history(np.array(time))))
+            for (kind, position), row in zip(travel.moving, rows, strict=True):
+                stands[kind][position] = row
+        rows, friction_rows, dashpots = stands.values()
+        return replace(self, rows=rows, friction_rows=friction_rows, dashpots=dashpots, travels=())
 
     def static_response(self, force: Array) -> Array:
         """(num_modes,) rest position under a modal force, for a system without rigid modes.

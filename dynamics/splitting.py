@@ -17,7 +17,7 @@ exact over any time.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -25,6 +25,7 @@ from numba import njit
 from dynamics.arrays import Array, Indices
 from dynamics.closed_contacts import ClosedContacts, closable, pressing
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
+from dynamics.drawn_out import integrate_drawn
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import (
@@ -381,6 +382,8 @@ def integrate(
     a, v = motion.position.copy(), motion.velocity.copy()
     if step is None:
         step = contact_step(system, output_step, motion.initial_speeds)
+    if system.travels:
+        return integrate_drawn(replace(motion, system=system), step, energy_bound, progress)
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     h = output_step / substeps
     state = initial_state(system, a, v)

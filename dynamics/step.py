@@ -13,10 +13,14 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
+from dynamics.excitation import History
 from dynamics.gap_system import GapSystem
 
 # Step times the highest frequency. The energy error of the splitting is second order in it.
 PHASE = 0.03
+
+# Where a boom that is drawn out is looked at.
+_POSITIONS = 21
 
 # What part of a speed dashpots may take in a step.
 DRAGGED = 0.2
@@ -73,6 +77,12 @@ def sliding_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Arra
     return np.asarray(np.divide(change, total, out=np.zeros(total.size), where=total > 0.0))
 
 
+def _passed(history: History) -> Array:
+    """(num_times,) in s, over all that a history of a travel does between its kinks."""
+    kinks = np.array([0.0, *history.kinks])
+    return np.linspace(float(kinks.min()), float(kinks.max()), _POSITIONS)
+
+
 def contact_step(
     system: GapSystem, output_step: float, initial: Array | float = 0.0, phase: float = PHASE
 ) -> float:
@@ -87,6 +97,12 @@ def contact_step(
         initial: (num_modes,) ``Motion.initial_speeds``; at rest unless given.
         phase: step times the highest frequency.
     """
+    if system.travels:
+        histories = [travel.history for travel in system.travels]
+        times = {time for history in histories for time in _passed(history) if time >= 0.0}
+        steps = [contact_step(system.standing(time), output_step, initial, phase) for time in times]
+        fastest = max(history.fastest for history in histories)
+        return min(*steps, output_step / max(1, int(np.ceil(output_step * fastest / phase))))
     frequencies = [x.history.fastest for x in system.excitations]
     if system.laws:
         frequencies.extend(contact_frequencies(system, initial))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.energy import ENERGIES, energy_residual
+from dynamics.energy import DRAWN_ENERGIES, ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 
 # Imported where data are made or read: what only plans a motion spares a second of imports.
@@ -96,7 +96,7 @@ class Trajectory:
             time: (num_times,) in s.
             states, velocities: (num_times, num_modes) a and ȧ; the latter may be empty where no
                 observer reads rates.
-            energies: (num_times, 7), the columns of ``ENERGIES`` in J.
+            energies: in J, as in :func:`dynamics.energy.energy_residual`.
             row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
             row_frictions: (num_times, num_frictions) in N.
             step: in s.
@@ -130,7 +130,7 @@ class Trajectory:
         }
         variables |= {
             name: ("time", column, {"units": "J", "long_name": name.replace("_", " ")})
-            for name, column in zip(ENERGIES, energies.T, strict=True)
+            for name, column in zip(DRAWN_ENERGIES, energies.T, strict=False)
         }
         import xarray as xr
 

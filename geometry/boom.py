@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from geometry.cylinder import Cylinder, forces
+from geometry.drawing import check_drives
 from geometry.fault import BoomError
 from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
@@ -111,6 +112,7 @@ class Boom:
         self._check_cylinders()
         self._check_observations()
         check_held(self)
+        check_drives(self)
 
     @property
     def tip(self) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint, PadSize, Stop
+from geometry.drive import Carrier
 from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
 
@@ -102,6 +103,7 @@ class Pad:
         patch: the wall that it covers; None where it is a point.
         raised: how far it stands out beyond the joint's clearance in m.
         across: how far the middle of what it covers is from its points, across its wall, in m.
+        carrier: the segment on which it sits as the joint is drawn out; None where it is not.
     """
 
     station: int
@@ -119,6 +121,7 @@ class Pad:
     patch: Patch | None
     raised: float = 0.0
     across: float = 0.0
+    carrier: Carrier | None = None
 
     @property
     def half(self) -> int:
@@ -129,6 +132,11 @@ class Pad:
     def middle(self) -> float:
         """x in m of the middle of what it covers, through which its resultant goes."""
         return self.x if self.patch is None else 0.5 * (self.patch.start + self.patch.end)
+
+    def ways(self, way: float) -> tuple[float, float]:
+        """By how many m it moves along the outer and the inner segment, drawn out by ``way``."""
+        on_outer = way if self.carrier == "inner" else 0.0
+        return on_outer, -way if self.carrier == "outer" else 0.0
 
     @property
     def slid(self) -> float:
@@ -212,6 +220,7 @@ def pads(boom: Boom) -> list[Pad]:
                             patch=patch,
                             raised=shim,
                             across=_across(boom, joint, patch, x, direction, side, inner),
+                            carrier=None if joint.drive is None else joint.drive.carriers[k],
                         )
                         found.append(pad)
                 station += 1

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from geometry.drive import Drive
 from geometry.section import Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
@@ -81,6 +82,8 @@ class Joint:
         locked_at: x in m where the inner segment's axial force enters the outer one, at a pin;
             below the inner segment, the foot of the cylinder that pushes its tail. The tail unless
             given.
+        drive: what draws the inner segment out while the boom moves; it stays where it is unless
+            given.
     """
 
     outer: int
@@ -96,6 +99,7 @@ class Joint:
     contact_length: float | None = None
     dashpot: float = 0.0
     locked_at: float | None = None
+    drive: Drive | None = None
 
     @property
     def padded(self) -> bool:
@@ -115,7 +119,9 @@ class Joint:
     @property
     def without_play(self) -> Joint:
         """The same with the segments tied at its stations."""
-        return replace(self, tied=True, pad=None, pads=(), contact_length=None, dashpot=0.0)
+        return replace(
+            self, tied=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,8 +39,12 @@ if TYPE_CHECKING:
     from dynamics.motion import Motion as Motion
     from dynamics.predictability.ensemble import integrate_ensemble as integrate_ensemble
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
+    from dynamics.row_table import RowTable as RowTable
     from dynamics.sided_contact import SidedContact as SidedContact
     from dynamics.trajectory import Trajectory as Trajectory
+    from dynamics.travel import SCurve as SCurve
+    from dynamics.travel import Stroke as Stroke
+    from dynamics.travel import Travel as Travel
     from geometry.axial import Thrust as Thrust
     from geometry.axial import with_compression as with_compression
     from geometry.boom import Boom as Boom
@@ -52,6 +56,7 @@ if TYPE_CHECKING:
     from geometry.boom import SlidePad as SlidePad
     from geometry.boom import Stop as Stop
     from geometry.compression import Compression as Compression
+    from geometry.drive import Drive as Drive
     from geometry.observation import Observation as Observation
     from geometry.polygon import PolygonSection as PolygonSection
     from geometry.polygon import closed_polygon as closed_polygon
@@ -100,10 +105,13 @@ _HOMES = {
         "dynamics.motion": "Motion",
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
+        "dynamics.row_table": "RowTable",
         "dynamics.trajectory": "Trajectory",
+        "dynamics.travel": "SCurve Stroke Travel",
         "geometry.axial": "Thrust with_compression",
         "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize SlidePad Stop",
         "geometry.compression": "Compression",
+        "geometry.drive": "Drive",
         "geometry.observation": "Observation",
         "geometry.polygon": "PolygonSection closed_polygon",
         "geometry.profiles": "hexagon octagon u_section",

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.contact import ContactLaw
-from dynamics.energy import ENERGIES
+from dynamics.energy import DRAWN_ENERGIES
 from dynamics.trajectory import OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (
@@ -39,7 +39,7 @@ from runs.case.schema import Case, Model
 from runs.case.segment import SegmentTable, SupportTable
 
 # What trajectories hold of every boom.
-_TAKEN = {*OF_STATIONS, *ENERGIES, "time", "station", "direction", "place", "model"}
+_TAKEN = {*OF_STATIONS, *DRAWN_ENERGIES, "time", "station", "direction", "place", "model"}
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -186,6 +186,9 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         contact_length=table.contact_length,
         dashpot=table.dashpot,
         locked_at=None if table.locked_at is None else at(table.locked_at, tail, head),
+        drive=None
+        if table.drive is None
+        else table.drive.drive(f"joint[{index + 1}]", table.stations, table.inner),
     )
 
 

@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from geometry.boom import Direction, PadSize, SlidePad
 from geometry.section import Side
+from runs.case.drive import DriveTable
 from runs.case.limits import (
     MOST_STATIONS,
     Exponent,
@@ -173,6 +174,11 @@ class JointTable(Table):
         None,
         description="the length in m of the inner segment that is out of the outer one, where the "
         "inner one is given by its length",
+    )
+    drive: DriveTable | None = Field(
+        None,
+        description="the table of what draws the inner segment out while the boom moves, from "
+        "where it is at t = 0; it stays there unless given",
     )
     stations: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
         description="the x in m at which the two may touch, rising; 'tail' is the inner segment's "

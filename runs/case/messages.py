@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from runs.case import contact, schema, segment
+from runs.case.drive import DriveTable
 from runs.case.kinds import KINDS
 from runs.case.limits import NAME
 from runs.case.sections import SHAPES
@@ -28,6 +29,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
     "restitution": contact.RestitutionTable,
     "pad": contact.PadTable,
     "pads": contact.SlidePadTable,
+    "drive": DriveTable,
     "joint": contact.JointTable,
     "contact": contact.ContactTable,
     "stop": schema.StopTable,

@@ -198,7 +198,10 @@ def _read_tables(case: Case, path: str) -> Case:
         read = {"force_file": None, "force_columns": None, "force_table": points}
         return table.model_copy(update=read)
 
-    joints = [contact(f"joint[{i}]", joint) for i, joint in enumerate(case.joints, start=1)]
+    joints = [
+        _driven(path, f"joint[{i}].drive", contact(f"joint[{i}]", joint), system)
+        for i, joint in enumerate(case.joints, start=1)
+    ]
     models = [
         model
         if model.contact is None
@@ -227,6 +230,22 @@ def _history(path: str, key: str, table: History, system: System) -> History:
         what = type(table).model_fields[table.amount].description
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
     return table.model_copy(update={"file": None, "columns": None, "table": read.values})
+
+
+def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTable:
+    """A joint with the pairs of its drive's file, if there is one, in place."""
+    drive = joint.drive
+    if drive is None:
+        return joint
+    _check_columns(path, f"{key}.columns", drive.columns, drive.file)
+    if drive.file is None:
+        return joint
+    if drive.table is not None:
+        raise BadInput(path, f"{key}.file", "table is given; leave one of them out")
+    wanted = Column("time", system.unit("s")), Column("length", system.unit("m"))
+    read = read_pairs(path, f"{key}.file", drive.file, drive.columns, wanted).values
+    update = {"file": None, "columns": None, "table": read}
+    return joint.model_copy(update={"drive": drive.model_copy(update=update)})
 
 
 def _check_columns(path: str, key: str, names: object, file: str | None) -> None:

@@ -168,6 +168,7 @@ class ModelTable(Table):
                     f"segment[{number}].section",
                     f"missing, and {self.name!r} needs it; give section or height_to_width",
                 )
+        self._check_drives(where, joined.boom)
         factor = self.critical_factor(joined.boom)
         if factor is not None and factor <= 1.0:
             raise BoomError(
@@ -192,6 +193,18 @@ class ModelTable(Table):
         Raises:
             BoomError: the boom lacks what the model needs.
         """
+
+    def _check_drives(self, where: str, boom: Boom) -> None:
+        driven = [i for i, joint in enumerate(boom.joints, start=1) if joint.drive is not None]
+        if not driven or not (self.meshed or self.play_free):
+            return
+        if self.meshed:
+            why = f"the shell {self.name!r} touches where it is reduced to, and cannot be drawn out"
+        else:
+            why = f"{self.name!r} is tied, and cannot be drawn out"
+        raise BoomError(
+            where, f"{why}; leave joint[{driven[0]}].drive out, or run beams and series with play"
+        )
 
     @abstractmethod
     def critical_factor(self, boom: Boom) -> float | None:

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Motion of a boom that is drawn out or in while it vibrates.
+
+The splitting with the row of the time of the impulse. A gap's rate is ẏ = B ȧ + ṡ B′ a; friction
+and contact damping act on all of it. Contact forces do −F B ȧ on the modes and store F ẏ, and the
+rest, ∫ ṡ Σ F B′ a dt, is the work of the drive, negative where a boom slides out downhill. Pads rub
+along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.contact import contact_limits, contact_terms
+from dynamics.energy import DRAWN_ENERGIES, check_energy
+from dynamics.excitation import Excitation
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.drawn_steps import Rows, Still, march_drawn, space_for
+from dynamics.kernels.integrator_state import (
+    CHANGES,
+    FIRST_CONTACT,
+    STEPS,
+    Excitations,
+    excitation_arrays,
+    friction_arrays,
+    initial_state,
+)
+from dynamics.kernels.moving_rows import row_tables, stacked_rows
+from dynamics.motion import Motion
+from dynamics.trajectory import Trajectory
+from dynamics.travel import Travel
+
+
+def integrate_drawn(
+    motion: Motion, step: float, energy_bound: float, progress: Callable[[float], None] | None
+) -> Trajectory:
+    """Move a system whose rows move, as :func:`dynamics.splitting.integrate` does.
+
+    Args:
+        motion: its loads are gathered.
+        step: in s, made smaller to fit the output step.
+        energy_bound, progress: of the splitting.
+
+    Returns:
+        With what it is drawn out and what the drive does beside what every trajectory has:
+        ``drawn_out`` in m, ``drive_friction`` in N and ``drive_power`` in W of each travel that
+        has a suffix, ``drive_work`` in J.
+
+    Raises:
+        NumericsError: the state is not finite, or the energy residual passes its bound.
+    """
+    system, outputs, output_step = motion.system, motion.outputs, motion.output_step
+    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
+    substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
+    h = output_step / substeps
+    state = initial_state(system, motion.position.copy(), motion.velocity.copy())
+    still, rows, space = _still(system), _rows(system), space_for(system)
+    tables = row_tables(system)
+
+    columns = (n, n if system.observes_rates else 0, len(DRAWN_ENERGIES), m, m, m, f, len(rows[0]))
+    recorded = tuple(np.zeros((outputs + 1, count)) for count in columns)
+    states, velocities, energies, gaps, means, peaks, frictions, drives = recorded
+    _, a, v, y, *_ = state
+    states[0], gaps[0] = a, y
+    velocities[0] = v[: velocities.shape[1]]
+    means[0] = peaks[0] = [law.force(gap) for law, gap in zip(system.laws, y, strict=True)]
+    energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
+    energies[0, 2] = sum(float(law.energy(y)) for law, y in zip(system.laws, gaps[0], strict=True))
+
+    least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
+    chunk = max(1, outputs // 100)
+    for done in range(0, outputs, chunk):
+        made = min(chunk, outputs - done)
+        times = h * np.arange(done * substeps, (done + made) * substeps + 1)
+        excitations, ways = _followed(system, times, h)
+        march_drawn(
+            state, still, rows, tables, ways, excitations, space, h, substeps,
+            tuple(array[1 + done : 1 + done + made] for array in recorded),
+        )  # fmt: skip
+        check_energy(energies[: 1 + done + made], h, energy_bound, least)
+        if progress is not None:
+            progress((done + made) / outputs)
+    tally, time = state[6], output_step * np.arange(outputs + 1)
+    found = Trajectory.record(
+        system,
+        time=time,
+        states=states,
+        velocities=velocities,
+        energies=energies,
+        row_gaps=gaps,
+        row_forces=means,
+        row_peaks=peaks,
+        row_frictions=frictions,
+        step=h,
+        steps=int(tally[STEPS]),
+        first_contact=float(tally[FIRST_CONTACT]),
+        contact_changes=int(tally[CHANGES]),
+        least_energy=least,
+    )
+    return _with_drives(found, system, means, drives)
+
+
+def _still(system: GapSystem) -> Still:
+    """What of a system does not move."""
+    _, given, pressing, _ = friction_arrays(system)
+    rates = system.damping if system.damping.any() else np.zeros(0)
+    travel_of = np.full(len(stacked_rows(system)), -1, dtype=np.int64)
+    for row, number, _ in row_tables(system)[3]:
+        travel_of[row] = number
+    omega2, load, rates = map(np.ascontiguousarray, (system.omega2, system.load, rates))
+    terms, limits = contact_terms(system.laws), contact_limits(system.laws)
+    return omega2, load, terms, limits, rates, given, pressing, travel_of
+
+
+def _rows(system: GapSystem) -> Rows:
+    now = stacked_rows(system)
+    return now, now.copy(), now.copy(), np.zeros_like(now), np.zeros((3, len(now)))
+
+
+def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations, Array]:
+    """Excitations, and how far each travel is where parts of steps begin, cut at kinks of both."""
+    none = np.zeros(system.num_modes)
+    travels = [Excitation(none, travel.history) for travel in system.travels]
+    both = replace(system, excitations=[*system.excitations, *travels])
+    loads, samples, spans, parts, straight, pushes = excitation_arrays(both, times, step)
+    count = len(system.excitations)
+    own, ways = (samples[:, columns].copy() for columns in (slice(count), slice(count, None)))
+    return (loads[:count].copy(), own, spans, parts, straight, pushes), ways
+
+
+def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Array) -> Trajectory:
+    """With what drives do, of contact forces (num_times, num_rows), and work at all rows in J."""
+    added = {}
+    for travel, work in zip(system.travels, _work_of(system, drives), strict=True):
+        if travel.suffix is None:
+            continue
+        way = travel.history(found.time)
+        rubbed = np.sign(np.diff(way, prepend=way[0])) * _rubbing(system, travel, forces)
+        power = np.diff(work + np.cumsum(rubbed * np.diff(way, prepend=way[0])), prepend=0.0)
+        power[1:] /= np.diff(found.time)
+        for name, (values, unit, said) in {
+            "drawn_out": (way, "m", "length drawn out since the start"),
+            "drive_friction": (rubbed, "N", "force of the drive against friction along the boom"),
+            "drive_power": (power, "W", "power of the drive against contacts and friction"),
+        }.items():
+            added[f"{name}{travel.suffix}"] = ("time", values, {"units": unit, "long_name": said})
+    return Trajectory(found.data.assign(added), found.states)
+
+
+def _work_of(system: GapSystem, drives: Array) -> list[Array]:
+    """(num_times,) in J of each travel."""
+    moving, totals = row_tables(system)[3], []
+    for number in range(len(system.travels)):
+        totals.append(drives[:, moving[moving[:, 1] == number, 0]].sum(axis=1))
+    return totals
+
+
+def _rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:
+    """(num_times,) μ Σ|N| in N of the pads that a travel moves.
+
+    N is the contact force in the mean of each output interval, and what is prescribed besides.
+    """
+    coefficients = {friction.station: friction.coefficient for friction in system.frictions}
+    total = np.zeros(len(forces))
+    for kind, row in travel.moving:
+        if kind == "rows":
+            coefficient = coefficients.get(int(system.station_of_row[row]), 0.0)
+            total += coefficient * np.abs(forces[:, row])
+        elif kind == "friction_rows":
+            friction = system.frictions[row]
+            total += friction.coefficient * friction.normal_force
+    return total

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Steps of the splitting of a boom that is drawn out or in, with all that touches, rubs and drags.
+
+As :mod:`dynamics.kernels.lossy_steps`, but for rows that move: a kick takes the rows of its time,
+friction and dashpots in the middle those between, all rates have their convective part, and what
+the drive does is entered for each row.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from dynamics.arrays import Array, Indices
+from dynamics.contact import Limits, Terms
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
+from dynamics.kernels.contact_kicks import contact_energy, contact_forces
+from dynamics.kernels.decay import fade, kept_after
+from dynamics.kernels.friction_step import (
+    add_pressed_bounds,
+    filter_rows,
+    find_turns,
+    look_ahead,
+    note_directions,
+    prescribed_bounds,
+    round_off,
+    rub,
+    settle,
+)
+from dynamics.kernels.integrator_state import (
+    CONTACT,
+    DAMPING,
+    FRICTION,
+    MIDDLE,
+    PLACE,
+    REST,
+    SLIDING,
+    WORK,
+    Excitations,
+    State,
+    enter,
+    excite,
+    read,
+)
+from dynamics.kernels.modal_flow import drive, modal_energy, move, tabulate, travel
+from dynamics.kernels.moving_rows import Tables, carry, moving_drag, moving_kick, place_rows
+
+# Rows that turn within this part of a step of one another turn together.
+_TOGETHER = 1.0e-9
+
+# ω² and load (num_modes,), terms and limits of the laws, rates c of damping (num_modes,) or none
+# (0,), μ and prescribed N (2, num_frictions), 1 where a contact row presses (num_frictions,
+# num_rows), the travel of each row or −1.
+Still = tuple[Array, Array, Terms, Limits, Array, Array, Array, Indices]
+
+# All rows where a part of a step begins, where it ends, in the mean, their change, a copy of the
+# first (num_all, num_modes); convective rates, what the drive has done at each row in this part
+# and in all (3, num_all).
+Rows = tuple[Array, Array, Array, Array, Array]
+
+# Of a length of step (1,): the flow over its half (9, num_modes), what modes keep over a quarter,
+# and likewise the flow over all of it; filtered friction rows and their matrix, D Dᵀ; for modes
+# (num_modes,), contact rows (3, num_rows), friction rows (3, num_frictions); the problem of
+# bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+
+
+def space_for(system: GapSystem) -> Space:
+    """What the steps of a system need beside its state."""
+    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
+    r = n if system.damping.any() else 0
+    shapes = ((1,), (9, n), (r,), (f, n), (f, f), (f, f), (n,), (3, m), (3, f))
+    length, half, faded, filtered, matrix, masses, ahead, middle, lines = map(np.zeros, shapes)
+    return length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem_for(f)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _damp(
+    v: Array,
+    faded: Array,
+    rows: Array,
+    carried: Array,
+    time: float,
+    backward: bool,
+    driven: Array,
+) -> float:
+    """All damping over a time, dashpots in their order or ``backward``; gives the loss in J."""
+    loss: float = fade(v, faded)
+    loss += moving_drag(v, rows, carried, time, backward, driven)
+    loss += fade(v, faded)
+    return loss
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _flow(
+    a: Array,
+    v: Array,
+    flow: Array,
+    time: float,
+    still: Still,
+    excited: bool,
+    now: Array,
+    then: Array,
+    tally: Array,
+) -> None:
+    if excited:
+        travel(a, v, flow, time, still[0], still[1], False, now, then, tally)
+    else:
+        move(a, v, flow)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def drawn_steps(
+    state: State,
+    still: Still,
+    rows: Rows,
+    tables: Tables,
+    ways: Array,
+    excitations: Excitations,
+    space: Space,
+    step: float,
+    first: int,
+    last: int,
+    substeps: int,
+) -> None:
+    """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
+
+    Args:
+        ways: (num_parts + 1, num_travels) how far each travel is where parts of steps begin.
+    """
+    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
+    omega2, load, terms, limits, rates, given, pressing, travel_of = still
+    now, then, middles, change, told = rows
+    loads, _, spans, parts, _, pushes = excitations
+    start, centre, end = pushes
+    length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem = space
+    push, y_ahead, force_ahead = middle
+    slid, turns = lines[:2], lines[2]
+    slips, noise = problem[FREE], problem[NOISE]
+    carried, driven, done = told
+    m, f = y.size, friction.size
+    d = now.shape[0] - m - f
+    fading, pressed, excited = rates.size > 0, pressing.any(), loads.shape[0] > 0
+    halved = fading or d > 0 or f > 0
+    none, no_rates, no_work = np.zeros(a.size), np.zeros(d), np.zeros(d)
+    place = np.zeros(ways.shape[1])
+    for p in range(parts[first], parts[last]):
+        span = spans[p]
+        left = span
+        cuts = 0
+        while left > 0.0:
+            for i in range(whole.size):
+                kept[i] = whole[i]
+            time = left
+            cut = False
+            while True:
+                reached = 1.0 - (left - time) / span
+                for t in range(place.size):
+                    place[t] = ways[p, t] + reached * (ways[p + 1, t] - ways[p, t])
+                place_rows(place, tables, then)
+                for j in range(now.shape[0]):
+                    if travel_of[j] >= 0:
+                        for i in range(a.size):
+                            middles[j, i] = 0.5 * (now[j, i] + then[j, i])
+                            change[j, i] = then[j, i] - now[j, i]
+                if time != length[0]:
+                    length[0] = time
+                    tabulate(half, omega2, load, none, 0.5 * time if halved else time)
+                    kept_after(rates, 0.25 * time, faded)
+                if f > 0:
+                    filter_rows(middles[m : m + f], half, time, filtered)
+                for j in range(f):
+                    ahead[:] = filtered[j]
+                    _damp(ahead, faded, middles[m + f :], no_rates, 0.5 * time, False, no_work)
+                    read(filtered, ahead, matrix[j])
+                    matrix[j] *= 0.5 * time
+                    read(then[m : m + f], then[m + j], masses[j])
+                for j in range(f):
+                    for k in range(j):
+                        matrix[j, k] = matrix[k, j] = 0.5 * (matrix[j, k] + matrix[k, j])
+                if excited:
+                    excite(excitations, p, p + 1, 1.0 - left / span, reached)
+                share = 0.5 * time / (substeps * step)
+                driven[:] = 0.0
+
+                carry(change, a, time, carried)
+                loss = moving_kick(v, now, carried, force, limits, 0.5 * time, False, push, driven)
+                for j in range(m):
+                    mean[j] += share * push[j]
+                if halved:
+                    _flow(a, v, half, 0.5 * time, still, excited, start, centre, tally)
+                    carry(change, a, time, carried)
+                    dragged = carried[m + f :]
+                    tally[DAMPING] += _damp(
+                        v, faded, middles[m + f :], dragged, 0.5 * time, False, driven[m + f :]
+                    )
+                    if f > 0:
+                        for i in range(a.size):
+                            ahead[i] = v[i]
+                        _damp(ahead, faded, middles[m + f :], dragged, 0.5 * time, True, no_work)
+                        look_ahead(a, ahead, half, ahead)
+                        if excited:
+                            drive(ahead, half, centre, end)
+                        prescribed_bounds(given, time, grip)
+                        if pressed:
+                            add_pressed_bounds(
+                                ahead, v, then[:m], terms, limits, push, pressing, given, time,
+                                y_ahead, force_ahead, grip,
+                            )  # fmt: skip
+                        read(then[m : m + f], ahead, slips)
+                        round_off(masses, ahead, noise)
+                        for j in range(f):
+                            slips[j] -= grip[PLACE, j]
+                        tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
+                        for j in range(f):
+                            driven[m + j] -= grip[MIDDLE, j] * carried[m + j]
+                    tally[DAMPING] += _damp(
+                        v, faded, middles[m + f :], dragged, 0.5 * time, True, driven[m + f :]
+                    )
+                    _flow(a, v, half, 0.5 * time, still, excited, centre, end, tally)
+                else:
+                    _flow(a, v, half, time, still, excited, start, end, tally)
+                contact_forces(a, then[:m], terms, y, force)
+                carry(change, a, time, carried)
+                loss += moving_kick(v, then, carried, force, limits, 0.5 * time, True, push, driven)
+                tally[CONTACT] += loss
+                for j in range(m):
+                    mean[j] += share * push[j]
+                    if abs(push[j]) > abs(peak[j]):
+                        peak[j] = push[j]
+                changed = False
+                if f > 0:
+                    read(then[m : m + f], v, slips)
+                    round_off(masses, v, noise)
+                    for j in range(f):
+                        slips[j] += carried[m + j]
+                    tally[FRICTION] += settle(v, then[m : m + f], masses, grip, problem)
+                    for j in range(f):
+                        driven[m + j] -= grip[REST, j] * carried[m + j]
+                        friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
+                    changed = note_directions(masses, grip, problem, slid)
+                enter(y, before, limits, time, tally)
+                if cut or not changed or cuts > 2 * f:
+                    break
+                first_turn = find_turns(masses, grip, problem, slid, time, turns)
+                if not 0.0 < first_turn < left:
+                    break
+                for i in range(whole.size):
+                    whole[i] = kept[i]
+                time, cut = first_turn, True
+            if cut:
+                for j in range(f):
+                    if turns[j] <= time * (1.0 + _TOGETHER):
+                        grip[SLIDING, j] = 0.0
+            for j in range(now.shape[0]):
+                done[j] += driven[j]
+                if travel_of[j] >= 0:
+                    for i in range(a.size):
+                        now[j, i] = then[j, i]
+            left -= time
+            cuts += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def march_drawn(
+    state: State,
+    still: Still,
+    rows: Rows,
+    tables: Tables,
+    ways: Array,
+    excitations: Excitations,
+    space: Space,
+    step: float,
+    substeps: int,
+    out: tuple[Array, ...],
+) -> None:
+    """Advance by ``len(out[0])`` output intervals and record each.
+
+    ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces, work
+    of the drive at each row), one row an interval; velocities may have no columns.
+    """
+    _, a, v, y, _, _, tally, mean, peak, friction, _, _ = state
+    omega2, load, terms = still[:3]
+    states, velocities, energies, gaps, means, peaks, frictions, drives = out
+    done = rows[4][2]
+    for interval in range(states.shape[0]):
+        start = a.copy()
+        mean[:] = 0.0
+        peak[:] = 0.0
+        friction[:] = 0.0
+        drawn_steps(
+            state, still, rows, tables, ways, excitations, space, step,
+            interval * substeps, (interval + 1) * substeps, substeps,
+        )  # fmt: skip
+        tally[WORK] += np.dot(load, a - start)
+        states[interval] = a
+        velocities[interval] = v[: velocities.shape[1]]
+        gaps[interval] = y
+        means[interval] = mean
+        peaks[interval] = peak
+        frictions[interval] = friction
+        drives[interval] = done
+        energies[interval, 0], energies[interval, 1] = modal_energy(a, v, omega2)
+        energies[interval, 2] = contact_energy(y, terms)
+        energies[interval, 3:7] = tally[WORK : WORK + 4]
+        energies[interval, 7] = done.sum()

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Rows that change with how far a segment is drawn out, as cubics between places.
+
+Where elements have cubic shape functions, and knots lie where nodes pass, the cubics are the rows
+themselves; else pieces are halved until they are within a tolerance of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from dynamics.arrays import Array
+
+# What a cubic may miss, as a part of the largest entry; the motion takes the cubic for the row.
+TOLERANCE = 1.0e-9
+
+# Halvings of a piece before it is taken as it is.
+_MOST_HALVINGS = 16
+
+# Where in a piece a cubic meets the rows, its coefficients by the values there (Lagrange), and
+# where it is tested.
+_MET = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
+_COEFFICIENTS = 0.5 * np.array(
+    [[2.0, 0.0, 0.0, 0.0], [-11.0, 18.0, -9.0, 2.0], [18.0, -45.0, 36.0, -9.0],
+     [-9.0, 27.0, -27.0, 9.0]]
+)  # fmt: skip
+_TESTED = np.array([0.15, 0.5, 0.85])
+
+
+@dataclass(frozen=True, slots=True)
+class RowTable:
+    """Rows over a way s.
+
+    >>> table = pt.RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
+    >>> table(1.5), table.slope(1.5)
+    (array([[1.   , 3.375]]), array([[0.  , 6.75]]))
+
+    Args:
+        knots: (num_pieces + 1,) in m, rising.
+        coefficients: (num_pieces, 4, num_rows, num_modes) of the powers of the part of the piece
+            that s has passed.
+
+    Raises:
+        ValueError: knots do not rise, or shapes do not agree.
+    """
+
+    knots: Array
+    coefficients: Array
+
+    def __post_init__(self) -> None:
+        pieces = len(self.knots) - 1
+        if pieces < 1 or not (np.diff(self.knots) > 0.0).all():
+            raise ValueError("the knots of a table of rows must be two at least, and rise")
+        if self.coefficients.ndim != 4 or self.coefficients.shape[:2] != (pieces, 4):
+            raise ValueError(
+                f"coefficients must have the shape ({pieces}, 4, num_rows, num_modes), got "
+                f"{self.coefficients.shape}"
+            )
+        if not (np.isfinite(self.knots).all() and np.isfinite(self.coefficients).all()):
+            raise ValueError("knots and coefficients must be finite")
+
+    @classmethod
+    def of(
+        cls,
+        rows: Callable[[float], Array],
+        breaks: Sequence[float],
+        tolerance: float = TOLERANCE,
+    ) -> RowTable:
+        """Rows (num_rows, num_modes) at each s in m, smooth between rising breaks in m."""
+        scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
+        pieces = [
+            piece
+            for a, b in pairwise(breaks)
+            for piece in _pieces(rows, a, b, tolerance * scale, _MOST_HALVINGS)
+        ]
+        knots = np.array([*(start for start, _ in pieces), breaks[-1]])
+        return cls(knots, np.array([cubic for _, cubic in pieces]))
+
+    def __call__(self, s: float) -> Array:
+        """(num_rows, num_modes) at s in m."""
+        piece, part, _ = self._at(s)
+        return _combined(part ** np.arange(4), self.coefficients[piece])
+
+    def slope(self, s: float) -> Array:
+        """(num_rows, num_modes) their change along s, per m."""
+        piece, part, length = self._at(s)
+        powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
+        return _combined(powers, self.coefficients[piece])
+
+    def _at(self, s: float) -> tuple[int, float, float]:
+        last = len(self.knots) - 2
+        piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
+        length = float(self.knots[piece + 1] - self.knots[piece])
+        return piece, (s - float(self.knots[piece])) / length, length
+
+
+def _combined(weights: Array, arrays: Array) -> Array:
+    """Their weighted sum; no product of BLAS, whose last bits depend on places in memory."""
+    return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
+
+
+def _pieces(
+    rows: Callable[[float], Array], a: float, b: float, bound: float, halvings: int
+) -> Iterator[tuple[float, Array]]:
+    """Where each piece between two s in m starts, and its coefficients (4, num_rows, num_modes)."""
+    met = np.array([rows(a + part * (b - a)) for part in _MET])
+    cubic = np.array([_combined(weights, met) for weights in _COEFFICIENTS])
+    missed = [
+        float(np.abs(_combined(part ** np.arange(4), cubic) - rows(a + part * (b - a))).max())
+        for part in _TESTED
+    ]
+    if halvings == 0 or max(missed) <= bound:
+        yield a, cubic
+        return
+    middle = 0.5 * (a + b)
+    yield from _pieces(rows, a, middle, bound, halvings - 1)
+    yield from _pieces(rows, middle, b, bound, halvings - 1)

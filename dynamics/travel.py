@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far a segment is drawn out over time, and the rows that this changes.
+
+In the coordinates of the material nothing else changes: a segment that is moved along its own axis
+has the inertia m̄ ü at each of its points, small slopes provided. Modes, loads and observers that
+sit on a segment stay what they were; what reads two segments at one place reads one of them at
+another place as it is drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.excitation import History
+from dynamics.row_table import RowTable
+
+# The rows of a gap system that may change with time, in the order in which loops stack them.
+Kind = Literal["rows", "friction_rows", "dashpots"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+
+@dataclass(frozen=True, slots=True)
+class SCurve:
+    """From 0 to ``travel`` in m within ``duration`` in s, s = travel (τ − sin 2πτ/2π).
+
+    Speed and acceleration begin and end with 0 (cycloidal motion; Norton 2009, Cam Design).
+
+    >>> pt.SCurve(travel=4.0, duration=5.0)(np.array([0.0, 2.5, 9.0]))
+    array([0., 2., 4.])
+
+    Args:
+        travel: m; negative where it is drawn in.
+        duration: s.
+        start: when it begins, in s.
+    """
+
+    travel: float
+    duration: float
+    start: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_positive("duration", self.duration, "s")
+
+    @property
+    def kinks(self) -> tuple[float, float]:
+        """Where it begins and ends."""
+        return self.start, self.start + self.duration
+
+    @property
+    def peak(self) -> float:
+        """In m."""
+        return abs(self.travel)
+
+    @property
+    def fastest(self) -> float:
+        """2π over its duration."""
+        return 2.0 * np.pi / self.duration
+
+    def __call__(self, time: Array) -> Array:
+        part = np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
+        return np.asarray(self.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)))
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """From 0 to ``travel`` at a constant speed, to and from which the speed goes straight.
+
+    >>> pt.Stroke(travel=4.0, speed=1.0, ramp=1.0)(np.array([1.0, 2.0, 5.0]))
+    array([0.5, 1.5, 4. ])
+
+    Args:
+        travel: m; negative where it is drawn in.
+        speed: m/s, positive.
+        ramp: how long in s it takes to come to that speed, and to a stop again.
+        start: when it begins, in s.
+
+    Raises:
+        ValueError: a number out of range, or a speed that the travel is too short to come to.
+    """
+
+    travel: float
+    speed: float
+    ramp: float = 0.0
+    start: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_positive("speed", self.speed, "m/s")
+        if not 0.0 <= self.ramp < np.inf:
+            raise ValueError(f"ramp must be finite and not negative, got {self.ramp} s")
+        if self.speed * self.ramp > abs(self.travel):
+            raise ValueError(
+                f"within a travel of {abs(self.travel):g} m a ramp of {self.ramp:g} s does not "
+                f"come to {self.speed:g} m/s; the ramp must be at most "
+                f"{abs(self.travel) / self.speed:g} s"
+            )
+
+    @property
+    def duration(self) -> float:
+        """In s."""
+        return abs(self.travel) / self.speed + self.ramp
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Where speed or acceleration jump."""
+        end = self.start + self.duration
+        times = (self.start, self.start + self.ramp, end - self.ramp, end)
+        return tuple(sorted(set(times)))
+
+    @property
+    def peak(self) -> float:
+        """In m."""
+        return abs(self.travel)
+
+    @property
+    def fastest(self) -> float:
+        """Of a swing with the acceleration of the ramps and their speed."""
+        return 1.0 / self.ramp if self.ramp else 0.0
+
+    def __call__(self, time: Array) -> Array:
+        after = np.asarray(time) - self.start
+        way = self._begun(after) - self._begun(after - self.duration + self.ramp)
+        return np.asarray(np.sign(self.travel) * self.speed * way)
+
+    def _begun(self, after: Array) -> Array:
+        """∫ of the speed as a part of the whole one, which comes within a ramp and stays."""
+        if self.ramp == 0.0:
+            return np.maximum(after, 0.0)
+        part = np.clip(after / self.ramp, 0.0, 1.0)
+        return np.asarray(0.5 * self.ramp * part**2 + np.maximum(after - self.ramp, 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Together:
+    """The sum of several, of joints between a segment and the ground."""
+
+    parts: tuple[History, ...]
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return tuple(sorted({time for part in self.parts for time in part.kinks}))
+
+    @property
+    def peak(self) -> float:
+        return sum(part.peak for part in self.parts)
+
+    @property
+    def fastest(self) -> float:
+        return max(part.fastest for part in self.parts)
+
+    def __call__(self, time: Array) -> Array:
+        return np.asarray(sum(part(time) for part in self.parts))
+
+
+@dataclass(frozen=True, slots=True)
+class Travel:
+    """Rows that follow a history of how far something is drawn out, from 0 at t = 0.
+
+    A row that reads less of the ball the farther something is drawn:
+
+    >>> table = pt.RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
+    >>> lift = pt.Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
+    >>> replace(ball, travels=[lift]).standing(1.0).rows
+    array([[0.5]])
+
+    Args:
+        history: in m.
+        table: (num_moving, num_modes) rows at each m of it.
+        moving: kind and position of each of them in the gap system.
+        suffix: behind the names of what results tell of it; nothing where it is None.
+
+    Raises:
+        ValueError: the table has not as many rows as move, or the history does not begin with 0.
+    """
+
+    history: History
+    table: RowTable
+    moving: tuple[tuple[Kind, int], ...]
+    suffix: str | None = None
+
+    def __post_init__(self) -> None:
+        rows = self.table.coefficients.shape[2]
+        if rows != len(self.moving):
+            raise ValueError(f"the table has {rows} rows, and {len(self.moving)} move")
+        start = float(self.history(np.zeros(())))
+        if abs(start) > 1.0e-9:
+            raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is more than rest, from t = 0 on."""
+        later = [time for time in self.history.kinks if time > 0.0]
+        if self.history.peak == 0.0:
+            return False
+        return self.history.fastest > 0.0 or bool(self.history(np.array([0.0, *later])).any())
+
+
+def _check_positive(name: str, value: float, unit: str) -> None:
+    if not 0.0 < value < np.inf:
+        raise ValueError(f"{name} must be finite and positive, got {value} {unit}")

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether a boom can be drawn out as its joints' drives would have it, and what goes with them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from geometry.fault import BoomError
+from geometry.joint import Joint
+from geometry.segment import SAME_PLACE, Segment
+
+if TYPE_CHECKING:
+    from geometry.boom import Boom
+
+
+def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
+    """Positions of the joints between a segment and the ground that have a drive, from the base."""
+    for number, joint in enumerate(joints):
+        if joint.inner == segment:
+            own = () if joint.drive is None else (number,)
+            return drives_below(joints, joint.outer) + own
+    return ()
+
+
+def places(joint: Joint, way: float) -> list[tuple[float, float]]:
+    """x in m of each station on the outer and on the inner segment, drawn out by ``way`` in m."""
+    carriers = () if joint.drive is None else joint.drive.carriers
+    return [
+        (x, x - way) if carrier == "outer" else (x + way, x)
+        for x, carrier in zip(joint.stations, carriers, strict=True)
+    ]
+
+
+def check_drives(boom: Boom) -> None:
+    """Whether all of the way of each drive is there, and what moves may move.
+
+    Raises:
+        BoomError: it is not.
+    """
+    driven = [(n, joint) for n, joint in enumerate(boom.joints, 1) if joint.drive is not None]
+    if not driven:
+        return
+    for number, joint in driven:
+        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+        _check_way(f"joint[{number}].drive", joint, outer, inner)
+        _check_taper(f"joint[{number}].drive", boom, outer, inner)
+    _check_order(boom)
+    for segment in range(len(boom.segments)):
+        if drives_below(boom.joints, segment):
+            _check_free(boom, segment)
+    if boom.compressed:
+        raise BoomError(
+            f"joint[{driven[0][0]}].drive",
+            "axial forces change as the boom is drawn out, which no model knows; leave drive out, "
+            "or axial and the angle of gravity",
+        )
+
+
+def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
+    drive = joint.drive
+    assert drive is not None
+    if joint.tied:
+        raise BoomError(where, "the joint is tied, and nothing slides; leave it out")
+    low, high = drive.reach
+    if low == high:
+        raise BoomError(where, f"draws {inner.name!r} nowhere; leave it out")
+    overlap = min(outer.end, inner.end) - inner.start - high
+    if not overlap > 0.0 or overlap < drive.least_overlap:
+        least = f"at least {drive.least_overlap:g}" if drive.least_overlap else "above 0"
+        raise BoomError(
+            where,
+            f"draws {inner.name!r} out by {high:g} m until {overlap:g} m of overlap are left; it "
+            f"must leave {least} m",
+        )
+    room = min(inner.start - outer.start, inner.end - outer.end)
+    if -low > room:
+        raise BoomError(
+            where,
+            f"draws {inner.name!r} in by {-low:g} m; it must be at most {room:g} m, where it is "
+            f"wholly in {outer.name!r}",
+        )
+    near = SAME_PLACE * outer.length
+    for way in (low, high):
+        there = places(joint, way)
+        for x, (on_outer, on_inner) in zip(joint.stations, there, strict=True):
+            if not (outer.holds(on_outer) and inner.holds(on_inner)):
+                raise BoomError(
+                    where,
+                    f"the station at {x:g} m leaves the overlap as {inner.name!r} is drawn by "
+                    f"{way:g} m; make the travel shorter, or move the station",
+                )
+        if any(right - left <= near for (left, _), (right, _) in pairwise(there)):
+            raise BoomError(
+                where,
+                f"stations pass one another as {inner.name!r} is drawn by {way:g} m; make the "
+                "travel shorter, or move them",
+            )
+
+
+def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None:
+    for segment in (outer, inner):
+        if boom.spatial and segment.head_section is not None:
+            raise BoomError(
+                where,
+                f"{segment.name!r} tapers, and in space its corners would move away from the pads; "
+                "leave drive or head_section out",
+            )
+
+
+def _check_order(boom: Boom) -> None:
+    """Each segment is moved alike by all the joints in which it slides."""
+    for number, joint in enumerate(boom.joints):
+        own = () if joint.drive is None else (number,)
+        if drives_below(boom.joints, joint.inner) != drives_below(boom.joints, joint.outer) + own:
+            inner = boom.segments[joint.inner].name
+            raise BoomError(
+                f"joint[{number + 1}].drive",
+                f"{inner!r} slides in two joints, which would draw it differently; let no drive be "
+                "between them",
+            )
+
+
+def _check_free(boom: Boom, number: int) -> None:
+    """The ground does not hold a segment that moves along, but stops may touch it."""
+    segment = boom.segments[number]
+    held = [f"segment[{number + 1}].supports"] if segment.supports else []
+    held += [f"cylinder[{k}]" for k, c in enumerate(boom.cylinders, 1) if c.segment == number]
+    if held:
+        raise BoomError(
+            held[0],
+            f"the ground holds {segment.name!r}, which a drive moves along; let it hold a segment "
+            "that stays, or leave drive out",
+        )
+    for k, stop in enumerate(boom.stops, start=1):
+        drives = [boom.joints[j].drive for j in drives_below(boom.joints, number)]
+        ways = [drive.reach for drive in drives if drive is not None]
+        low, high = (sum(way[end] for way in ways) for end in (0, 1))
+        if stop.segment == number and not (
+            segment.holds(stop.x - low) and segment.holds(stop.x - high)
+        ):
+            raise BoomError(
+                f"stop[{k}].x",
+                f"{segment.name!r} is drawn past {stop.x:g} m; it must be there all the way",
+            )

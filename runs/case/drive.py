@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What draws an inner segment out of its outer one while the boom moves, as a case file says it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from dynamics.excitation import History
+from dynamics.excitation import Table as TimeTable
+from dynamics.travel import SCurve, Stroke
+from geometry.boom import BoomError
+from geometry.drive import Carrier, Drive
+from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text
+from runs.case.places import PlaceTable
+
+# How a drive may go, by the key that says it.
+_WAYS = ("time", "speed", "table")
+
+Ways = Annotated[
+    tuple[tuple[Number, Number], ...], In("s", "m"), Field(min_length=2, max_length=MOST_TIMES)
+]
+
+
+class DriveTable(Table):
+    """How an inner segment is drawn out, or in, while the boom moves."""
+
+    travel: Annotated[Number, In("m")] | None = Field(
+        None, description="the length in m by which it is drawn out; negative where it is drawn in"
+    )
+    time: Annotated[Positive, In("s")] | None = Field(
+        None, description="the time in s that the travel takes, on an S-curve without jerks"
+    )
+    speed: Annotated[Positive, In("m/s")] | None = Field(
+        None, description="the speed in m/s of the travel, in place of its time"
+    )
+    ramp: Annotated[NotNegative, In("s")] = Field(
+        0.0, description="the time in s in which that speed comes, and goes; at once unless given"
+    )
+    start: Annotated[NotNegative, In("s")] = Field(
+        0.0, description="the time in s at which the travel begins"
+    )
+    table: Ways | None = Field(
+        None,
+        description="pairs of a time in s and the length in m drawn out since the start, linear "
+        "between them and constant beyond, in place of a travel",
+    )
+    file: Text | None = Field(
+        None, description="a CSV file of such pairs, its path seen from the case file"
+    )
+    columns: tuple[Text, Text] | None = Field(
+        None,
+        description="the names of two columns in the heading of the file, of the times and of the "
+        "lengths; its only two unless given",
+    )
+    least_overlap: Annotated[NotNegative, In("m")] = Field(
+        0.0, description="the overlap in m that must be left; more than none unless given"
+    )
+
+    def history(self, where: str) -> History:
+        """How far it is drawn out in m.
+
+        Args:
+            where: its key.
+
+        Raises:
+            BoomError: keys contradict one another, or lack one.
+        """
+        given = [key for key in _WAYS if getattr(self, key) is not None]
+        if not given:
+            raise BoomError(
+                f"{where}.time", f"missing; it is {_said('time')}, or give speed, table or file"
+            )
+        if len(given) > 1:
+            raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
+        if self.ramp and self.speed is None:
+            raise BoomError(f"{where}.ramp", f"{given[0]} is given; only a speed has a ramp")
+        if self.table is not None:
+            return self._tabled(where)
+        if self.travel is None:
+            raise BoomError(f"{where}.travel", f"missing; it is {_said('travel')}")
+        if self.time is not None:
+            return SCurve(self.travel, self.time, self.start)
+        assert self.speed is not None
+        try:
+            return Stroke(self.travel, self.speed, self.ramp, self.start)
+        except ValueError as error:
+            raise BoomError(f"{where}.ramp", str(error)) from None
+
+    def _tabled(self, where: str) -> History:
+        for key in ("travel", "start"):
+            if getattr(self, key):
+                raise BoomError(f"{where}.{key}", "table is given; leave one of them out")
+        assert self.table is not None
+        try:
+            history = TimeTable(*zip(*self.table, strict=True))
+        except ValueError as error:
+            raise BoomError(f"{where}.table", str(error)) from None
+        start = float(history(np.zeros(())))
+        if start != 0.0:
+            raise BoomError(
+                f"{where}.table",
+                f"must be 0 m at t = 0, where the boom is as it is given, got {start:g} m",
+            )
+        return history
+
+    def drive(
+        self, where: str, stations: tuple[float | PlaceTable, ...], inner: str
+    ) -> Drive | None:
+        """None where it moves nothing.
+
+        Args:
+            where: the key of its joint.
+            stations: of the joint.
+            inner: the name of the segment that is drawn.
+
+        Raises:
+            BoomError: as :meth:`history`, and where a station sits on no segment.
+        """
+        history = self.history(f"{where}.drive")
+        carriers = tuple(_carrier(where, place, inner) for place in stations)
+        drive = Drive(history, carriers, self.least_overlap)
+        return drive if any(drive.reach) else None
+
+
+def _said(key: str) -> str:
+    return str(DriveTable.model_fields[key].description)
+
+
+def _carrier(where: str, place: float | PlaceTable, inner: str) -> Carrier:
+    if not isinstance(place, PlaceTable):
+        raise BoomError(
+            f"{where}.stations",
+            f"{place:g} m does not tell on which segment the station goes as {inner!r} is drawn; "
+            "give 'tail' or 'head', or a distance from one",
+        )
+    return "inner" if place.head is None else "outer"

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Rows that move: a load that runs along a beam, its ledger, its symmetry, its order."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.arrays import Array
+from dynamics.contact import ContactLaw, PowerContact
+from dynamics.drawn_out import integrate_drawn
+from dynamics.energy import ENERGY_BOUND
+from dynamics.event_driven import integrate_events, what_hinders
+from dynamics.excitation import Excitation, History, Ramp, Table
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators import Events, Splitting, suited
+from dynamics.motion import Motion
+from dynamics.row_table import RowTable
+from dynamics.splitting import integrate
+from dynamics.travel import SCurve, Stroke, Together, Travel
+
+# A simply supported beam: length in m, E J in N·m², mass per length in kg/m.
+LENGTH, STIFFNESS, MASS = 10.0, 1.0e7, 100.0
+
+
+def sines(x: float, count: int) -> Array:
+    """Its mass-normalised modes at x in m."""
+    k = np.arange(1, count + 1)
+    return np.asarray(np.sqrt(2.0 / (MASS * LENGTH)) * np.sin(k * np.pi * x / LENGTH))
+
+
+def frequencies(count: int) -> Array:
+    """ω of these modes in rad/s."""
+    k = np.arange(1, count + 1)
+    return np.asarray((k * np.pi / LENGTH) ** 2 * np.sqrt(STIFFNESS / MASS))
+
+
+def rider(
+    history: History,
+    law: ContactLaw,
+    *,
+    mass: float,
+    weight: float,
+    count: int = 8,
+    start: float = 0.0,
+    **changes: Any,
+) -> GapSystem:
+    """A mass in kg that presses on the beam with its weight in N and goes along it from a start.
+
+    Row, friction row and dashpot all read the mass less the beam below it.
+    """
+
+    def row(way: float) -> Array:
+        return np.append(-sines(start + way, count), 1.0 / np.sqrt(mass))
+
+    numbers: dict[str, Any] = {
+        "omega2": np.append(frequencies(count) ** 2, 0.0),
+        "load": np.append(np.zeros(count), -weight / np.sqrt(mass)),
+        "rows": row(0.0)[None],
+        "laws": [law],
+        "station_of_row": np.array([0]),
+        "stations": [start],
+        "observers": {"tip": Observer(np.append(sines(0.5 * LENGTH, count), 0.0))},
+        **changes,
+    }
+    scales = {"rows": 1.0}
+    if numbers.get("frictions"):
+        scales["friction_rows"] = 1.0
+    if "drag" in numbers:
+        scales["dashpots"] = np.sqrt(numbers.pop("drag"))
+    numbers |= {kind: scale * row(0.0)[None] for kind, scale in scales.items()}
+    table = RowTable.of(
+        lambda way: np.array([scale * row(way) for scale in scales.values()]),
+        np.linspace(-start, LENGTH - start, 3).tolist(),
+    )
+    moving: Any = tuple((kind, 0) for kind in scales)
+    return GapSystem(**numbers, travels=[Travel(history, table, moving, "")])
+
+
+def lossy(history: History, **changes: Any) -> GapSystem:
+    """A rider with friction, damping of every kind, a load that ramps, and play on both sides."""
+    law = PowerContact(1.0e6, 1.5, 1.0e-4, damping=0.5)
+    rubbing = DryFriction(0.3, 0, normal_force=400.0)
+    system = rider(history, law, mass=20.0, weight=2.0e3, start=2.0, frictions=[rubbing], drag=50.0)
+    load = Excitation(np.append(300.0 * sines(3.0, 8), 0.0), Ramp(0.1))
+    return replace(system, damping=np.full(9, 0.5), excitations=[load], **changes)
+
+
+def test_a_moving_force_on_a_beam() -> None:
+    """Reference: analytic, the series of a constant force that passes a simply supported beam
+    (Frýba 1972, Vibration of solids and structures under moving loads).
+
+    A mass of 1e-5 of the beam's on a stiff contact is that force.
+    """
+    force, speed, count, stiffness, mass = 1.0e3, 20.0, 30, 1.0e7, 0.01
+    law = PowerContact(stiffness, 1.0, clearance=0.0).lower()
+    assert law is not None
+    system = rider(Stroke(LENGTH, speed), law, mass=mass, weight=force, count=count)
+    pressed = np.append(np.zeros(count), -force / stiffness * np.sqrt(mass))
+    run = Splitting(1.0e-5)(Motion(system, LENGTH / speed, 1.0e-3, position=pressed))
+    k, omega = np.arange(1, count + 1)[:, None], frequencies(count)[:, None]
+    passing = k * np.pi * speed / LENGTH
+    time = run.time[None]
+    swings = np.sin(passing * time) - passing / omega * np.sin(omega * time)
+    modes = -2.0 * force / (MASS * LENGTH) * swings / (omega**2 - passing**2)
+    series = (modes * np.sin(0.5 * k * np.pi)).sum(axis=0)
+    assert np.abs(run.data["tip"].values - series).max() < 1.0e-4 * np.abs(series).max()
+    assert run.energy_residual < 1.0e-5
+
+
+def test_what_never_moves_rests_bit_for_bit() -> None:
+    """Reference: what was before, the same system without a travel."""
+    moving = lossy(Table([0.0, 1.0], [0.0, 0.0]))
+    resting = replace(moving, travels=())
+    runs = [integrate(Motion(system, 0.3, 1.0e-3), 5.0e-5) for system in (moving, resting)]
+    assert np.array_equal(runs[0].states, runs[1].states)
+    assert runs[0].data.identical(runs[1].data)
+
+
+def test_the_loop_of_moving_rows_at_rest() -> None:
+    """Reference: non-regression, the splitting of rows that do not move; with one dashpot and
+    friction both make the same steps, and friction keeps round-off small.
+    """
+    moving = lossy(Table([0.0, 1.0], [0.0, 0.0]))
+    motion = Motion(moving, 0.3, 1.0e-3)
+    drawn = integrate_drawn(motion, 5.0e-5, ENERGY_BOUND, None)
+    rests = integrate(motion, 5.0e-5)
+    assert float(abs(rests.data["contact_force"]).max()) > 100.0
+    assert np.abs(drawn.states - rests.states).max() < 1.0e-9 * np.abs(rests.states).max()
+    for name in ("friction_loss", "damping_loss", "contact_loss"):
+        assert float(rests.data[name][-1]) > 0.0
+        assert drawn.data[name].values == pytest.approx(rests.data[name].values, rel=1e-7, abs=1e-9)
+    assert float(np.abs(drawn.data["drive_work"]).max()) < 1.0e-15
+
+
+def test_the_ledger_closes_with_the_work_of_the_drive() -> None:
+    """Reference: analytic, the balance of energy, in which the drive's work is not small."""
+    residuals = []
+    for step in (4.0e-5, 2.0e-5):
+        run = integrate(Motion(lossy(SCurve(5.0, 0.4)), 0.5, 1.0e-3), step)
+        residuals.append(run.energy_residual)
+    put_in = float(np.abs(run.data["work"]).max())
+    for name in ("drive_work", "friction_loss", "damping_loss", "contact_loss"):
+        assert float(np.abs(run.data[name]).max()) > 1.0e-3 * put_in
+    assert residuals[1] < 1.0e-5
+    assert residuals[1] < 0.4 * residuals[0]
+
+
+def test_second_order_in_the_step() -> None:
+    """Reference: analytic, errors of a second-order method, each step half the last."""
+    law = PowerContact(1.0e6, 2.0, 0.0).lower()
+    assert law is not None
+    system = rider(SCurve(5.0, 0.4), law, mass=20.0, weight=2.0e3, start=2.0)
+    motion = Motion(system, 0.4, 4.0e-3)
+    runs = [integrate(motion, step).states for step in (4e-4, 2e-4, 1e-4, 1.25e-5)]
+    errors = [np.abs(run - runs[-1]).max() for run in runs[:-1]]
+    slopes = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert slopes == pytest.approx([2.0, 2.0], abs=0.15)
+    assert errors[2] < 1.0e-4 * np.abs(runs[-1]).max()
+
+
+def test_it_runs_back_as_it_came() -> None:
+    """Reference: analytic, the symmetry of the splitting, in presses and by the drive."""
+    law = PowerContact(1.0e6, 1.0, 1.0e-4)
+    history = SCurve(5.0, 0.2)
+    there = rider(history, law, mass=20.0, weight=2.0e3, start=2.0)
+    out = integrate(Motion(there, 0.2, 1.0e-3), 1.0e-4)
+    assert out.data.attrs["contact_changes"] > 0
+    last = integrate(replace_observer(there), 1.0e-4)
+    speeds = np.array([last.data[f"v{i}"].values[-1] for i in range(9)])
+    back = rider(SCurve(-5.0, 0.2), law, mass=20.0, weight=2.0e3, start=7.0)
+    home = integrate(Motion(back, 0.2, 1.0e-3, position=out.states[-1], velocity=-speeds), 1.0e-4)
+    assert np.abs(home.states[::-1] - out.states).max() < 1.0e-9 * np.abs(out.states).max()
+
+
+def replace_observer(system: GapSystem) -> Motion:
+    """The motion of the test above, with the velocities of all modes."""
+    rates = {f"v{i}": Observer(row, "m/s", 1) for i, row in enumerate(np.eye(system.num_modes))}
+    return Motion(replace(system, observers=rates), 0.2, 1.0e-3)
+
+
+def test_the_drive_against_friction() -> None:
+    """Reference: analytic, μ Σ|N| sign(ṡ), with the contact force and what is prescribed."""
+    run = integrate(Motion(lossy(Stroke(-1.0, 5.0, ramp=0.05, start=0.1)), 0.5, 1.0e-3), 5.0e-5)
+    force = np.abs(run.data["contact_force"].values[:, 0])
+    moving = np.sign(np.diff(run.data["drawn_out"].values, prepend=0.0))
+    assert run.data["drive_friction"].values == pytest.approx(moving * 0.3 * (force + 400.0))
+    assert moving[[50, 200, 450]].tolist() == [0.0, -1.0, 0.0]
+    ways = np.diff(run.data["drawn_out"].values, prepend=0.0)
+    work = run.data["drive_work"].values[-1] + (run.data["drive_friction"].values * ways).sum()
+    assert 1.0e-3 * run.data["drive_power"].values.sum() == pytest.approx(work)
+
+
+@pytest.mark.parametrize(
+    ("history", "way", "speed"),
+    [
+        (SCurve(4.0, 5.0, start=1.0), 4.0, 1.6),
+        (SCurve(-4.0, 5.0), -4.0, -1.6),
+        (Stroke(4.0, 1.0, ramp=0.5, start=1.0), 4.0, 1.0),
+        (Stroke(4.0, 1.0), 4.0, 1.0),
+        (Stroke(-1.0, 2.0, ramp=0.5), -1.0, -2.0),
+        (Together((SCurve(4.0, 5.0), Stroke(1.0, 0.5))), 5.0, 1.947),
+    ],
+)
+def test_histories_of_a_drive(history: History, way: float, speed: float) -> None:
+    """Reference: analytic, the way, the fastest speed, rest before and behind the kinks."""
+    time = np.linspace(0.0, 8.0, 80001)
+    ways = history(time)
+    rates = np.gradient(ways, time)
+    assert ways[0] == 0.0
+    assert ways[-1] == pytest.approx(way)
+    assert rates[np.abs(rates).argmax()] == pytest.approx(speed, rel=2e-4)
+    assert np.abs(ways).max() <= history.peak * (1.0 + 1e-12)
+    assert history(np.array(history.kinks[-1])) == pytest.approx(way)
+    assert not history(np.array([history.kinks[0]])).any()
+
+
+def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
+    """Reference: analytic, a cubic between knots, a sine within the tolerance."""
+
+    def rows(way: float) -> Array:
+        return np.array([[(way - 1.0) ** 3 if way > 1.0 else 0.0], [np.sin(way)]])
+
+    cubic = RowTable.of(lambda way: rows(way)[:1], [0.0, 1.0, 3.0])
+    assert len(cubic.knots) == 3
+    sine = RowTable.of(rows, [0.0, 1.0, 3.0])
+    for way in np.linspace(0.0, 3.0, 101):
+        assert cubic(way)[0] == pytest.approx(rows(way)[0], abs=1e-13)
+        assert sine(way)[1] == pytest.approx(rows(way)[1], abs=1e-8)
+        assert sine.slope(way)[1] == pytest.approx(np.cos(way), abs=1e-5)
+
+
+def test_a_system_that_stands_as_it_is_drawn() -> None:
+    """Reference: analytic, the sines at the place of the rider."""
+    there = lossy(SCurve(5.0, 0.4)).standing(0.4)
+    row = np.append(-sines(7.0, 8), 1.0 / np.sqrt(20.0))
+    assert there.travels == ()
+    assert there.rows[0] == pytest.approx(row, abs=1e-9)
+    assert there.friction_rows[0] == pytest.approx(row, abs=1e-9)
+    assert there.dashpots[0] == pytest.approx(np.sqrt(50.0) * row, abs=1e-8)
+
+
+def test_no_jumps_from_contact_to_contact() -> None:
+    """Reference: what the case says, in one line."""
+    law = PowerContact(1.0e6, 1.0, 1.0e-4)
+    system = rider(SCurve(5.0, 0.4), law, mass=20.0, weight=2.0e3, start=2.0)
+    reason = "rows that move as a boom is drawn out leave no closed form from contact to contact"
+    assert what_hinders(system) == reason
+    assert what_hinders(replace(system, travels=())) is None
+    motion = Motion(system, 0.1)
+    assert isinstance(suited(motion), Splitting)
+    assert isinstance(suited(replace(motion, system=replace(system, travels=()))), Events)
+    with pytest.raises(ValueError, match=f"^{reason}; integrate by splitting$"):
+        integrate_events(motion)
+
+
+_TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: SCurve(1.0, 0.0), "duration must be finite and positive, got 0.0 s"),
+        (lambda: Stroke(1.0, -1.0), "speed must be finite and positive, got -1.0 m/s"),
+        (lambda: Stroke(1.0, 1.0, -1.0), "ramp must be finite and not negative, got -1.0 s"),
+        (
+            lambda: Stroke(1.0, 2.0, 1.0),
+            "within a travel of 1 m a ramp of 1 s does not come to 2 m/s; the ramp must be at "
+            "most 0.5 s",
+        ),
+        (
+            lambda: RowTable(np.array([1.0]), np.zeros((0, 4, 1, 1))),
+            "the knots of a table of rows must be two at least, and rise",
+        ),
+        (
+            lambda: RowTable(np.array([0.0, 1.0]), np.zeros((2, 4, 1, 1))),
+            "coefficients must have the shape (1, 4, num_rows, num_modes), got (2, 4, 1, 1)",
+        ),
+        (
+            lambda: Travel(SCurve(1.0, 1.0), _TABLE, ()),
+            "the table has 1 rows, and 0 move",
+        ),
+        (
+            lambda: Travel(Table([0.0, 1.0], [0.5, 1.0]), _TABLE, (("rows", 0),)),
+            "a travel must be 0 at t = 0, got 0.5 m",
+        ),
+        (
+            lambda: replace(lossy(SCurve(1.0, 1.0)), laws=[], rows=np.zeros((0, 9)),
+                            station_of_row=np.zeros(0, dtype=int)),
+            "travel 0 must move rows of the system",
+        ),
+    ],
+)  # fmt: skip
+def test_complaints(make: Any, message: str) -> None:
+    """Reference: what cannot be, in one line."""
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        make()

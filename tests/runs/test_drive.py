@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a case says of how its boom is drawn out, slips in it, and what a run tells of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from protractile.cases import run_case
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.reading import load
+
+DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
+DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
+TABLE = "drive = { table = [[0.0, 0.0], [1.0, 2.0], [4.0, -1.0]] }\n"
+
+
+def case_file(folder: Path, before: str, after: str) -> str:
+    assert before in DRAWN
+    path = folder / "case.toml"
+    path.write_text(DRAWN.replace(before, after), encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("drive", "ways", "reach"),
+    [
+        (DRIVE, [0.0, 2.0, 4.0], (0.0, 4.0)),
+        ("drive = { travel = -3.0, time = 2.0, start = 1.5 }\n", [0.0, -1.5, -3.0], (-3.0, 0.0)),
+        ("drive = { travel = 4.0, speed = 1.0, ramp = 1.0 }\n", [0.0, 2.0, 4.0], (0.0, 4.0)),
+        (TABLE, [0.0, 0.5, -1.0], (-1.0, 2.0)),
+        ('drive = { file = "ways.csv" }\n', [0.0, 0.5, -1.0], (-1.0, 2.0)),
+        ("drive = { travel = 0.0, time = 5.0 }\n", None, None),
+    ],
+)
+def test_a_drive_has_a_history(
+    tmp_path: Path, drive: str, ways: list[float] | None, reach: tuple[float, float] | None
+) -> None:
+    """Reference: analytic, where each drive is at the start, half way and at its end."""
+    (tmp_path / "ways.csv").write_text("t (ms);way (mm)\n0;0\n1000;2000\n4000;-1000\n")
+    found = build_boom(load(case_file(tmp_path, DRIVE, drive))).joints[0].drive
+    assert (found is None) == (ways is None)
+    if found is not None:
+        assert found.history(np.array([0.0, 2.5, 6.0])) == pytest.approx(ways)
+        assert found.reach == pytest.approx(reach)
+        assert found.carriers == ("inner", "outer")
+
+
+def test_a_drive_in_other_units(tmp_path: Path) -> None:
+    """Reference: analytic, 4000 mm are 4 m."""
+    text = DRAWN.split("[[segment]]")[0].replace("[time]", 'units = "mm-t-s"\n\n[time]')
+    path = tmp_path / "case.toml"
+    path.write_text(
+        text.replace("2.1e11", "2.1e5").replace("7850.0", "7.85e-9")
+        + """
+[[segment]]
+name = "arm"
+length = 10000.0
+supports = [{ x = 0.0, kind = "clamped" }]
+mass_per_length = 8.316e-5
+second_moment_of_area = 3.7986e8
+
+[[segment]]
+name = "fly"
+length = 10000.0
+mass_per_length = 5.507e-5
+second_moment_of_area = 2.1829e8
+
+[[joint]]
+outer = "arm"
+inner = "fly"
+extension = 5000.0
+drive = { travel = 4000.0, speed = 1000.0, least_overlap = 900.0 }
+stations = ["tail", "head"]
+play = 14.0
+stiffness = 1e6
+exponent = 1.0
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+""",
+        encoding="utf-8",
+    )
+    drive = build_boom(load(str(path))).joints[0].drive
+    assert drive is not None
+    assert drive.reach == pytest.approx((0.0, 4.0))
+    assert drive.least_overlap == pytest.approx(0.9)
+    assert drive.history(np.array(2.0)) == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        (DRIVE, "drive = { travel = 4.0 }\n",
+         "joint[1].drive.time: missing; it is the time in s that the travel takes, on an S-curve "
+         "without jerks, or give speed, table or file"),
+        (DRIVE, "drive = { time = 4.0 }\n",
+         "joint[1].drive.travel: missing; it is the length in m by which it is drawn out; "
+         "negative where it is drawn in"),
+        (DRIVE, "drive = { travel = 4.0, time = 5.0, speed = 1.0 }\n",
+         "joint[1].drive.speed: time is given; leave one of them out"),
+        (DRIVE, "drive = { travel = 4.0, time = 5.0, ramp = 1.0 }\n",
+         "joint[1].drive.ramp: time is given; only a speed has a ramp"),
+        (DRIVE, "drive = { travel = 4.0, speed = 4.0, ramp = 2.0 }\n",
+         "joint[1].drive.ramp: within a travel of 4 m a ramp of 2 s does not come to 4 m/s; the "
+         "ramp must be at most 1 s"),
+        (DRIVE, TABLE.replace("table", "travel = 1.0, table"),
+         "joint[1].drive.travel: table is given; leave one of them out"),
+        (DRIVE, TABLE.replace("[0.0, 0.0]", "[0.0, 0.5]"),
+         "joint[1].drive.table: must be 0 m at t = 0, where the boom is as it is given, got 0.5 m"),
+        (DRIVE, TABLE.replace("[1.0, 2.0]", "[0.0, 2.0]"),
+         "joint[1].drive.table: times must rise"),
+        (DRIVE, TABLE.replace("table", 'file = "ways.csv", table'),
+         "joint[1].drive.file: table is given; leave one of them out"),
+        (DRIVE, DRIVE.replace("least", "columns = ['a', 'b'], least"),
+         "joint[1].drive.columns: there is no file whose columns these are; leave it out"),
+        (DRIVE, DRIVE.replace("time", "tiem"),
+         "joint[1].drive.tiem: unknown key; the nearest known one is time"),
+        (DRIVE, DRIVE.replace("4.0", "4.5"),
+         "joint[1].drive: draws 'inner' out by 4.5 m until 0.5 m of overlap are left; it must "
+         "leave at least 1 m"),
+        ('stations = ["tail", "head"]', "stations = [5.0, 10.0]",
+         "joint[1].stations: 5 m does not tell on which segment the station goes as 'inner' is "
+         "drawn; give 'tail' or 'head', or a distance from one"),
+        ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"', 'kind = "shell"',
+         "model[1]: the shell 'kantorovich-5' touches where it is reduced to, and cannot be drawn "
+         "out; leave joint[1].drive out, or run beams and series with play"),
+        ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\ntied = true',
+         "model[2]: 'beam-fe' is tied, and cannot be drawn out; leave joint[1].drive out, or run "
+         "beams and series with play"),
+        ("[[joint]]", "[gravity]\nangle = 45.0\n\n[[joint]]",
+         "joint[1].drive: axial forces change as the boom is drawn out, which no model knows; "
+         "leave drive out, or axial and the angle of gravity"),
+    ],
+)  # fmt: skip
+def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:
+    """Reference: the line that a user reads."""
+    with pytest.raises(BadInput) as caught:
+        load(case_file(tmp_path, before, after))
+    assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
+
+
+def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
+    """Reference: analytic, the ways of the case, and the drive's force from contact forces."""
+    path = case_file(tmp_path, "duration = 7.0", "duration = 0.3")
+    path_of = Path(path)
+    text = path_of.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
+    path_of.write_text(text, encoding="utf-8")
+    results = run_case(load(path), models=["kantorovich-5"])
+    data = results.trajectories.sel(model="kantorovich-5")
+    assert float(data["drawn_out"][-1]) == pytest.approx(4.0)
+    force = 0.2 * np.abs(data["contact_force"]).sum("station")
+    moving = np.diff(data["drawn_out"], prepend=0.0) > 0.0
+    assert data["drive_friction"].values == pytest.approx(np.where(moving, force, 0.0))
+    assert float(data["drive_friction"].max()) > 100.0
+    assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4
