@@ -155,6 +155,9 @@ def _coupled(system: GapSystem, damping: Array) -> float:
     if not damping.any() or omega2.min() < _ROUND_OFF * omega2.max():
         return np.inf if damping.any() else 0.0
     swing = system.largest_load / omega2
+    if not swing.any():
+        # Swings that nothing but the start tells count alike.
+        swing = np.ones(omega2.size)
     apart = np.abs(np.subtract.outer(omega2, omega2))
     pulls = np.abs(damping) * system.omega
     parts = np.divide(pulls, apart, out=np.zeros(apart.shape), where=apart > 0.0)

@@ -27,7 +27,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 class SCurve:
     """From 0 to ``travel`` in m within ``duration`` in s, s = travel (τ − sin 2πτ/2π).
 
-    Speed and acceleration begin and end with 0 (cycloidal motion; Norton 2009, Cam Design).
+    Speed and acceleration begin and end with 0 (cycloidal motion; Norton 2009).
 
     >>> pt.SCurve(travel=4.0, duration=5.0)(np.array([0.0, 2.5, 9.0]))
     array([0., 2., 4.])

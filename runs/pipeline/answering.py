@@ -132,16 +132,15 @@ def _beside_tied(answers: ModelAnswers, tied: Shown, model: Model, case: Case) -
     from dynamics.integrators import suited
 
     resting = _resting(tied, case.time.duration)
+    # Their shapes are those of the pressed boom to the eye.
+    tied_modes = [replace(mode, shapes=[]) for mode in resting.modes]
+    answers = replace(answers, tied=resting.rests, tied_modes=tied_modes)
+    if any(joint.drive is not None for joint in case.joints):
+        # Tied it cannot be drawn out.
+        return answers
     motion, _ = asked(tied.system, case, model)
     moved, lives = _moving(tied, resting, suited(motion)(motion), model, case)
-    return replace(
-        answers,
-        tied=resting.rests,
-        # Their shapes are those of the pressed boom to the eye.
-        tied_modes=[replace(mode, shapes=[]) for mode in resting.modes],
-        tied_moved=moved,
-        tied_life=lives,
-    )
+    return replace(answers, tied_moved=moved, tied_life=lives)
 
 
 def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:
