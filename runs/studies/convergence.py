@@ -36,6 +36,7 @@ STUDIES = (
     "mesh",
     "contact_size",
     "working_load",
+    "calibrated_beams",
     "direct",
     "solid",
     "stress",
