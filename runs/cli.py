@@ -298,6 +298,34 @@ def check(case: CaseFile, picture: Picture = None) -> int:
 
 
 @app.command()
+def export(
+    case: CaseFile,
+    to: Annotated[str, typer.Option(metavar="opensees", help="The other program.")],
+    model: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Of beam elements.  [default: the last such model]"),
+    ] = None,
+    out: Annotated[
+        str | None, typer.Option(metavar="FILE.py", help="Where to write.  [default: CASE.py]")
+    ] = None,
+) -> int:
+    """Write a model of beam elements, calibrated or not, as a script for another program."""
+    from runs.case import reading
+    from runs.case.messages import BadInput
+    from runs.export.opensees import write
+    from runs.folder.cache import Cache
+
+    if to != "opensees":
+        raise BadInput(case, "--to", f"must be 'opensees', got {to!r}")
+    checked = reading.load(case)
+    chosen = reading.select(checked, case, None if model is None else [model])
+    path = Path(out or f"{Path(case).stem}.py")
+    write(chosen, case, _enter_mpi(chosen, case), path, Cache.of_user())
+    print(printable(str(path)))
+    return 0
+
+
+@app.command()
 def schema() -> int:
     """Print the JSON Schema of a case file."""
     from runs.case.schema import case_schema

@@ -27,6 +27,7 @@ from runs.folder.versions import versions
 from runs.pipeline import answering, members
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
+from runs.pipeline.card import card
 from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
@@ -211,6 +212,8 @@ def _run_model(
     summary, reduced = moved.summary, built.shell
     if boom.compressed:
         summary.critical_factor = built.critical_factor
+    if built.calibration is not None:
+        summary.calibration = card(boom, system, built.calibration)
     # Those of a motion that is kept are what it has taken.
     stages.seconds |= summary.seconds
     shell = None

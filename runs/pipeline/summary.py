@@ -121,6 +121,40 @@ class StepsForPeaks(Entry):
     trials: list[Trial]
 
 
+class BeamOfShell(Entry):
+    """A segment as the beam that its shell acts as: E J in N·m² and G A_s in N, along z and in
+    space along y, G J_t in N·m² in space; ``bending_part`` and ``shear_part`` are these over what
+    the section's numbers make, ``torsion_part`` likewise.
+    """
+
+    segment: str
+    bending: list[float]
+    shear: list[float]
+    torsion: Known = None
+    bending_part: list[float]
+    shear_part: list[float]
+    torsion_part: Known = None
+
+
+class StationSpring(Entry):
+    """What a pressed place gives way beyond the beams, in series with the contact there.
+
+    ``x`` is its station's in m, ``side`` that of the outer segment's walls which the inner one
+    presses, ``stiffness`` in N/m; none where nothing gives way.
+    """
+
+    x: float
+    side: str
+    stiffness: Known
+
+
+class CalibrationCard(Entry):
+    """What a calibrated beam has read from its shell, for whoever computes the boom elsewhere."""
+
+    segments: list[BeamOfShell]
+    springs: list[StationSpring]
+
+
 class ModelSummary(Entry):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
@@ -155,6 +189,7 @@ class ModelSummary(Entry):
     local_compliance: list[Known] = []
     mesh_error: Known = None
     stress: StressSummary | None = None
+    calibration: CalibrationCard | None = None
 
 
 class PointwiseLevel(Measured):

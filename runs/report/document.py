@@ -17,6 +17,7 @@ from runs.report.answer_tables import (
     play_sentence,
     trust_lines,
 )
+from runs.report.calibration_tables import calibration_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.knowledge import compared_tables, known_tables
@@ -52,7 +53,14 @@ def render(
     look = first_table(results)
     first = _texts([look] if look else [])
     answers = _texts(answer_tables(results))
-    models = _texts([*model_tables(results), *pad_tables(results), *wall_tables(results)])
+    models = _texts(
+        [
+            *model_tables(results),
+            *calibration_tables(results),
+            *pad_tables(results),
+            *wall_tables(results),
+        ]
+    )
     known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
     parts = "case", "motion", "rest", "knowledge", "numerics"
     case, motion, rest, knowledge, numerics = (

@@ -43,6 +43,7 @@ from shell_model.pictures.rendering import RenderingUnavailable
 
 REPORT = "report.html"
 VERDICTS = "verdicts.json"
+CALIBRATION = "calibration.json"
 STRESSES = "stress.nc"
 SERIES = "fields"
 FIGURES = "figures"
@@ -168,6 +169,12 @@ def write_report(
         surveyed: what a survey of the case's readings has found.
     """
     _write_text(folder / SUMMARY, str(results.summary))
+    if cards := {
+        name: model.calibration.model_dump()
+        for name, model in results.summary.models.items()
+        if model.calibration is not None
+    }:
+        _write_text(folder / CALIBRATION, _json(cards))
     if verdicts:
         _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in verdicts]))
     shutil.rmtree(folder / FIGURES, ignore_errors=True)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,9 @@ from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.pipeline.models import build, workshop
+from runs.pipeline.run import run_case as run_models
+from runs.pipeline.run import silent
+from runs.report.output import write
 from runs.studies.motions import move
 from runs.studies.working_load import Point, at_point
 from tests.runs.coarse_case import COARSE
@@ -155,3 +159,20 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
     for mode, of_springs, of_fields in zip(shell[:2], sprung[:2], fielded[:2], strict=True):
         assert of_springs.frequency == pytest.approx(mode.frequency, rel=1e-3)
         assert of_fields.frequency == pytest.approx(mode.frequency, rel=1e-6)
+
+
+def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
+    """Reference: non-regression, what the summary tells of the same calibration."""
+    alone = case_file.select(case, "", ["sprung"])
+    scratch, folder = tmp_path / "meshes", tmp_path / "run"
+    folder.mkdir()
+    run = run_models(alone, "", MPI.COMM_SELF, scratch, silent)
+    assert run is not None
+    write(run, [], folder, scratch, None)
+    told = json.loads((folder / "calibration.json").read_text(encoding="utf-8"))
+    summary = run.results.summary.models["sprung"].calibration
+    assert summary is not None
+    assert told == {"sprung": summary.model_dump()}
+    report = (folder / "report.html").read_text(encoding="utf-8")
+    assert "The springs of the stations, for sprung" in report
+    assert "The segments as beams, for sprung" in report

@@ -1,0 +1,331 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A boom of beam elements as an OpenSeesPy script that needs nothing of this program.
+
+Beam elements, the gaps as elastic zero-length materials through points of the contact law, in
+series with the spring of a calibrated station, friction under prescribed forces as an
+elastic-plastic slip, loads at the nodes. What couples the springs of different stations, and what a
+section's fields do, is not in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from beam_model.calibration import Calibration, stiffened
+from beam_model.component import Component
+from beam_model.finite_element import finite_element_segment
+from dynamics.contact import ContactLaw, PowerContact
+from dynamics.excitation import Released, Thrown
+from geometry.arrays import Array
+from geometry.boom import Boom, BoomError
+from geometry.contact_places import pads
+from geometry.section import Direction
+from runs.case.build import build_boom
+from runs.case.build import joined as joined_as_seen_by
+from runs.case.kinds.finite_element import FiniteElementTable
+from runs.case.kinds.model import Joined, of_kind
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.folder.cache import Cache
+from runs.folder.files import whole
+from runs.pipeline.models import build, workshop
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+TEMPLATE = Path(__file__).with_name("opensees_script.py.txt")
+
+# N up to which a contact law is followed, and points of one that is no straight line.
+LARGEST, POINTS = 1.0e7, 80
+# N at the edge of an open gap, which keeps what nothing holds from being singular.
+OPEN = 1.0e-5
+
+
+class Part(NamedTuple):
+    """A segment as elements: x of its nodes, and what loads at them are made of."""
+
+    x: Array
+    component: Component
+    free: Array
+
+    def nodal(self, row: Array) -> list[list[float]]:
+        """Force and moment of each node that is pushed: its number, from 0, N and N·m."""
+        whole = np.zeros(2 * self.x.size)
+        whole[self.free] = row
+        pairs = whole.reshape(-1, 2)
+        return [[int(n), *map(float, pairs[n])] for n in np.flatnonzero(pairs.any(axis=1))]
+
+
+@dataclass(frozen=True, slots=True)
+class _Nodes:
+    """A segment as loads push it, see :class:`geometry.load.Member`."""
+
+    component: Component
+
+    def force(self, x: float, direction: Direction) -> Array:
+        return self.component.at(x)
+
+    def moment(self, x: float, direction: Direction) -> Array:
+        return self.component.rotation_at(x)
+
+    def torque(self, x: float) -> Array:
+        raise AssertionError("a flat boom has no torque")
+
+    def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
+        if span is None:
+            return self.component.unit_load
+        return self.component.uniform_load(*span)
+
+    def inertia(self, direction: Direction, force: float) -> Array:
+        return force * self.component.unit_load
+
+    def turning(self, direction: Direction) -> Array:
+        return self.component.turning
+
+
+def script(
+    case: Case, joined: Joined, model: FiniteElementTable, calibration: Calibration | None
+) -> str:
+    """The script.
+
+    Args:
+        case: a checked one.
+        joined: its boom, flat, and its contacts.
+        model: of the case.
+        calibration: of a model that a shell calibrates.
+
+    Raises:
+        BoomError: the boom has something that the script does not.
+    """
+    _check(case, joined)
+    boom = joined.boom
+    touching = _touching(boom, calibrated=calibration is not None)
+    stiff = boom if calibration is None else stiffened(boom, calibration.segments)
+    parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
+    data = {
+        "TITLE": f"{case.title}: {model.name}",
+        "DURATION": case.time.duration,
+        "OUTPUT_STEP": case.time.output_step,
+        "SEGMENTS": [_segment(stiff, n, part, model) for n, part in enumerate(parts)],
+        "CONTACTS": list(_contacts(joined, parts, calibration)),
+        "FRICTIONS": list(_frictions(boom, parts, calibrated=calibration is not None)),
+        "LOADS": list(_loads(case, boom, parts)),
+    }
+    lines = "\n".join(f"{name} = {value!r}" for name, value in data.items())
+    return TEMPLATE.read_text(encoding="utf-8").replace("# DATA\n", f"{lines}\n")
+
+
+def _check(case: Case, joined: Joined) -> None:
+    """Whether the script can have all that the case has."""
+    boom = joined.boom
+    segments = boom.segments
+    for key, present in (
+        ("joint.lateral_play", boom.spatial),
+        ("cylinder", bool(boom.cylinders)),
+        ("axial", boom.compressed),
+        ("segment.head_section", any(segment.head_section is not None for segment in segments)),
+        ("joint.tied", any(joint.tied for joint in boom.joints)),
+        ("joint.dashpot", any(joint.dashpot > 0.0 for joint in boom.joints)),
+        ("segment.supports", any(s.dashpot > 0.0 for one in segments for s in one.supports)),
+        ("segment.viscous_damping", any(segment.viscous_damping > 0.0 for segment in segments)),
+        ("damping", any(case.damping.model_dump().values())),
+        ("joint.restitution", any(law.damping > 0.0 for law in joined.laws)),
+        ("start", case.start.state != "rest" or bool(case.start.velocity)),
+        ("load", any(isinstance(load.history, Released | Thrown) for load in boom.loads)),
+        (
+            "joint.friction",
+            any(joint.friction > 0.0 and not joint.normal_forces for joint in boom.joints),
+        ),
+    ):
+        if present:
+            raise BoomError(
+                key,
+                "cannot be exported to OpenSees, for which a boom is flat and undamped, starts "
+                "from rest, and rubs under given normal_forces; leave it out",
+            )
+
+
+def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
+    """Segments and x in m where something touches."""
+    found = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
+    for pad in pads(boom):
+        x = pad.middle if calibrated else pad.x
+        found += [(pad.joint.inner, x), (pad.joint.outer, x)]
+    return found
+
+
+def _part(
+    boom: Boom, number: int, model: FiniteElementTable, touching: Sequence[tuple[int, float]]
+) -> Part:
+    segment = boom.segments[number]
+    sheared = model.theory == "timoshenko" or model.calibrated_by is not None
+    component = finite_element_segment(
+        segment,
+        model.element_length,
+        [*boom.stations_of(number), *(x for one, x in touching if one == number)],
+        "timoshenko" if sheared else "euler-bernoulli",
+        model.rotary_inertia,
+    ).components["z"]
+    nodes = component.breaks
+    held = []
+    for support in segment.supports:
+        node = _nearest(nodes, support.x)
+        held += [2 * node] if support.stiffness is None else []
+        held += [2 * node + 1] if support.kind == "clamped" else []
+    return Part(nodes, component, np.setdiff1d(np.arange(2 * nodes.size), held))
+
+
+def _segment(boom: Boom, number: int, part: Part, model: FiniteElementTable) -> dict[str, object]:
+    """What the script has of a segment, SI units."""
+    segment = boom.segments[number]
+    material = segment.material
+    sheared = model.theory == "timoshenko" or model.calibrated_by is not None
+    shear = segment.shear_stiffness if sheared else None
+    return {
+        "name": segment.name,
+        "x": [float(x) for x in part.x],
+        "E": material.youngs_modulus,
+        "G": material.shear_modulus,
+        "J": segment.second_moment_of_area,
+        # None: rigid in shear.
+        "shear_area": None if shear is None else shear / material.shear_modulus,
+        "mass_per_length": segment.mass_per_length,
+        "rotary_inertia": segment.rotary_inertia if model.rotary_inertia else 0.0,
+        "supports": [
+            {
+                "node": _nearest(part.x, support.x),
+                "clamped": support.kind == "clamped",
+                "stiffness": support.stiffness,
+                "rotation_stiffness": support.rotation_stiffness,
+            }
+            for support in segment.supports
+        ],
+        "masses": [[_nearest(part.x, mass.x), mass.mass] for mass in segment.masses],
+    }
+
+
+def _contacts(
+    joined: Joined, parts: Sequence[Part], calibration: Calibration | None
+) -> Iterator[dict[str, object]]:
+    """Both nodes, and points (m, N) of what presses, in the order of the calibrated rows."""
+    boom, row = joined.boom, 0
+
+    def points(law: ContactLaw) -> list[list[float]]:
+        nonlocal row
+        spring = None if calibration is None else calibration.spring(row)
+        row += 1
+        return _points(law, 0.0 if spring is None else 1.0 / spring)
+
+    for pad in pads(boom):
+        x = pad.x if calibration is None else pad.middle
+        ends = [
+            [number, _nearest(parts[number].x, x)] for number in (pad.joint.outer, pad.joint.inner)
+        ]
+        for side in (pad.side,) if pad.side else (1, -1):
+            law = joined.laws[pad.number].one_sided(side)
+            if law is None:
+                continue
+            law = law.shared(pad.weight)
+            law = law.behind(law.clearance - pad.raised) if pad.raised else law
+            yield {"outer": ends[0], "inner": ends[1], "points": points(law)}
+    for _, stop in boom.numbered_stops:
+        node = [stop.segment, _nearest(parts[stop.segment].x, stop.x)]
+        whole = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
+        for side in (1, -1):
+            law = whole.one_sided(side)
+            if law is not None:
+                yield {"outer": None, "inner": node, "points": points(law)}
+
+
+def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
+    """Approaches in m, rising, and forces in N of a one-sided law behind a spring in m/N."""
+    side, onset = law.terms[0].side, min(term.onset for term in law.terms)
+    straight = len(law.terms) == 1 and law.terms[0].exponent == 1.0
+    deepest = 1.0
+    while abs(float(law.force(np.array(side * (onset + deepest))))) > LARGEST:
+        deepest *= 0.7
+    parts = np.array([1.0]) if straight else (np.arange(1, POINTS + 1) / POINTS) ** 2
+    forces = np.abs(law.force(side * (onset + deepest * parts)))
+    approaches = onset + deepest * parts + forces * compliance
+    along = np.concatenate([[onset - 1.0, onset], approaches])
+    pressed = np.concatenate([[-OPEN, 0.0], forces])
+    order = 1 if side > 0.0 else -1
+    return [(side * along)[::order].tolist(), (side * pressed)[::order].tolist()]
+
+
+def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterator[list[object]]:
+    """Both nodes and the friction force in N."""
+    for pad in pads(boom):
+        if pad.joint.friction > 0.0:
+            assert pad.normal_force is not None
+            x = pad.middle if calibrated else pad.x
+            ends = [
+                [number, _nearest(parts[number].x, x)]
+                for number in (pad.joint.outer, pad.joint.inner)
+            ]
+            yield [*ends, pad.joint.friction * pad.normal_force]
+
+
+def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
+    """Nodal loads, and the values by which they are multiplied at every output time."""
+    for number, part in enumerate(parts):
+        own = part.nodal(part.component.load)
+        if own:
+            yield {"segment": number, "nodes": own, "values": None}
+    count = round(case.time.duration / case.time.output_step) + 2
+    times = case.time.output_step * np.arange(count)
+    for load in boom.loads:
+        part = parts[load.segment]
+        values = np.asarray(load.history(times), dtype=float)
+        constant = bool(np.ptp(values) == 0.0)
+        nodes = part.nodal((values[0] if constant else 1.0) * load.push(_Nodes(part.component)))
+        yield {
+            "segment": load.segment,
+            "nodes": nodes,
+            "values": None if constant else values.tolist(),
+        }
+
+
+def _nearest(nodes: Array, x: float) -> int:
+    return int(np.argmin(np.abs(nodes - x)))
+
+
+def write(
+    case: Case, file: str, comm: MPI.Intracomm | None, path: Path, cache: Cache | None
+) -> None:
+    """Write the script of the last model of beam elements with play.
+
+    Args:
+        case: a checked one.
+        file: how messages call it.
+        comm: for a model that a shell calibrates.
+        path: of the script.
+        cache: of reduced shells.
+
+    Raises:
+        BadInput: there is no such model, or it has something that the script does not.
+    """
+    elements = [model for model in of_kind(FiniteElementTable, case.models) if not model.tied]
+    if not elements:
+        raise BadInput(file, "--model", "must be beam elements with play, and there are none")
+    # No beam of another program has the fields of the section.
+    model = elements[-1].model_copy(update={"section_fields": False})
+    boom = build_boom(case)
+    calibration = None
+    if model.needs_shell:
+        assert comm is not None
+        with TemporaryDirectory(prefix="protractile-") as meshes:
+            tools = workshop(comm, Path(meshes) / model.name, cache=cache)
+            calibration = build(case, boom, model, tools).calibration
+    try:
+        text = script(case, joined_as_seen_by(case, boom, model), model, calibration)
+    except BoomError as error:
+        raise BadInput(file, error.where, error.what) from None
+    with whole(path) as part:
+        part.write_text(text, encoding="utf-8")

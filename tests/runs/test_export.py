@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms for other programs."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.equilibrium import equilibrium
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.schema import Case
+from runs.export.opensees import _points, write
+from runs.pipeline.models import build
+from runs.studies.motions import friction_case, model_of, move
+from runs.studies.pads import with_pads
+
+ELSEWHERE = pytest.mark.skipif(
+    find_spec("openseespy") is None, reason="openseespy is not installed"
+)
+# A load that grows, a weight, a spring: what the paper's boom does not have.
+MORE = """
+[[load]]
+segment = "inner"
+x = 14.0
+magnitude = 300.0
+ramp = 0.2
+
+[[load]]
+segment = "inner"
+from = 11.0
+to = 13.5
+magnitude = 40.0
+"""
+
+MODEL = """
+[[model]]
+name = "timoshenko"
+kind = "finite-element"
+theory = "timoshenko"
+contact = { stiffness = 1e9, exponent = 1.0 }
+"""
+
+
+def run(script: Path, *arguments: str) -> float:
+    """The number that it prints, in a process that knows nothing of this program."""
+    told = subprocess.run(
+        [sys.executable, "-I", script, *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=script.parent,
+        env={"PATH": os.environ["PATH"]},
+    )
+    found = re.search(r": ([-\d.e]+) m", told.stdout)
+    assert found is not None, told.stdout
+    return float(found[1])
+
+
+def boom_with_more(folder: Path) -> Case:
+    text = (CASES / "friction-walk.toml").read_text(encoding="utf-8")
+    path = folder / "more.toml"
+    heavier = text.replace(
+        "supports = [0.0, 2.0]", "supports = [0.0, { x = 2.0, stiffness = 5e7 }]"
+    )
+    boom, _, _ = heavier.replace("[[joint]]", f"{MORE}\n[[joint]]", 1).partition("[[model]]")
+    path.write_text(boom + MODEL, encoding="utf-8")
+    return case_file.load(str(path))
+
+
+@ELSEWHERE
+@pytest.mark.slow
+def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
+    """Reference: other code, OpenSees, its elements, its Newton's method and its TR-BDF2."""
+    case = boom_with_more(tmp_path)
+    script = tmp_path / "boom.py"
+    write(case, "", None, script, None)
+    system = build(case, build_boom(case), case.models[0]).system
+    at_first = replace(system.gathered(), excitations=())
+    rest = at_first.observers["tip"].row @ equilibrium(at_first, at_first.load)
+    assert run(script, "--static") == pytest.approx(float(rest), rel=1e-6)
+    tip = np.asarray(move(system, 0.8).data["tip"].values)
+    assert 500 < tip.argmax() < 790
+    peak = run(script, "--duration", "0.8", "--step", "2e-4")
+    assert peak == pytest.approx(tip.max(), rel=2e-3)
+
+
+@ELSEWHERE
+@pytest.mark.slow
+def test_a_calibrated_beam_rests_elsewhere_on_its_springs(tmp_path: Path) -> None:
+    """Reference: other code, OpenSees; what couples the springs is less than a thousandth."""
+    pytest.importorskip("dolfinx", reason="a shell calibrates it")
+    from mpi4py import MPI
+
+    from runs.folder.cache import Cache
+    from runs.pipeline.models import workshop
+    from runs.studies.calibrated_beams import calibrated
+
+    case = with_pads(friction_case(), 0.1, 0.06)
+    shell = model_of(case, "shell").model_copy(update={"mesh_size": 0.25})
+    model = calibrated(case, shell, fields=False)
+    case = case.model_copy(update={"models": (model,)})
+    cache = Cache(tmp_path / "cache")
+    script = tmp_path / "boom.py"
+    write(case, "", MPI.COMM_SELF, script, cache)
+    tools = workshop(MPI.COMM_SELF, tmp_path / "mesh", cache=cache)
+    system = build(case, build_boom(case), model, tools).system
+    rest = float(system.observers["tip"].row @ equilibrium(system, system.load))
+    plain = case.model_copy(update={"models": (model_of(friction_case(), "timoshenko"),)})
+    stiff = build(plain, build_boom(plain), plain.models[0]).system
+    without = float(stiff.observers["tip"].row @ equilibrium(stiff, stiff.load))
+    assert rest > 1.1 * without
+    assert run(script, "--static") == pytest.approx(rest, rel=1e-3)
+
+
+def test_points_follow_a_law_behind_its_spring() -> None:
+    """Reference: analytic, y = Δ + (F/k)^(1/n) + F/K."""
+    law = PowerContact(1.0e9, 1.5, clearance=0.007).one_sided(-1)
+    assert law is not None
+    approaches, forces = np.array(_points(law, 1.0 / 2.0e7))
+    pressed = forces < 0.0
+    assert (np.diff(approaches) > 0.0).all()
+    assert forces.min() == pytest.approx(-1.0e7, rel=0.5)
+    expected = 0.007 + (-forces[pressed] / 1.0e9) ** (1.0 / 1.5) - forces[pressed] / 2.0e7
+    np.testing.assert_allclose(-approaches[pressed], expected, rtol=1e-9)
+
+
+def test_what_opensees_would_not_have_is_refused(tmp_path: Path) -> None:
+    case = case_file.load(str(CASES / "spatial.toml"))
+    with pytest.raises(BadInput) as error:
+        write(case_file.select(case, "", ["beam-fe"]), "case.toml", None, tmp_path / "x.py", None)
+    assert str(error.value) == (
+        "case.toml: joint.lateral_play: cannot be exported to OpenSees, for which a boom is flat "
+        "and undamped, starts from rest, and rubs under given normal_forces; leave it out"
+    )
+
+
+def test_series_are_not_exported(tmp_path: Path) -> None:
+    case = case_file.select(friction_case(), "", ["kantorovich-5"])
+    with pytest.raises(BadInput) as error:
+        write(case, "case.toml", None, tmp_path / "x.py", None)
+    assert str(error.value) == (
+        "case.toml: --model: must be beam elements with play, and there are none"
+    )
