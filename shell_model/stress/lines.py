@@ -8,12 +8,15 @@ over the area, divided by the length.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array, Indices
+from geometry.boom import Boom
 from shell_model.stress.stresses import ShellStress
 
 # Bands of a segment, at most.
@@ -26,24 +29,25 @@ _SAME_PLACE = 1.0e-6
 _NOTHING = 1.0e-300
 
 
-def lines(fields: xr.Dataset, spatial: bool) -> list[Line]:
+def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
     """One for each segment.
 
     Args:
         fields: of :func:`shell_model.stress.fields.gather_fields`.
-        spatial: whether the boom deflects along y and twists.
+        boom: that it is a shell of; cuts are where something acts on it, too.
     """
     still = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
     shell = ShellStress.of(still)
-    return [_line(shell, fields, number, spatial) for number in range(len(shell.plates))]
+    return [_line(shell, fields, boom, number) for number in range(len(shell.plates))]
 
 
-def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) -> Line:
+def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Line:
     walls = shell.wall < len(shell.plates[number])
     triangles = np.flatnonzero((shell.segment == number) & walls)
-    cuts = cuts_around(shell.spans[triangles])
+    acting = {support.x for support in boom.segments[number].supports}
+    cuts = cuts_around(shell.spans[triangles], sorted(acting.union(boom.stations_of(number))))
     band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
     moved = _moved(shell, fields, triangles, band, cuts.size - 1)
     corners = fields["points"].values[fields["triangles"].values[triangles]]
@@ -52,7 +56,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) ->
     forces = _forces(shell, number, triangles, band, part, np.diff(cuts), reaches)
     forces = forces @ fields[f"coordinates_{number + 1}"].values
     rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[1], "moment": forces[2]}
-    if spatial:
+    if boom.spatial:
         rows |= {
             "lateral": moved[0],
             "lateral_shear": forces[3],
@@ -63,23 +67,27 @@ def _line(shell: ShellStress, fields: xr.Dataset, number: int, spatial: bool) ->
     return Line(0.5 * (cuts[1:] + cuts[:-1]), rows, paired=False)
 
 
-def cuts_around(spans: Array) -> Array:
+def cuts_around(spans: Array, places: Sequence[float]) -> Array:
     """x in m, rising, of mesh lines that no triangle crosses, with the ends of the segment.
 
     Args:
         spans: (num_triangles, 2) the smallest and the largest x of each in m.
+        places: x in m of such lines as have to be cuts, rising.
     """
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     begun = np.searchsorted(first, lines - _SAME_PLACE)
     ended = np.searchsorted(last, lines + _SAME_PLACE)
     free = lines[begun == ended]
-    inside = [free[0]]
+    near = np.abs(np.subtract.outer(free, places)).min(axis=1, initial=np.inf) < _SAME_PLACE
+    needed = [free[0], *free[near], free[-1]]
     shortest = (free[-1] - free[0]) / _BANDS
-    for x in free[1:-1]:
-        if x - inside[-1] >= shortest and free[-1] - x >= shortest:
-            inside.append(x)
-    return np.array([*inside, free[-1]])
+    cuts = [free[0]]
+    for x in free[1:]:
+        ahead = min(place for place in needed if place >= x)
+        if x == ahead or (x - cuts[-1] >= shortest and ahead - x >= shortest):
+            cuts.append(x)
+    return np.array(cuts)
 
 
 def _moved(

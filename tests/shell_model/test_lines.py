@@ -29,7 +29,7 @@ def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
     shell = reduce_boom(boom, [LAW], options, MPI.COMM_SELF, lateral_laws=lateral)
     assert shell.fields is not None
     position = equilibrium(shell.system, shell.system.load)
-    return [(line, position) for line in lines(shell.fields, boom.spatial)]
+    return [(line, position) for line in lines(shell.fields, boom)]
 
 
 @pytest.mark.slow
@@ -75,4 +75,26 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
 def test_cuts_pass_no_triangle() -> None:
     """Reference: by hand. Triangles from 0 to 2 and from 1 to 3 leave 0, 3 and 4 m."""
     spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
-    assert cuts_around(spans).tolist() == [0.0, 3.0, 4.0]
+    assert cuts_around(spans, []).tolist() == [0.0, 3.0, 4.0]
+
+
+def test_cuts_are_where_something_acts() -> None:
+    """Reference: by hand. A place between lines that are closer than bands are long stays a cut,
+    and the lines beside it, which would leave shorter bands, do not.
+    """
+    edges = np.linspace(0.0, 10.0, 1001)
+    spans = np.column_stack([edges[:-1], edges[1:]])
+    cuts = cuts_around(spans, [2.01])
+    assert 2.01 in cuts.round(9)
+    assert np.diff(cuts).min() > 10.0 / 60.0 - 1e-9
+    assert cuts.size == 59
+
+
+@pytest.mark.slow
+def test_a_support_of_a_shell_bears_what_the_lever_rule_says() -> None:
+    """Reference: by hand, as in tests/beam_model/test_statics.py: −5933.9 N at 2 m;
+    a band across the support would miss a third of it.
+    """
+    line, position = at_rest(flat_boom(), ShellOptions(mesh_size=0.2, contact_tolerance=0.02))[0]
+    before, behind = (line.beside("shear", 2.0, side) @ position for side in (-1, 1))
+    assert before - behind == pytest.approx(-5933.9, rel=0.02)

@@ -156,7 +156,7 @@ def test_its_section_forces_are_those_of_statics() -> None:
     boom = cantilever("box")
     shell = reduce_boom(boom, [], ShellOptions(mesh_size=0.1), MPI.COMM_SELF)
     assert shell.fields is not None
-    (line,) = lines(shell.fields, spatial=False)
+    (line,) = lines(shell.fields, boom)
     (load,) = shell.system.excitations
     found = line.read(1000.0 * shell.system.static_response(load.load))
     inside = (line.x > 0.8) & (line.x < 7.2)

@@ -103,7 +103,7 @@ class FiniteElementTable(CalibratedTable):
         if shell.fields is not None:
             from shell_model.stress.lines import lines
 
-            along = [line.on(shapes) for line in lines(shell.fields, spatial=boom.spatial)]
+            along = [line.on(shapes) for line in lines(shell.fields, boom)]
         return replace(built, system=system, num_dofs=system.num_modes, along=along)
 
     def beam_stand_in(self, boom: Boom) -> StandIn:

@@ -123,7 +123,7 @@ class ShellTable(ModelTable):
 
         assert built.shell is not None
         assert built.shell.fields is not None
-        return lines(built.shell.fields, spatial=boom.spatial)
+        return lines(built.shell.fields, boom)
 
     @property
     def longest_edge(self) -> float:
