@@ -11,7 +11,9 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
-# A picture in a page is a third as large as on the disk, and looks the same.
+# A picture in a page is a third as large as on the disk, and looks the same; it has at most twice
+# as many pixels as the page is wide for it.
+WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
 # How a verdict is marked, and the class of the mark.
 MARKS = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
@@ -40,7 +42,9 @@ def _data_uri(path: Path) -> str:
     if path.suffix.lower() == ".gif":
         return f"data:image/gif;base64,{_text(path.read_bytes())}"
     smaller = BytesIO()
-    Image.open(path).convert("RGB").save(smaller, **_WEBP)
+    picture = Image.open(path).convert("RGB")
+    picture.thumbnail((WIDEST, WIDEST))
+    picture.save(smaller, **_WEBP)
     return f"data:image/webp;base64,{_text(smaller.getvalue())}"
 
 

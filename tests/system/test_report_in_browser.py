@@ -86,6 +86,7 @@ def test_a_report_is_whole_on_a_telephone(page: Page, folder: Path) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
     assert page.evaluate(WIDE) == []
     assert page.evaluate(CUT) == []
+    assert (folder / "report.html").stat().st_size < 10_000_000
 
 
 # The middle of a part of the page, after it has been brought to the window's.
