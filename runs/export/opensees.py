@@ -131,6 +131,7 @@ def _check(case: Case, joined: Joined) -> None:
         ("axial", boom.compressed),
         ("segment.head_section", any(segment.head_section is not None for segment in segments)),
         ("joint.tied", any(joint.tied for joint in boom.joints)),
+        ("joint.drive", any(joint.drive is not None for joint in boom.joints)),
         ("joint.dashpot", any(joint.dashpot > 0.0 for joint in boom.joints)),
         ("segment.supports", any(s.dashpot > 0.0 for one in segments for s in one.supports)),
         ("segment.viscous_damping", any(segment.viscous_damping > 0.0 for segment in segments)),

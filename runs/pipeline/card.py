@@ -9,7 +9,7 @@ from geometry.boom import Boom, Segment
 from runs.pipeline.summary import BeamOfShell, CalibrationCard, StationSpring
 
 # Of the outer segment, by the direction in which the inner one presses and its sign.
-_WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "left", ("y", -1): "right"}
+_WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
 
 
 def card(boom: Boom, system: GapSystem, calibration: Calibration) -> CalibrationCard:

@@ -29,6 +29,8 @@ LADDER = (
     ("shear", "timoshenko"),
     ("local flexibility", "timoshenko-local"),
     ("section distortion", "timoshenko-distorting"),
+    ("stiffness and springs read from the shell", "sprung"),
+    ("fields of its section", "fielded"),
     ("plates", "shell"),
 )
 # Up to when the ladder is to explain all but a hundredth, in s.
