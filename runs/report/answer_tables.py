@@ -11,6 +11,7 @@ from runs.case.schema import Case
 from runs.pipeline.answers import Added, Answers, AtRest, ModelAnswers, Moved, Peak, PlayAdds
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.results import Results
+from runs.report.drive_tables import drive_table
 from runs.report.figure_context import leading
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, fixed, number
@@ -276,6 +277,7 @@ def answer_tables(results: Results) -> list[Table]:
         *rest_tables(results),
         mode_table(results),
         peak_table(results),
+        drive_table(results),
         stress_table(results),
         life_table(results),
     ]

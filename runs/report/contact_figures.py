@@ -36,7 +36,7 @@ def first_contacts(pen: Pen) -> list[Figure]:
     curves = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in pen.with_play:
-            mean = _mean(pen, pen.of(name, "contact_force")[:, i] / KILO)
+            mean = running_mean(pen, pen.of(name, "contact_force")[:, i] / KILO)
             pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
             curves.append(pen.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
@@ -90,7 +90,7 @@ def friction(pen: Pen) -> list[Figure]:
         return []
     sheet, panels = new_sheet(len(places), 1.1 + 1.8 * len(places))
     for axes, (i, station) in zip(panels, places, strict=True):
-        pen.line(axes, name, pen.time, _mean(pen, force[:, i]), linewidth=1.1, alone=True)
+        pen.line(axes, name, pen.time, running_mean(pen, force[:, i]), linewidth=1.1, alone=True)
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
     panels[-1].set_xlabel("time (s)")
     caption = (
@@ -102,7 +102,7 @@ def friction(pen: Pen) -> list[Figure]:
     return [pen.finish(sheet, None, "friction", title, caption, ("S7", "S8"))]
 
 
-def _mean(pen: Pen, force: Array) -> Array:
+def running_mean(pen: Pen, force: Array) -> Array:
     """(num_times,) running mean over the window that impacts take, or what of it the run has."""
     width = min(max(1, round(FORCE_WINDOW / (pen.time[1] - pen.time[0]))), force.size)
     window = np.ones(width)

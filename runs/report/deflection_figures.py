@@ -13,6 +13,7 @@ from dynamics.predictability.horizon import SHARES
 from geometry.arrays import Array
 from runs.report import theme
 from runs.report.charts import Chart
+from runs.report.drive_figures import drawn_axis
 from runs.report.figure_context import MILLI, Figure, Pen, farthest, highest, new_sheet
 
 # Of an ensemble this part of the members lies in its band, in percent.
@@ -28,6 +29,7 @@ def tip(pen: Pen) -> list[Figure]:
         pen.line(axes, name, pen.time, MILLI * pen.of(name, "tip"))
         _members(pen, axes, name, "tip")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, pen.time[-1]))
+    drawn_axis(pen, axes)
     statements = (*(("S7",) if pen.rubs else ("S2", "S3")), *_many_segments(pen))
     caption = f"Deflection of the tip, all models{_counterpart(pen, 'tip')}."
     title = f"Tip: {_reach(pen, 'tip')}"

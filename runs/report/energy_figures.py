@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.energy import ENERGIES, energy_residual
+from dynamics.energy import DRAWN_ENERGIES, energy_residual
 from geometry.arrays import Array
 from runs.report import theme
 from runs.report.figure_context import Figure, Pen, highest, new_sheet
@@ -20,8 +20,10 @@ LOST = (0.75, 0.45, 0.2)
 def energies(pen: Pen) -> list[Figure]:
     """Where the energy of one model is: the last with play, the most complicated."""
     name = (pen.with_play or pen.models)[-1]
-    columns = dict(zip(ENERGIES, _energies(pen, name).T, strict=True))
-    work = columns.pop("work")
+    columns = dict(zip(DRAWN_ENERGIES, _energies(pen, name).T, strict=False))
+    drawn = columns.pop("drive_work", None)
+    work = columns.pop("work") + (0.0 if drawn is None else drawn)
+    of = "work of the load" if drawn is None else "work of load and drive"
     held = {energy: columns.pop(energy) for energy in HELD}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
@@ -39,13 +41,13 @@ def energies(pen: Pen) -> list[Figure]:
     for area in areas[len(held) :]:
         # Whatever the model's colour is.
         area.set(hatch="///", edgecolor="white")
-    axes.plot(pen.time, work, color=theme.INK, linewidth=1.3, label="work of the load")
+    axes.plot(pen.time, work, color=theme.INK, linewidth=1.3, label=of)
     axes.set(xlabel="time (s)", ylabel="energy (J)", xlim=(0.0, pen.time[-1]))
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
     caption = (
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
-        "is the work of the load, up to the residual of the next figure."
+        f"is the {of}, up to the residual of the next figure."
     )
     title = f"{name}: the load's work, and where it is"
     return [pen.finish(sheet, axes, "energies", title, caption, part="numerics")]
@@ -71,8 +73,9 @@ def residuals(pen: Pen) -> list[Figure]:
 
 
 def _energies(pen: Pen, name: str) -> Array:
-    """(num_times, num_energies) in J, the columns of ``ENERGIES``."""
-    return np.array([pen.of(name, energy) for energy in ENERGIES]).T
+    """(num_times, num_energies) in J, as in :func:`dynamics.energy.energy_residual`."""
+    known = [energy for energy in DRAWN_ENERGIES if energy in pen.data]
+    return np.array([pen.of(name, energy) for energy in known]).T
 
 
 def _named(energy: str) -> str:

@@ -13,6 +13,7 @@ from runs.report import theme
 from runs.report.boom_drawing import boom
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
+from runs.report.drive_figures import drives
 from runs.report.energy_figures import energies, residuals
 from runs.report.figure_context import Figure, Pen
 from runs.report.horizon_figures import horizons, slow_peaks
@@ -30,6 +31,7 @@ FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
     first_contacts,
     contact_peaks,
     friction,
+    drives,
     stress_history,
     at_rest,
     envelopes,

@@ -3,16 +3,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.pipeline.results import Results
+from runs.report.drive_tables import drive_table
+from runs.report.figure_context import Figure
+from runs.report.figures import draw
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
@@ -159,3 +165,30 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     assert data["drive_friction"].values == pytest.approx(np.where(moving, force, 0.0))
     assert float(data["drive_friction"].max()) > 100.0
     assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4
+    _check_table(results, data)
+    _check_figures(draw(results, tmp_path))
+
+
+def _check_table(results: Results, data: xr.Dataset) -> None:
+    """Reference: analytic, means and sums of what trajectories hold."""
+    table = drive_table(results)
+    assert table is not None
+    cells = {column.heading: column.cells for column in table.columns}
+    force, power = data["drive_friction"].values, data["drive_power"].values
+    assert cells["model"] == ["kantorovich-5"]
+    assert cells["drive of"] == ["inner"]
+    assert cells["against friction:\nmean, kN"] == [pytest.approx(force[1:201].mean(), rel=1e-9)]
+    assert cells["at most\nkN"] == [pytest.approx(force.max())]
+    assert cells["power, at most\nkW"] == [pytest.approx(power.max())]
+    assert cells["work\nkJ"] == [pytest.approx(1.0e-3 * power.sum())]
+
+
+def _check_figures(figures: Sequence[Figure]) -> None:
+    """Reference: what a run with a drive draws beside the others."""
+    drawn = {figure.path.stem: figure for figure in figures}
+    assert drawn["drive"].path.stat().st_size > 10_000
+    assert drawn["drive"].title.startswith("Drive of inner: up to ")
+    assert "work of load and drive" in drawn["energies"].caption
+    residual = drawn["energy-residual"].title
+    assert residual.startswith("Unaccounted energy: up to ")
+    assert "10⁻⁵" in residual or "10⁻⁶" in residual

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What drives do: how far segments are drawn out, by what force and power."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+
+from runs.case.schema import Case
+from runs.report import theme
+from runs.report.charts import Chart
+from runs.report.contact_figures import FORCE_WINDOW, running_mean
+from runs.report.figure_context import KILO, MILLI, Figure, Pen, farthest, new_sheet
+
+
+def driven(case: Case) -> dict[str, str]:
+    """Of each joint with a drive, what stands behind the names of its results, and the segment."""
+    joints = enumerate(case.joints, start=1)
+    return {
+        "" if number == 1 else f"-{number}": joint.inner
+        for number, joint in joints
+        if joint.drive is not None
+    }
+
+
+def drawn_axis(pen: Pen, axes: Axes) -> None:
+    """How far segments are drawn out, on a second axis to the right."""
+    ways = {
+        inner: pen.of(pen.models[0], f"drawn_out{suffix}")
+        for suffix, inner in driven(pen.case).items()
+        if f"drawn_out{suffix}" in pen.data
+    }
+    if not ways:
+        return
+    beside = axes.twinx()
+    for (inner, way), dashes in zip(ways.items(), ("-", "--", "-.", ":") * len(ways), strict=False):
+        label = f"{inner} drawn out"
+        beside.plot(
+            pen.time, way, color=theme.INK, linewidth=0.9, linestyle=dashes, alpha=0.5, label=label
+        )
+    beside.set_ylabel("drawn out (m)")
+    beside.grid(visible=False)
+    beside.spines["right"].set_visible(True)
+
+
+def drives(pen: Pen) -> list[Figure]:
+    """Force and power of each drive."""
+    return [
+        _drive(pen, suffix, inner)
+        for suffix, inner in driven(pen.case).items()
+        if f"drive_power{suffix}" in pen.data
+    ]
+
+
+def _drive(pen: Pen, suffix: str, inner: str) -> Figure:
+    sheet, panels = new_sheet(2, 5.2)
+    names = f"drive_friction{suffix}", f"drive_power{suffix}"
+    headings = "force against friction (kN)", "power (kW)"
+    curves = []
+    for panel, (axes, name, heading) in enumerate(zip(panels, names, headings, strict=True)):
+        for model in pen.models:
+            values = running_mean(pen, pen.of(model, name)) / KILO
+            pen.line(axes, model, pen.time, values, linewidth=1.0)
+            curves.append(pen.curve(model, values, panel))
+        axes.set(ylabel=heading, xlim=(0.0, pen.time[-1]))
+        drawn_axis(pen, axes)
+    panels[-1].set_xlabel("time (s)")
+    force = farthest([farthest(curve.values) for curve in curves[: len(pen.models)]])
+    caption = (
+        f"Above what the drive of {inner!r} pushes with against the friction of its pads along the "
+        "boom, the coefficient times all that presses them; below its power, with what contact "
+        "forces do on their slope as it is drawn, negative where the boom would slide by itself. "
+        f"Means over {MILLI * FORCE_WINDOW:g} ms."
+    )
+    title = f"Drive of {inner}: up to {theme.fixed(force, 2)} kN against friction"
+    chart = Chart(pen.time, "force (kN), power (kW)", curves, list(headings))
+    return pen.finish(sheet, panels[0], f"drive{suffix}", title, caption, chart=chart)

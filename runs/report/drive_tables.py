@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What drives take, as a table: forces, power and work."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Array
+from runs.pipeline.results import Results
+from runs.report.drive_figures import driven
+from runs.report.tables import Column, Table
+
+PER_KILO = 1.0e-3
+
+
+def drive_table(results: Results) -> Table | None:
+    """Of every model and drive; None where nothing is drawn out."""
+    data = results.trajectories
+    time = np.asarray(data["time"].values, dtype=float)
+    rows = [
+        _taken(str(model), inner, time, *(_of(results, str(model), n + suffix) for n in _READ))
+        for suffix, inner in driven(results.case).items()
+        if f"drive_power{suffix}" in data
+        for model in data["model"].values
+    ]
+    if not rows:
+        return None
+    columns = (
+        Column("model", [row[0] for row in rows]),
+        Column("drive of", [row[1] for row in rows]),
+        Column("against friction:\nmean, kN", [row[2] for row in rows], ".3g", PER_KILO),
+        Column("at most\nkN", [row[3] for row in rows], ".3g", PER_KILO),
+        Column("power, at most\nkW", [row[4] for row in rows], ".3g", PER_KILO),
+        Column("work\nkJ", [row[5] for row in rows], ".3g", PER_KILO),
+    )
+    notes = (
+        "Against the friction of pads along the boom, while it is drawn; power and work with what "
+        "contact forces do on their slope.",
+    )
+    return Table("Drives", columns, notes, "drives")
+
+
+_READ = ("drawn_out", "drive_friction", "drive_power")
+
+
+def _of(results: Results, model: str, name: str) -> Array:
+    return np.asarray(results.trajectories[name].sel(model=model).values, dtype=float)
+
+
+def _taken(
+    model: str, inner: str, time: Array, way: Array, friction: Array, power: Array
+) -> tuple[str, str, float, float, float, float]:
+    """Model, segment, mean and largest force in N, largest power in W, work in J."""
+    moving = np.diff(way, prepend=way[0]) != 0.0
+    mean = float(np.abs(friction[moving]).mean()) if moving.any() else 0.0
+    work = float((power[1:] * np.diff(time)).sum())
+    return model, inner, mean, float(np.abs(friction).max()), float(power.max()), work
