@@ -30,7 +30,7 @@ READY := .venv/ready-$(RELEASE)
 SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence validity test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -54,6 +54,9 @@ readings: $(READY) ## which readings of the data the paper's statements exclude,
 
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m runs.studies.convergence
+
+validity: $(READY) ## where a beam may stand for the shell, over play and load, into runs/out/validity
+	$(BIN)/python -m runs.studies.validity
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile

@@ -42,7 +42,8 @@ SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
 # Frequencies of the pressed boom that springs and fields are to keep; those beyond have the inertia
 # of the section in them.
 OF_SPRINGS, OF_FIELDS = 2, 6
-SHELL, PLAIN, SPRUNG, WITH_FIELDS = "shell", "Timoshenko", "with springs", "with section fields"
+SHELL, EULER, PLAIN = "shell", "Euler–Bernoulli", "Timoshenko"
+SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,6 +200,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
     models = {
         SHELL: shell,
+        EULER: model_of(case, "beam-fe-rotary"),
         PLAIN: model_of(case, "timoshenko"),
         SPRUNG: calibrated(case, shell, fields=False),
         WITH_FIELDS: calibrated(case, shell, fields=True),
