@@ -20,6 +20,7 @@ import xarray as xr
 from dynamics.arrays import Array
 from dynamics.integrators import Integrator, by_splitting
 from dynamics.motion import Motion
+from dynamics.trajectory import Trajectory
 
 Vary = Literal["load", "clearance", "velocity"]
 
@@ -118,7 +119,11 @@ def run_members(
 
 def _run(member: Member) -> xr.Dataset:
     run = member.integrator(changed(member.motion, member.vary, 1.0 + member.change))
-    kept = run.data[[name for name in member.kept if name in run.data]]
+    return _kept(run, member.kept)
+
+
+def _kept(run: Trajectory, names: Sequence[str]) -> xr.Dataset:
+    kept = run.data[[name for name in names if name in run.data]]
     return kept.assign(energy_residual=((), run.energy_residual, {"units": "1"}))
 
 
@@ -131,6 +136,7 @@ def integrate_ensemble(
     integrator: Integrator | None = None,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
+    unchanged: Trajectory | None = None,
 ) -> xr.Dataset:
     """Move all members of an ensemble, as many at a time as there are cores.
 
@@ -149,6 +155,7 @@ def integrate_ensemble(
         integrator: how all members move; by splitting at the step of member 0 unless given.
         executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
         progress: called with the part done, 0 to 1.
+        unchanged: member 0, where it has moved already.
 
     Returns:
         Dims ``member``, ``time``, ``station``: of ``KEPT`` what the system observes, and
@@ -166,8 +173,9 @@ def integrate_ensemble(
     check_varied(motion, vary)
     integrator = integrator or by_splitting(motion)
     changes = perturbations(members, relative, seed)
-    ensemble_members = [Member(motion, vary, change, integrator) for change in changes]
-    runs = run_members(ensemble_members, executor, progress)
+    runs = [] if unchanged is None else [_kept(unchanged, KEPT)]
+    others = [Member(motion, vary, change, integrator) for change in changes[len(runs) :]]
+    runs += run_members(others, executor, progress)
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {
         "vary": vary,

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Literal
 
 import numpy as np
@@ -26,6 +27,7 @@ from dynamics.arrays import Array
 from dynamics.integrators import Integrator, by_splitting
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
+from dynamics.trajectory import Trajectory
 
 # Parts of the range at which two curves can be told apart, and at which one is no longer the other.
 SHARES = (0.01, 0.20)
@@ -152,11 +154,13 @@ def measure_horizons(
     executor: Executor | None = None,
     shares: Sequence[float] = (EARLY, SHARES[0]),
     observer: str = "tip",
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] = lambda part: None,
+    unchanged: Trajectory | None = None,
 ) -> Horizons:
-    """Run the motion as it is, with a finer step, and changed by each size; all at once.
+    """Run the motion as it is, with a finer step, and changed by each size.
 
-    Few partners are enough for the growth at a small share; its scatter tells how well it is known.
+    Where the largest change parts no two runs to the first share, smaller ones do not either, and
+    are not run. Few partners are enough for the growth at a small share; its scatter tells how well it is known.
     Horizons at large shares are chance, and come sooner the more partners there are.
 
     >>> thrown = pt.Motion(ball, duration=1.0, velocity=[3.0])
@@ -174,6 +178,7 @@ def measure_horizons(
         shares: parts of the observer's range, rising.
         observer: which output is watched.
         progress: called with the part done, 0 to 1.
+        unchanged: the motion as it is, where it has moved already.
 
     Raises:
         ValueError: what is to vary is zero.
@@ -185,20 +190,34 @@ def measure_horizons(
     one = Member(motion, vary, 0.0, integrator, (observer,))
     number = np.arange(partners)
     parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
-    members = [
-        # The longest run first, so that none waits for it in the end.
-        replace(one, integrator=integrator.finer()),
-        one,
-        *(replace(one, change=float(change)) for change in np.outer(sizes, parts).flat),
+    *smaller, largest = [
+        [replace(one, change=float(change)) for change in size * parts] for size in sizes
     ]
-    runs = run_members(members, executor, progress)
-    finer, whole, *others = (run[observer].values for run in runs)
-    changed = np.array(others).reshape(sizes.size, partners, -1)
+    # The longest run first, so that none waits for it in the end.
+    first = [replace(one, integrator=integrator.finer()), *largest]
+    if unchanged is None:
+        first.append(one)
+    share_of_first = len(first) / (len(first) + sum(map(len, smaller)))
+    runs = run_members(first, executor, lambda part: progress(part * share_of_first))
+    finer, *changed = (run[observer].values for run in runs)
+    whole = changed.pop() if unchanged is None else unchanged.data[observer].values
     time = runs[0]["time"].values
-    times = np.array(
-        [[horizon(np.vstack([whole, near]), time, share) for share in shares] for near in changed]
-    )
-    of_step = [horizon(np.array([whole, finer]), time, share) for share in shares]
+
+    def reached(near: Sequence[Array]) -> list[float]:
+        return [horizon(np.array([whole, *near]), time, share) for share in shares]
+
+    times = np.full((sizes.size, len(shares)), np.nan)
+    times[-1] = reached(changed)
+    if smaller and np.isfinite(times[-1, 0]):
+        runs = run_members(
+            [*chain.from_iterable(smaller)],
+            executor,
+            lambda part: progress(share_of_first + part * (1.0 - share_of_first)),
+        )
+        tips = [run[observer].values for run in runs]
+        times[:-1] = [reached(tips[i : i + partners]) for i in range(0, len(tips), partners)]
+    progress(1.0)
+    of_step = reached([finer])
     growth = [Growth.fit(sizes, t) for t in times.T]
     return Horizons(
         relatives=sizes,

@@ -75,7 +75,11 @@ class Plan:
         return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0
 
     def ensemble(
-        self, table: EnsembleTable, executor: Executor | None, progress: Progress
+        self,
+        table: EnsembleTable,
+        trajectory: Trajectory,
+        executor: Executor | None,
+        progress: Progress,
     ) -> xr.Dataset:
         """All members, see :func:`dynamics.predictability.ensemble.integrate_ensemble`."""
         from dynamics.predictability.ensemble import integrate_ensemble
@@ -89,10 +93,15 @@ class Plan:
             self.integrator,
             executor,
             progress,
+            trajectory,
         )
 
     def horizons(
-        self, table: EnsembleTable, executor: Executor | None, progress: Progress
+        self,
+        table: EnsembleTable,
+        trajectory: Trajectory,
+        executor: Executor | None,
+        progress: Progress,
     ) -> Growth:
         """When changes of several sizes have grown, at what rate, and whether steps are to blame.
 
@@ -107,6 +116,7 @@ class Plan:
             integrator=self.integrator,
             executor=executor,
             progress=progress,
+            unchanged=trajectory,
         )
         return Growth(
             relatives=found.relatives.tolist(),

@@ -277,11 +277,11 @@ def _move_at(
     if case.ensemble is None or not system.laws:
         return Finished(trajectory, summary, None)
     with stages.stage("ensemble") as told:
-        ensemble = plan.ensemble(case.ensemble, executor, told)
+        ensemble = plan.ensemble(case.ensemble, trajectory, executor, told)
     peaks = members.common_peaks(ensemble, cutoff)
     summary.ensemble = members.sum_up(ensemble, peaks)
     with stages.stage("horizons") as told:
-        summary.horizons = plan.horizons(case.ensemble, executor, told)
+        summary.horizons = plan.horizons(case.ensemble, trajectory, executor, told)
     if cutoff is not None and peaks is not None and motion.from_rest:
         with stages.stage("step counts"):
             summary.steps_for_peaks = steps_for_peaks(motion, peaks, cutoff)

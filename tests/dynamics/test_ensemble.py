@@ -156,6 +156,16 @@ def test_the_same_seed_gives_the_same_on_any_number_of_cores(
     assert not np.array_equal(other["tip"], found[0]["tip"])
 
 
+def test_takes_a_motion_that_has_moved_already_for_member_0() -> None:
+    """Chaotic: a last digit that differed would show."""
+    motion, way = Motion(CHAOTIC, 20.0, 1e-2), Splitting(1e-3)
+    found = [
+        integrate_ensemble(motion, 3, 1e-6, 3, "load", way, unchanged=unchanged)
+        for unchanged in (None, way(motion))
+    ]
+    xr.testing.assert_identical(*found)
+
+
 def test_tells_its_progress() -> None:
     parts: list[float] = []
     integrate_ensemble(Motion(LINEAR, 1.0, 1e-2), 4, 1e-6, 1, "load", progress=parts.append)

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from dynamics.predictability.horizon import (
     measure_horizons,
     spread,
 )
+from dynamics.trajectory import Trajectory
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 
@@ -40,6 +42,39 @@ def test_a_linear_system_has_no_horizon() -> None:
     assert np.isnan(found.times).all()
     assert np.isnan([found.growth[0].rate, found.step_change]).all()
     assert found.limits == ["nothing", "nothing"]
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Steps whose runs are counted."""
+
+    way: Splitting
+    runs: list[Motion]
+
+    def __call__(
+        self, motion: Motion, progress: Callable[[float], None] | None = None
+    ) -> Trajectory:
+        self.runs.append(motion)
+        return self.way(motion, progress)
+
+    def finer(self) -> Counted:
+        return replace(self, way=self.way.finer())
+
+
+def test_stops_when_it_is_known_that_there_is_no_horizon() -> None:
+    """Reference: by hand. Of the linear system the finer step and three runs of the largest change,
+    besides the motion itself; of the chaotic one three of each change."""
+    sizes = [1e-12, 1e-10, 1e-8, 1e-6]
+    for system, num_runs in ((LINEAR, 1 + 3), (CHAOTIC, 1 + 4 * 3)):
+        motion = Motion(system, 20.0, 1e-2)
+        counted = Counted(Splitting(1e-3), [])
+        unchanged = counted.way(motion)
+        found = measure_horizons(motion, sizes, "load", integrator=counted, unchanged=unchanged)
+        assert len(counted.runs) == num_runs
+        again = measure_horizons(motion, sizes, "load", integrator=counted)
+        assert len(counted.runs) == 2 * num_runs + 1
+        np.testing.assert_array_equal(found.times, again.times)
+        np.testing.assert_array_equal(found.of_step, again.of_step)
 
 
 def test_horizon_of_a_known_growth() -> None:
@@ -142,6 +177,11 @@ def test_tells_its_progress() -> None:
         Motion(LINEAR, 1.0, 1e-2), [1e-9, 1e-6], "load", partners=1, progress=parts.append
     )
     assert parts == [0.25, 0.5, 0.75, 1.0]
+    parts.clear()
+    measure_horizons(
+        Motion(CHAOTIC, 20.0, 1e-2), [1e-9, 1e-6], "load", partners=1, progress=parts.append
+    )
+    assert parts == [0.25, 0.5, 0.75, 1.0, 1.0]
 
 
 def test_refuses_what_no_change_moves() -> None:
