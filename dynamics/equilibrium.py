@@ -63,9 +63,14 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     scaled_load = solve_triangular(factor, load, lower=True)
     unit = float(np.linalg.norm(scaled_load))
     scaled_load /= unit
-    rows = np.ascontiguousarray(solve_triangular(factor, system.rows.T, lower=True).T)
-    half = solve_triangular(factor, np.diag(np.sqrt(np.abs(system.omega2))), lower=True)
-    stiffness = (half * np.sign(system.omega2)) @ half.T
+    # Scaled, strain and springs add up to the unit matrix: all that the minimiser comes to lies in
+    # the span of load and rows, far fewer unknowns than a shell has.
+    pushes = np.column_stack([scaled_load, solve_triangular(factor, system.rows.T, lower=True)])
+    span, _ = np.linalg.qr(pushes)
+    scaled_load = span.T @ scaled_load
+    unscaled = solve_triangular(factor, span, lower=True, trans=1)
+    rows = system.rows @ unscaled
+    stiffness = (unscaled.T * system.omega2) @ unscaled
 
     def energy(x: Array) -> float:
         contact = _of_rows(energy_of, unit * rows @ x, terms).sum() / unit**2
@@ -83,7 +88,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
 
     found = minimize(
         energy,
-        np.zeros(system.num_modes),
+        np.zeros(scaled_load.size),
         method="trust-exact",
         jac=unbalanced,
         hess=tangent,
@@ -91,7 +96,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     )
     if not np.linalg.norm(found.jac) < BALANCE:
         raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
-    return np.asarray(unit * solve_triangular(factor, found.x, lower=True, trans=1))
+    return np.asarray(unit * unscaled @ found.x)
 
 
 def _of_rows(of_term: OfTerm, y: Array, terms: Terms) -> Array:
