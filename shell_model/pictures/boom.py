@@ -112,6 +112,7 @@ def draw_boom(
     view: BoomView,
     until: float,
     pace: str = "",
+    finer: int = theme.FINER,
 ) -> Iterator[Image.Image]:
     """The deformed boom, above the deflection of its tip in time.
 
@@ -121,6 +122,7 @@ def draw_boom(
         view: scale, colours, camera.
         until: last time in s of the tip's curve.
         pace: how fast a film shows it.
+        finer: see :class:`shell_model.pictures.theme.Scene`.
     """
     camera = view.camera
     time, tip = shell.motion["time"].values, shell.motion["tip"].values
@@ -138,6 +140,7 @@ def draw_boom(
     curve.plot(time, 1.0e3 * tip, color=theme.FAINT, linewidth=2)
     (past,) = curve.plot([], [], color=theme.INK, linewidth=3)
     (now,) = curve.plot([], [], "o", color=theme.FORCE, markersize=13, clip_on=False)
+    sheet.move(past, now)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     where, black = ("seen from above; ", "") if shell.from_above else ("", "; black: supports")
     black += " and cylinders" if shell.lugs else ""
@@ -146,7 +149,7 @@ def draw_boom(
     black += f"; grey blocks: {' and '.join(grey)}" if grey else ""
     black += "; balls: masses" if any(sign.kind == MASS for sign in shell.signs) else ""
     black += "; arrows: loads" if any(sign.kind in (UP, DOWN) for sign in shell.signs) else ""
-    with Scene(camera.pixels) as scene:
+    with Scene(camera.pixels, finer) as scene:
         # A little behind the boom, or it would shine through where that hardly moves.
         rest = shell.drawn(np.zeros_like(shell.points), view.scale, SECTION_DRAWN)
         rest[:, 1] += 0.02
@@ -203,7 +206,7 @@ def _draw_signs(shell: MovingShell, sheet: Sheet, camera: Camera, places: Array)
 
 def _met(shell: MovingShell, rest: Array, place: Stop | Lug | Sign) -> Array:
     """(num_points, 3) where the section that something meets is drawn."""
-    mine = shell.members(place.segment)
+    mine = shell.members[place.segment]
     return np.asarray(rest[mine[np.abs(shell.points[mine, 0] - place.x) < SAME_PLACE]])
 
 

@@ -107,6 +107,7 @@ class MovingShell:
         points: (num_points, 3) in m.
         triangles: (num_triangles, 3) point numbers.
         segment: (num_triangles,) of each triangle.
+        members: for each segment (num_members,) point numbers.
         overlaps: from the base to the tip, where the segments touch along the third direction.
         stops: above and below segments.
         lugs: of cylinders.
@@ -122,6 +123,7 @@ class MovingShell:
     points: Array
     triangles: Numbers
     segment: Numbers
+    members: Sequence[Numbers]
     overlaps: Sequence[Overlap]
     stops: Sequence[Stop]
     lugs: Sequence[Lug]
@@ -151,10 +153,12 @@ class MovingShell:
                 stations.
         """
         directions = np.asarray(motion["direction"].values)
+        triangles, segment = fields["triangles"].values, fields["segment"].values
         side = cls(
             points=fields["points"].values,
-            triangles=fields["triangles"].values,
-            segment=fields["segment"].values,
+            triangles=triangles,
+            segment=segment,
+            members=[np.unique(triangles[segment == k]) for k in range(int(segment.max()) + 1)],
             overlaps=_overlaps(fields, directions, "z"),
             stops=_listed(fields, "stop", Stop),
             lugs=_listed(fields, "lug", Lug),
@@ -199,7 +203,7 @@ class MovingShell:
             between: x of the part's ends in m.
         """
         moved = self.displacement(t)
-        mine = self.members(segment)
+        mine = self.members[segment]
         x, _, z = self.points[mine].T
         mine = mine[(x >= between[0] - SAME_PLACE) & (x <= between[1] + SAME_PLACE)]
         x, _, z = self.points[mine].T
@@ -212,17 +216,13 @@ class MovingShell:
         whole = np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
         return np.asarray(moved - whole)
 
-    def members(self, segment: int) -> Numbers:
-        """(num_members,) point numbers of a segment."""
-        return np.asarray(np.unique(self.triangles[self.segment == segment]))
-
     def half_height(self, segment: int) -> float:
         """Half of how tall a segment's section is, in m."""
-        return 0.5 * float(np.ptp(self.points[self.members(segment), 2]))
+        return 0.5 * float(np.ptp(self.points[self.members[segment], 2]))
 
     def middle(self, segment: int) -> float:
         """z in m half-way up a segment's section."""
-        z = self.points[self.members(segment), 2]
+        z = self.points[self.members[segment], 2]
         return 0.5 * float(z.min() + z.max())
 
     def supports(self) -> list[Array]:
@@ -238,7 +238,7 @@ class MovingShell:
             segment: which.
             side: 1 for the top, -1 for the bottom.
         """
-        mine = self.members(segment)
+        mine = self.members[segment]
         _, y, z = self.points[mine].T
         mine = mine[(np.abs(y) < SAME_PLACE) & (side * (z - self.middle(segment)) > 0.0)]
         x, _, z = self.points[mine].T
@@ -296,13 +296,13 @@ class MovingShell:
         """
         factor = self._at_points(self._section_factors(scale, section))
         x, y, z = self.points.T
-        z = z - self._at_points(np.array([self.middle(k) for k in range(self.segment.max() + 1)]))
+        z = z - self._at_points(np.array([self.middle(k) for k in range(len(self.members))]))
         ux, _, uz = scale * moved.T
         return np.stack([x + factor * ux, factor * y, factor * z + uz], axis=1)
 
     def _section_factors(self, scale: float, section: float) -> Array:
         """(num_segments,) of y and z; every inner segment makes room for the play around it."""
-        factors = np.full(int(self.segment.max()) + 1, section)
+        factors = np.full(len(self.members), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             outer, inner = (self.half_between(n, overlap) for n in (overlap.outer, overlap.inner))
             room = scale * overlap.clearance + section * self.wall(overlap)

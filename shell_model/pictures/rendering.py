@@ -113,7 +113,8 @@ def render_snapshots(
                 last = film[-1].time
                 slow = SHOWN / (last - begin) if last > begin else 1.0
                 pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
-                moving = [p.resize(SMALL) for p in draw_boom(seen, film, view, last, pace)]
+                frames = draw_boom(seen, film, view, last, pace, finer=1)
+                moving = [frame.resize(SMALL) for frame in frames]
     for name, picture in drawn.items():
         picture.save(folder / name)
     _save_animation(moving, folder / ANIMATION)

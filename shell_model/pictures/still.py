@@ -35,8 +35,8 @@ def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
         overlap: one of the shell's.
     """
     corners = shell.points[shell.triangles]
-    inside = shell.points[shell.members(overlap.inner), 0].min()
-    outside = shell.points[shell.members(overlap.outer), 0].max()
+    inside = shell.points[shell.members[overlap.inner], 0].min()
+    outside = shell.points[shell.members[overlap.outer], 0].max()
     middle = 0.5 * (inside + outside)
     width = outside - inside + 2.0 * BESIDE
     shown = (np.abs(corners[..., 0] - middle) < 0.5 * width + 0.3).all(axis=1)

@@ -17,7 +17,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
@@ -53,7 +52,7 @@ LETTERS: dict[Any, Any] = {
 }
 
 # Width and height of a sheet in pixels, and pixels per inch. VTK draws each pixel as a square of
-# four, for smooth edges.
+# four, for smooth edges; a film is made smaller anyway.
 SHEET = (1600, 900)
 DPI = 100
 FINER = 2
@@ -110,9 +109,10 @@ class Scene:
 
     Args:
         pixels: width and height.
+        finer: VTK draws each pixel as a square of so many each way.
     """
 
-    def __init__(self, pixels: tuple[int, int]) -> None:
+    def __init__(self, pixels: tuple[int, int], finer: int = FINER) -> None:
         # VTK's libraries may be missing on a machine that is asked for no picture.
         import pyvista
         from vtkmodules.vtkCommonCore import vtkLogger
@@ -121,11 +121,11 @@ class Scene:
         self._logger, self._verbosity = vtkLogger, vtkLogger.GetCurrentVerbosityCutoff()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
         self._surface: Any = pyvista.PolyData.from_regular_faces
-        self._pixels = pixels
+        self._finer = finer
         look = pyvista.themes.DocumentTheme()
         look.multi_samples = 1
         self._plotter = pyvista.Plotter(
-            off_screen=True, window_size=[FINER * n for n in pixels], theme=look
+            off_screen=True, window_size=[finer * n for n in pixels], theme=look
         )
 
     def __enter__(self) -> Self:
@@ -160,7 +160,12 @@ class Scene:
         """Draw the free and the sharp edges of a surface; the lines' width is in pixels."""
         edges = self._surface(points, triangles).extract_feature_edges(feature_angle=30.0)
         self._plotter.add_mesh(
-            edges, name=name, color=color, line_width=FINER * width, lighting=False, render=False
+            edges,
+            name=name,
+            color=color,
+            line_width=self._finer * width,
+            lighting=False,
+            render=False,
         )
 
     def seen_by(self, camera: Camera) -> Pixels:
@@ -171,11 +176,13 @@ class Scene:
         self._plotter.renderer.ResetCameraClippingRange()
         self._plotter.render()
         fine = Image.fromarray(np.asarray(self._plotter.screenshot(return_img=True)))
-        return np.asarray(fine.reduce(FINER))
+        return np.asarray(fine.reduce(self._finer))
 
 
 class Sheet:
     """A page: heading, picture, x along the picture's lower edge, and room below it.
+
+    The first image draws all of it, further ones what changes.
 
     The coordinates of ``picture`` are the pixels of :meth:`Camera.project`.
 
@@ -189,16 +196,23 @@ class Sheet:
         self._canvas: Any = FigureCanvasAgg(self.figure)
         self.picture = self.axes(0, floor, *pixels)
         self.picture.spines["left"].set_visible(False)
-        blank = np.full((pixels[1], pixels[0], 3), 255, dtype=np.uint8)
-        self._image = self.picture.imshow(
-            blank, extent=(0, pixels[0], 0, pixels[1]), interpolation="nearest"
-        )
-        self.picture.set_yticks([])
-        self._inset: AxesImage | None = None
+        self.picture.set(xlim=(0, pixels[0]), ylim=(0, pixels[1]), yticks=[])
+        self._floor = floor
+        self._seen: dict[tuple[int, int], Pixels] = {}
         self._arrows: list[Artist] = []
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
         self._heading = self.figure.text(0.5, 0.98, "", size=26, weight="bold", **centred)
         self._explanation = self.figure.text(0.5, 0.925, "", size=19, **centred)
+        self._still: Any = None
+        self._moving: list[Artist] = []
+        # The line below the picture is drawn upon it.
+        self.move(self.picture.spines["bottom"], self._heading, self._explanation)
+
+    def move(self, *artists: Artist) -> None:
+        """What changes from picture to picture, while all else is drawn once."""
+        for artist in artists:
+            artist.set_animated(True)
+        self._moving += artists
 
     def axes(self, left: int, bottom: int, width: int, height: int) -> Axes:
         """Axes at a place on the sheet, in pixels."""
@@ -227,16 +241,11 @@ class Sheet:
 
     def show(self, pixels: Pixels) -> None:
         """Put what a camera saw into the picture."""
-        self._image.set_data(pixels)
+        self.inset(pixels, 0, self._floor)
 
     def inset(self, pixels: Pixels, left: int, bottom: int) -> None:
-        """Put a second, smaller picture at a place on the sheet, in pixels."""
-        if self._inset is None:
-            height, width = pixels.shape[:2]
-            axes = self.axes(left, bottom, width, height)
-            axes.set_axis_off()
-            self._inset = axes.imshow(pixels, interpolation="nearest")
-        self._inset.set_data(pixels)
+        """Put what a camera saw at a place on the sheet, in pixels."""
+        self._seen[left, bottom] = pixels
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow and write beside it.
@@ -287,5 +296,17 @@ class Sheet:
 
     def image(self) -> Image.Image:
         """The sheet as it is now."""
-        self._canvas.draw()
-        return Image.fromarray(np.asarray(self._canvas.buffer_rgba())[..., :3].copy())
+        if self._still is None:
+            for artist in self._arrows:
+                artist.set_animated(True)
+            self._canvas.draw()
+            self._still = self._canvas.copy_from_bbox(self.figure.bbox)
+        self._canvas.restore_region(self._still)
+        page = np.asarray(self._canvas.buffer_rgba())
+        for (left, bottom), pixels in self._seen.items():
+            height, width = pixels.shape[:2]
+            top = SHEET[1] - bottom - height
+            page[top : top + height, left : left + width, :3] = pixels
+        for artist in (*self._moving, *self._arrows):
+            self.figure.draw_artist(artist)
+        return Image.fromarray(page[..., :3].copy())

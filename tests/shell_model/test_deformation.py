@@ -35,7 +35,7 @@ def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: 
     (shell,) = MovingShell.views(fields, trajectories.sel(model="shell"))
     moved = shell.displacement(0.5)
     x, _, z = shell.points.T
-    is_inner = np.arange(x.size) >= shell.members(1).min()
+    is_inner = np.arange(x.size) >= shell.members[1].min()
     deflection = np.where(is_inner, 0.013 + 0.015 * (x - 9.0), 0.02 * x * (x - 2.0) / 80.0)
     slope = np.where(is_inner, 0.015, 0.02 * (2.0 * x - 2.0) / 80.0)
     np.testing.assert_allclose(moved[:, 2], deflection, atol=1e-7)
@@ -77,7 +77,7 @@ def test_what_touches_in_the_run_touches_in_the_picture(
     assert (overlap.outer, overlap.inner, overlap.stations) == (0, 1, [0, 1])
     assert overlap.clearance == pytest.approx(CLEARANCE)
     moved = np.zeros_like(shell.points)
-    moved[shell.members(1), 2] = CLEARANCE
+    moved[shell.members[1], 2] = CLEARANCE
     drawn = shell.drawn(moved, scale, section)
     for side, gap in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
         outer, inner = (drawn[shell.flange_in_plane(k, side), 2] for k in (0, 1))
