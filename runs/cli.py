@@ -13,11 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
 # Each command imports what it needs: the libraries of all of them take seconds.
-from runs.process import notices, ranks, terminal
+from runs.process import notices, progress, ranks, terminal
 from runs.process.shown import message, printable, shown
 from runs.process.terminal import Terminal, say
 
@@ -26,7 +24,6 @@ if TYPE_CHECKING:
 
     from runs.case.schema import Case
     from runs.pipeline.results import Results
-    from runs.pipeline.run import Progress as Tell
     from runs.report.verdict import Verdict
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
@@ -128,15 +125,20 @@ def run(
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                run_case(effective, case, comm, Path(), _silence, cache)
+                run_case(effective, case, comm, Path(), progress.silence, cache)
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
-        with whole_folder(folder, [readings.FILE]) as part, beside(folder) as scratch:
-            with _progress_bars() as tell:
-                finished = run_case(effective, case, comm, scratch, tell, cache, cache)
+        with (
+            whole_folder(folder, [readings.FILE]) as part,
+            beside(folder) as scratch,
+            progress.told([model.name for model in effective.models]) as tell,
+        ):
+            finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
             verdicts = judge(finished.results)
+            tell("report", "pictures and figures", 0.0)
             output.write(finished, verdicts, part, scratch, snapshots_now=not no_pictures)
+            tell("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: verdicts})
         return _show_models_that_failed(case, finished.results) or status
@@ -240,7 +242,7 @@ def sweep(
         with sweep_runs.workers(comm) as pool:
             if pool is None:
                 return 0
-            with beside(folder) as scratch, _progress_bars() as tell:
+            with beside(folder) as scratch, progress.told() as tell:
                 cache = None if no_cache else Cache.of_user()
                 outcomes = sweep_runs.run_points(plan.points, folder, pool, scratch, tell, cache)
         data = charts.write(plan, outcomes, folder)
@@ -272,11 +274,11 @@ def frequencies(
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                charts.measure(cases, comm, Path(), _silence, cache)
+                charts.measure(cases, comm, Path(), progress.silence, cache)
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
-        with beside(folder) as scratch, _progress_bars() as tell:
+        with beside(folder) as scratch, progress.told() as tell:
             data = charts.gather(plan, charts.measure(cases, comm, scratch, tell, cache))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
@@ -413,30 +415,6 @@ def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
                 ) from None
             return MPI.COMM_WORLD
     return None
-
-
-@contextmanager
-def _progress_bars() -> Iterator[Tell]:
-    """A bar for each stage on stderr, none where nobody watches."""
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield _silence
-        return
-    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
-    bars: dict[str, TaskID] = {}
-    with Progress(*columns, console=console) as progress:
-
-        def tell(model: str, stage: str, part: float) -> None:
-            label = f"{model}: {stage}"
-            if label not in bars:
-                bars[label] = progress.add_task(label, total=1.0)
-            progress.update(bars[label], completed=part)
-
-        yield tell
-
-
-def _silence(model: str, stage: str, part: float) -> None:
-    """Progress is rank 0's to show."""
 
 
 def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]) -> int:

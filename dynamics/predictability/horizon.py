@@ -160,7 +160,9 @@ def measure_horizons(
     """Run the motion as it is, with a finer step, and changed by each size.
 
     Where the largest change parts no two runs to the first share, smaller ones do not either, and
-    are not run. Few partners are enough for the growth at a small share; its scatter tells how well it is known.
+    are not run.
+
+    Few partners are enough for the growth at a small share; its scatter tells how well it is known.
     Horizons at large shares are chance, and come sooner the more partners there are.
 
     >>> thrown = pt.Motion(ball, duration=1.0, velocity=[3.0])

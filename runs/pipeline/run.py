@@ -73,7 +73,9 @@ class Stages:
     def stage(self, name: str) -> Iterator[Callable[[float], None]]:
         """Tells the part of a stage that is done."""
         begin = perf_counter()
+        self.tell(name, 0.0)
         yield partial(self.tell, name)
+        self.tell(name, 1.0)
         self.seconds[name] = perf_counter() - begin
 
 
@@ -188,6 +190,7 @@ def _run_model(
     kept: Cache | None,
 ) -> tuple[Finished, ShellOutput | BeamOutput, ModelAnswers] | None:
     """What a model leaves, on rank 0; None elsewhere."""
+    begin = perf_counter()
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
     if model.needs_shell or first_rank:
@@ -226,8 +229,9 @@ def _run_model(
         summary.stress = shell.largest
     with stages.stage("answers"):
         answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
-    summary.seconds = stages.seconds
-    return moved, shell or BeamOutput.of(model.lines(boom, built), moved.trajectory), answers
+    left = shell or BeamOutput.of(model.lines(boom, built), moved.trajectory)
+    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
+    return moved, left, answers
 
 
 def _move(

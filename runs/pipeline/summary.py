@@ -158,6 +158,8 @@ class CalibrationCard(Entry):
 class ModelSummary(Entry):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
+    ``wall_time`` in s is what has passed, be it for compiling loops, while a stage whose results
+    earlier runs have kept has the seconds that it took then.
     ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_halving`` is what half the step
     changes at the tip, as a part of its range; ``refused_steps`` says why steps were halved;
     ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
@@ -178,6 +180,7 @@ class ModelSummary(Entry):
     energy_residual: float
     first_peak: dict[str, Peak]
     peak_contact_force: Known
+    wall_time: float | None = None
     step_halving: float | None = None
     ensemble: EnsembleSummary | None = None
     horizons: Growth | None = None

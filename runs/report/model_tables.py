@@ -55,7 +55,7 @@ def model_table(results: Results) -> Table:
             PER_KILO,
         ),
         Column("energy residual\nof the work", [model.energy_residual for model in models], ".1g"),
-        Column("wall time\ns", [sum(model.seconds.values()) for model in models], ".1f"),
+        Column("wall time\ns", [model.wall_time for model in models], ".1f"),
     )
     meaning = (
         "Horizon: when the members of a model's ensemble are that part of the tip's range around "

@@ -208,7 +208,7 @@ def _coarse(shell: MovingShell, overlap: Overlap) -> str:
 
 def _across_web(shell: MovingShell, segment: int) -> int:
     """How many edges of elements are across a web, at most places."""
-    mine = shell.members(segment)
+    mine = shell.members[segment]
     half = shell.half_height(segment)
     x, _, z = shell.points[mine].T
     inside = np.abs(z - shell.middle(segment)) < 0.999 * half

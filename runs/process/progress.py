@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far a command is: bars on a terminal, elsewhere a line now and then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from time import perf_counter
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+from runs.process.shown import printable
+from runs.process.terminal import say
+
+# Called with the model's name, the stage, and the part of it that is done.
+Tell = Callable[[str, str, float], None]
+
+# Seconds between two lines at least; what ends sooner says nothing.
+EVERY = 5.0
+
+
+def silence(model: str, stage: str, part: float) -> None:
+    """A :data:`Tell` that nobody watches."""
+
+
+@contextmanager
+def told(models: Sequence[str] = ()) -> Iterator[Tell]:
+    """Tells how far each stage is, on stderr.
+
+    Args:
+        models: names of those that run, in their order.
+    """
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield Lines(models)
+        return
+    columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
+    bars: dict[str, TaskID] = {}
+    with Progress(*columns, console=console) as progress:
+
+        def tell(model: str, stage: str, part: float) -> None:
+            label = f"{model}: {stage}"
+            if label not in bars:
+                bars[label] = progress.add_task(label, total=1.0)
+            progress.update(bars[label], completed=part)
+
+        yield tell
+
+
+class Lines:
+    """Tells which model is at which stage, and how long that goes on.
+
+    Args:
+        models: names, in their order.
+        say: gets a line.
+        clock: in s.
+    """
+
+    def __init__(
+        self,
+        models: Sequence[str],
+        say: Callable[[str], None] = say,
+        clock: Callable[[], float] = perf_counter,
+    ) -> None:
+        self._models, self._say, self._clock = list(models), say, clock
+        self._said = clock()
+        self._begun: dict[tuple[str, str], float] = {}
+
+    def __call__(self, model: str, stage: str, part: float) -> None:
+        """A :data:`Tell`."""
+        now = self._clock()
+        passed = now - self._begun.setdefault((model, stage), now)
+        if now - self._said < EVERY:
+            return
+        self._said = now
+        how_far = f"{stage} begins"
+        if part >= 1.0:
+            how_far = f"{stage} took {passed:.0f} s"
+        elif part > 0.0:
+            left = passed * (1.0 - part) / part
+            how_far = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"
+        self._say(printable(f"{model}{self._place(model)}: {how_far}"))
+
+    def _place(self, model: str) -> str:
+        if model not in self._models:
+            return ""
+        return f" ({self._models.index(model) + 1} of {len(self._models)})"
