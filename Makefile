@@ -36,7 +36,9 @@ endif
 help: ## list these targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
 
-verify: $(REPORTS) $(READINGS) ## run the cases where they are not up to date, print the verdicts
+# As many cases at a time as there are cores.
+verify: $(READY) ## run the cases where they are not up to date, print the verdicts
+	@$(MAKE) --no-print-directory --jobs=$$(nproc) $(REPORTS) $(READINGS)
 	@cp $(READINGS) runs/out/paper/
 	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 

@@ -59,7 +59,7 @@ def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_member_0_is_the_trajectory(run: Run) -> None:
-    """Reference: other code path, the model's own run, but for the single precision."""
+    """Reference: by hand, the model's own run, but for the single precision."""
     ensembles = run.results.ensembles
     assert ensembles is not None
     assert ensembles["model"].values.tolist() == SERIES
