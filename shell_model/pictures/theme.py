@@ -307,6 +307,6 @@ class Sheet:
             height, width = pixels.shape[:2]
             top = SHEET[1] - bottom - height
             page[top : top + height, left : left + width, :3] = pixels
-        for artist in (*self._moving, *self._arrows):
+        for artist in sorted((*self._moving, *self._arrows), key=Artist.get_zorder):
             self.figure.draw_artist(artist)
         return Image.fromarray(page[..., :3].copy())
