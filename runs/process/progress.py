@@ -76,7 +76,8 @@ class Lines:
         self._said = now
         how_far = f"{stage} begins"
         if part >= 1.0:
-            how_far = f"{stage} took {passed:.0f} s"
+            # Some stages are told of at their end alone.
+            how_far = f"{stage} took {passed:.0f} s" if passed else f"{stage} is done"
         elif part > 0.0:
             left = passed * (1.0 - part) / part
             how_far = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"

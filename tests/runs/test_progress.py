@@ -8,7 +8,7 @@ from runs.process.progress import EVERY, Lines
 
 def test_tells_the_stage_and_what_is_left() -> None:
     """Reference: by hand. Of 40 % in 12 s, 18 s are left; what follows within five seconds is not
-    told, nor what has ended by then."""
+    told, nor what has ended by then. What a stage took that is told of at its end is not known."""
     said: list[str] = []
     times: list[float] = [0.0]
     lines = Lines(["beam", "shell"], said.append, lambda: times[-1])
@@ -20,7 +20,8 @@ def test_tells_the_stage_and_what_is_left() -> None:
         (12.2 + 0.9 * EVERY, "shell", "reduction", 0.5),
         (30.2, "shell", "reduction", 1.0),
         (40.0, "shell", "motion", 0.0),
-        (50.0, "report", "pictures", 0.0),
+        (50.0, "shell", "fields", 1.0),
+        (60.0, "report", "pictures", 0.0),
     ):
         times.append(time)
         lines(model, stage, part)
@@ -28,5 +29,6 @@ def test_tells_the_stage_and_what_is_left() -> None:
         "shell (2 of 2): reduction 40 %, 18 s left",
         "shell (2 of 2): reduction took 30 s",
         "shell (2 of 2): motion begins",
+        "shell (2 of 2): fields is done",
         "report: pictures begins",
     ]
