@@ -306,7 +306,9 @@ class Sheet:
         for (left, bottom), pixels in self._seen.items():
             height, width = pixels.shape[:2]
             top = SHEET[1] - bottom - height
-            page[top : top + height, left : left + width, :3] = pixels
+            place = page[top : top + height, left : left + width, :3]
+            # Letters that come down into the picture stay.
+            np.minimum(place, pixels, out=place)
         for artist in sorted((*self._moving, *self._arrows), key=Artist.get_zorder):
             self.figure.draw_artist(artist)
         return Image.fromarray(page[..., :3].copy())
