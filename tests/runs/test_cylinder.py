@@ -109,7 +109,7 @@ def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(
     """Reference: analytic, the arm of its line about the pin, and the moment of the weights."""
     print_inferred(case_file.load(str(path)), Console(width=200))
     told = capsys.readouterr().out
-    (row,) = (line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
+    row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = (cell.strip() for cell in row.strip("│").split("│"))
     assert x == "3"
     assert [float(length), float(arm)] == pytest.approx([np.hypot(1.8, 1.9), ARM], rel=1e-3)
