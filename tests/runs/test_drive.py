@@ -19,6 +19,7 @@ from runs.pipeline.results import Results
 from runs.report.drive_tables import drive_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
+from runs.sweep.points import plan
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
@@ -192,3 +193,15 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     residual = drawn["energy-residual"].title
     assert residual.startswith("Unaccounted energy: up to ")
     assert "10⁻⁵" in residual or "10⁻⁶" in residual
+
+
+def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
+    """Reference: analytic, the fastest speed of an S-curve, twice the travel over its time."""
+    found = plan(str(CASES / "drawn-out.toml"), ["joint.drive.time=2:8:4"], ["beam-fe"], None)
+    speeds = []
+    for point in found.points:
+        drive = build_boom(point.case).joints[0].drive
+        assert drive is not None
+        time = np.linspace(0.0, 8.0, 8001)
+        speeds.append(np.gradient(drive.history(time), time).max())
+    assert speeds == pytest.approx([4.0, 2.0, 8.0 / 6.0, 1.0], rel=1e-4)
