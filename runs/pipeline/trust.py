@@ -52,8 +52,8 @@ def _agreement(answers: Answers) -> Iterator[str]:
 
 def _distances(answers: Answers, own: ModelAnswers, name: str) -> Iterator[tuple[str, str]]:
     other = answers.models[name]
-    if own.rests and other.rests and own.rests[-1].tip:
-        yield "in the tip at rest", percent(abs(other.rests[-1].tip / own.rests[-1].tip - 1.0))
+    if (off := off_at_rest(own, other)) is not None:
+        yield "in the tip at rest", percent(abs(off))
     assert answers.modes is not None
     first = answers.modes.matches[name][0]
     if first is not None:
@@ -61,6 +61,14 @@ def _distances(answers: Answers, own: ModelAnswers, name: str) -> Iterator[tuple
     if own.moved is not None and other.moved is not None and own.moved.peaks[0].largest:
         ratio = other.moved.peaks[0].largest / own.moved.peaks[0].largest
         yield "in the largest deflection of the tip", percent(abs(ratio - 1.0))
+
+
+def off_at_rest(own: ModelAnswers, other: ModelAnswers) -> float | None:
+    """By what part of one's the other's tip at rest under the largest loads is off; else None."""
+    tips = [max((rest.tip for rest in one.rests), key=abs, default=None) for one in (own, other)]
+    if tips[1] is None or not tips[0]:
+        return None
+    return tips[1] / tips[0] - 1.0
 
 
 def _horizon(summary: Summary, duration: float) -> Iterator[str]:

@@ -124,8 +124,8 @@ def _force(
         shape = symbols.AWAY if value > 0.0 else symbols.TOWARDS
         return Acting(index, places, "axis", shape, f"{size} sideways{how}")
     if value > 0.0:
-        return Acting(index, places, "bottom", symbols.FORCE_UP, f"{size} up{how}")
-    return Acting(index, places, "top", symbols.FORCE_DOWN, f"{size} down{how}")
+        return Acting(index, places, "bottom", symbols.FORCE_UP, f"{size} up across the boom{how}")
+    return Acting(index, places, "top", symbols.FORCE_DOWN, f"{size} down across the boom{how}")
 
 
 def _history(table: HistoryTable) -> str:

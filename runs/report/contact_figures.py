@@ -43,8 +43,9 @@ def first_contacts(pen: Pen) -> list[Figure]:
     panels[-1].set_xlabel("time (s)")
     title = f"Mean contact forces, first {end:g} s"
     caption = (
-        f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms: what the many "
-        "short impacts of a press amount to. Positive where the inner segment presses up."
+        f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms"
+        + ("" if pen.stays_pressed else ": what the many short impacts of a press amount to")
+        + ". Positive where the inner segment presses up."
     )
     chart = Chart(pen.time, "force (kN)", curves, stations, (0.0, end))
     return [pen.finish(sheet, panels[0], "contact-first", title, caption, chart=chart)]

@@ -49,7 +49,7 @@ def close_up(pen: Pen) -> list[Figure]:
         pen.line(axes, name, pen.time[shown], deflection[shown])
         color = pen.strokes[name].color
         contact = pen.summary[name].first_contact
-        if contact is not None and contact <= end:
+        if contact and contact <= end:
             contacts.append(contact)
             then = np.interp(contact, pen.time, deflection)
             axes.plot(contact, then, "o", color=color, zorder=4, **circle)
@@ -58,7 +58,8 @@ def close_up(pen: Pen) -> list[Figure]:
             peakless.append(name)
         elif peak <= end:
             axes.plot(peak, MILLI * height, "v", color=color, ms=8, zorder=4)
-    axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
+    if contacts:
+        axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
     axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, end))
     axes.margins(y=0.08)
@@ -66,8 +67,14 @@ def close_up(pen: Pen) -> list[Figure]:
         f": the segments first touch at {min(contacts):.2f} s" if contacts else ""
     )
     caption = (
-        "Close-up of the tip. Circles mark where a model's segments first touch, triangles its "
-        "first peak, on which several verdicts rest."
+        "Close-up of the tip. "
+        + (
+            "Circles mark where a model's segments first touch, triangles its"
+            if contacts
+            else "Triangles mark each model's"
+        )
+        + " first peak"
+        + (", on which several verdicts rest." if pen.of_the_paper else ".")
     )
     if peakless:
         caption += f" No peak within {pen.case.time.duration:g} s: {', '.join(peakless)}."
@@ -98,11 +105,13 @@ def _head(pen: Pen, place: str) -> Figure:
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = pen.case.joints[number - 1].outer if pen.case.joints else pen.case.segments[0].name
+    tied = [pen.labels[name] for name in pen.play_free if name in pen.models]
+    dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
     caption = (
         f"Deflection of the head of the segment {which!r}, model by model"
         + (_counterpart(pen, "head") if number == 1 else "")
         + "."
-        + (" Dashed: without play." if pen.play_free else "")
+        + dashed
     )
     statements = ("S6", "S7") if pen.rubs else ("S6",)
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
@@ -148,14 +157,11 @@ def _counterpart(pen: Pen, place: str) -> str:
 
 
 def _reach(pen: Pen, place: str) -> str:
-    """How far the models deflect at one place, upwards or downwards."""
-    parts = [
-        theme.fixed(farthest([farthest(pen.of(name, place)) for name in names]), 0, MILLI)
-        + f" mm{how}"
-        for names, how in ((pen.with_play, " with play"), (pen.play_free, " without"))
-        if names
-    ]
-    return "up to " + ", ".join(parts)
+    """How far the models, with play where any have it, deflect at one place, up or down."""
+    reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
+    name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
+    most = theme.fixed(reaches[name], 0, MILLI)
+    return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 
 def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
@@ -184,7 +190,7 @@ def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
 
 def _sampled(pen: Pen, place: str) -> str:
     """What a curve is worth, and what the marks of its ensemble are."""
-    if not pen.with_play or _stays_pressed(pen):
+    if not pen.with_play or pen.stays_pressed:
         return ""
     if pen.ensembles is None or place not in pen.ensembles:
         if pen.rubs or pen.ensembles is not None:
@@ -207,13 +213,6 @@ def _sampled(pen: Pen, place: str) -> str:
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
         f"the tip's range around one another{beyond}."
     )
-
-
-def _stays_pressed(pen: Pen) -> bool:
-    """Whether no contact ever opens, and no impact lets small differences grow."""
-    touching = pen.with_play if "contact_force" in pen.data else ()
-    forces = [pen.of(name, "contact_force") for name in touching]
-    return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
 
 def _limits(curves: Sequence[Array]) -> tuple[float, float]:

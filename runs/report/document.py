@@ -10,19 +10,13 @@ from itertools import chain
 from runs.case import toml
 from runs.pipeline.results import Results
 from runs.report import theme
-from runs.report.answer_tables import (
-    answer_tables,
-    first_table,
-    play_note,
-    play_sentence,
-    trust_lines,
-)
+from runs.report.answer_tables import answer_tables
 from runs.report.calibration_tables import calibration_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
+from runs.report.first_look import first_table, play_note, play_sentence, trust_line, trust_lines
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
-from runs.report.pad_tables import pad_tables
 from runs.report.pages import MARKS, page
 from runs.report.stress_tables import wall_tables
 from runs.report.tables import Table, TextTable
@@ -57,7 +51,6 @@ def render(
         [
             *model_tables(results),
             *calibration_tables(results),
-            *pad_tables(results),
             *wall_tables(results),
         ]
     )
@@ -90,6 +83,7 @@ def render(
         adds=play_sentence(results),
         of=play_note(results),
         first=first,
+        nearness=trust_line(results),
         trust=trust_lines(results),
         answers=answers,
         rest=rest,

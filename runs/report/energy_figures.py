@@ -41,13 +41,16 @@ def energies(pen: Pen) -> list[Figure]:
     for area in areas[len(held) :]:
         # Whatever the model's colour is.
         area.set(hatch="///", edgecolor="white")
-    axes.plot(pen.time, work, color=theme.INK, linewidth=1.3, label=of)
+    start = float(sum(values[0] for values in parts.values()))
+    total = f"start and {of}" if start else of
+    axes.plot(pen.time, start + work, color=theme.INK, linewidth=1.3, label=total)
     axes.set(xlabel="time (s)", ylabel="energy (J)", xlim=(0.0, pen.time[-1]))
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
+    more = " and what was there at the start" if start else ""
     caption = (
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
-        f"is the {of}, up to the residual of the next figure."
+        f"is the {of}{more}, up to the residual of the next figure."
     )
     title = f"{name}: the load's work, and where it is"
     return [pen.finish(sheet, axes, "energies", title, caption, part="numerics")]

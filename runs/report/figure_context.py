@@ -80,6 +80,11 @@ class Pen:
         self.play_free = [model.name for model in results.case.models if model.play_free]
         self.with_play = [name for name in self.models if name not in self.play_free]
         self.strokes = theme.strokes(self.models, self.play_free)
+        self.labels = {name: name for name in self.models} | {
+            model.name: f"{model.name} ({'shell' if model.meshed else 'beam'})"
+            for model in results.case.models
+            if model.play_free
+        }
         self.answers = results.summary.answers
         self.leading = leading(results.case, self.models)
 
@@ -122,14 +127,21 @@ class Pen:
             zorder=1.9 if behind else 2.0,
             marker=marker,
             markersize=2.5,
-            label=name,
+            label=self.labels[name],
         )
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
         """The same for a chart, whose axes are in the unit of the values."""
         stroke = self.strokes[name]
         dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
-        return Curve(name, values, stroke.color, dashes, shown, panel, **more)
+        return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
+
+    @property
+    def stays_pressed(self) -> bool:
+        """Whether no contact ever opens, and no impact lets small differences grow."""
+        touching = self.with_play if "contact_force" in self.data else ()
+        forces = [self.of(name, "contact_force") for name in touching]
+        return all(bool((np.nan_to_num(force) != 0.0).all()) for force in forces)
 
     @property
     def first_stretch(self) -> float:

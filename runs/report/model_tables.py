@@ -34,6 +34,8 @@ def model_table(results: Results) -> Table:
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
     peaks = [_first_peak(model.first_peak["tip"], duration) for model in models]
+    contacts = [model.first_contact for model in models]
+    touching = 0.0 in contacts and not any(contacts)
     shares = SHARES if any(model.ensemble for model in models) else ()
     columns = (
         Column("model", [*summary.models, *(model.name for model in failed)]),
@@ -44,7 +46,7 @@ def model_table(results: Results) -> Table:
         ),
         Column("modes", [str(model.modes) for model in models]),
         Column("step\nµs", [model.step for model in models], ".3g", MICRO),
-        Column("first contact\ns", [model.first_contact for model in models], ".4f"),
+        *([Column("first contact\ns", contacts, ".4f")] if not touching else []),
         Column("first tip peak\ns", [time for time, _ in peaks], ".3f"),
         Column("\nmm", [height for _, height in peaks], ".1f", MILLI),
         *(horizon_column(models, share, duration) for share in shares),
@@ -127,11 +129,11 @@ def law_table(results: Results) -> Table | None:
     columns = (
         Column("model", [name for name, _, _ in found]),
         Column("joint", [f"{joint.inner} in {joint.outer}" for _, joint, _ in found]),
-        Column("clearance\nmm", [0.5 * joint.play for _, joint, _ in found], ".1f", MILLI),
+        Column("play\nmm", [joint.play for _, joint, _ in found], ".1f", MILLI),
         Column("law\nk in N/mⁿ", [str(law) for _, _, law in found]),
         Column("first tip peak\nmm", peaks, ".1f", MILLI),
     )
-    notes = ["Force = k · penetrationⁿ, beyond the clearance each way."]
+    notes = ["Force = k · penetrationⁿ, beyond the part of the play that is on its side."]
     if not all(joint.pad or joint.pads for _, joint, _ in found):
         notes.append(
             "Without slide pads the segments press in the corners of their boxes. Pads beside "
@@ -175,11 +177,16 @@ def buckling_table(results: Results) -> Table | None:
         Column("model", list(models)),
         Column("buckling factor", factors, ".4g"),
         Column("of the critical\n%", [f and 1.0 / f for f in factors], ".3g", PERCENT),
-        Column("static tip\nmm", [model.static_tip for model in models.values()], ".4g", MILLI),
+        Column(
+            "tip at rest, constant loads\nmm",
+            [model.static_tip for model in models.values()],
+            ".4g",
+            MILLI,
+        ),
     )
     notes = (
         "Buckling factor: by what the axial forces would have to grow for the boom to buckle, its "
-        "joints pressed. Static tip: at rest under the constant loads, the second order in it.",
+        "joints pressed. Tip: the second order is in it.",
     )
     return Table("Axial forces", columns, notes, "buckling")
 

@@ -20,6 +20,9 @@ from runs.pipeline.results import Results
 from runs.report.stress_tables import PER_KILO, PER_MEGA
 from runs.report.tables import Column, Table
 
+# Names of sides.
+_ON = {on: side for side, on in SIDES.items()}
+
 
 class PressedPad(NamedTuple):
     """A pad of one side of a station in one model; ``force`` is the largest in N."""
@@ -45,27 +48,27 @@ class PressedPad(NamedTuple):
 
 def pad_tables(results: Results) -> list[Table]:
     """How hard the pads of each joint are pressed at most; none without pads of a size."""
-    pads = list(_pressed(results))
+    pads = list(pressed_pads(results))
     if not pads:
         return []
     columns = (
         Column("model", [pad.model for pad in pads]),
         Column("joint", [f"{pad.joint.inner} in {pad.joint.outer}" for pad in pads]),
         Column("at\nm", [f"{pad.x:g}" for pad in pads]),
-        Column("along", [pad.place for pad in pads]),
+        Column("side", [pad.place for pad in pads]),
         Column("peak force\nkN", [pad.force for pad in pads], ".3g", PER_KILO),
         Column("pressure\nMPa", [pad.pressure for pad in pads], ".3g", PER_MEGA),
         Column("utilisation\n%", [pad.utilisation for pad in pads], ".0f", 100.0),
     )
     note = (
-        "The pads of one side of a station share its force as they are stiff, those of a pair "
-        "evenly, and bear it evenly."
+        "Of one pad. Those of one side of a station share its force as they are stiff, those of a "
+        "pair evenly, and bear it evenly."
     )
     return [Table("Slide pads", columns, (note,), "pads")]
 
 
-def _pressed(results: Results) -> Iterator[PressedPad]:
-    """Those of every station of joints with play."""
+def pressed_pads(results: Results) -> Iterator[PressedPad]:
+    """Those of every station of joints with play, in each model."""
     case = results.case
     if not any(table.pad or table.pads for table in case.joints):
         return
@@ -80,9 +83,10 @@ def _pressed(results: Results) -> Iterator[PressedPad]:
                 for x in () if joint.tied else joint.stations:
                     pushed = ends[next(station)]
                     if table.pad is not None:
-                        largest = float(np.abs(pushed).max())
-                        force = _of_a_side(largest, law) / PADS_OF_SIDE
-                        yield PressedPad(model.name, table, table.pad, x, direction, force)
+                        largest = max(pushed, key=abs)
+                        force = _of_a_side(abs(float(largest)), law) / PADS_OF_SIDE
+                        place = _ON[direction, 1 if largest > 0.0 else -1]
+                        yield PressedPad(model.name, table, table.pad, x, place, force)
                     forces = _of_each(joint, direction, law, pushed)
                     for pad, force in zip(_along(table.pads, direction), forces, strict=True):
                         yield PressedPad(model.name, table, pad, x, pad.side, force / PADS_OF_SIDE)

@@ -58,7 +58,7 @@ def at_rest(pen: Pen) -> list[Figure]:
         "where segments overlap each has its own."
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
-    title = f"At rest: the tip at {signed(f'{MILLI * far:.1f}')} mm"
+    title = f"At rest under the largest loads: the tip at {signed(f'{MILLI * far:.1f}')} mm"
     return [_stacked(pen, lines, "at-rest", title, caption)]
 
 

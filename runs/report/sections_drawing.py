@@ -40,8 +40,7 @@ def draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
             corners = _thick(plate) + np.array([number * pitch, 0.0])
             axes.add_patch(Polygon(corners, closed=True, facecolor=color, edgecolor=color, lw=0.3))
         size = f"{1e3 * section.size('z'):.0f} × {1e3 * section.size('y'):.0f}"
-        thick = sorted({round(1e3 * plate.thickness, 1) for plate in section.plates})
-        below = f"{size}\n{', '.join(f'{t:g}' for t in thick)}"
+        below = f"{size}\n{_walls(section)}"
         axes.annotate(
             below,
             (number * pitch, 1.03 * lowest),
@@ -66,3 +65,16 @@ def _thick(plate: Plate) -> Array:
     across = np.array([-half[1], half[0]])
     start, end = start - half, end + half
     return np.array([start - across, end - across, end + across, start + across])
+
+
+def _walls(section: Section) -> str:
+    """How thick they are in mm, by name where webs and flanges differ."""
+    web, flange = (
+        ", ".join(f"{t:g}" for t in sorted({_millimetres(section, i) for i, _ in carriers}))
+        for carriers in (section.carriers("z"), section.carriers("y"))
+    )
+    return web if web == flange else f"web {web}\nflange {flange}"
+
+
+def _millimetres(section: Section, plate: int) -> float:
+    return round(1e3 * section.plates[plate].thickness, 1)

@@ -41,6 +41,7 @@ class TextTable:
         notes: sentences below it.
         name: of its place in the report.
         statements: of the paper, S1 … S11, that it bears on.
+        strong: texts of cells that stand out.
     """
 
     title: str
@@ -49,6 +50,7 @@ class TextTable:
     notes: Sequence[str] = ()
     name: str = ""
     statements: Sequence[str] = ()
+    strong: Sequence[str] = ()
 
     @property
     def anchor(self) -> str:
@@ -150,6 +152,7 @@ class Table:
     notes: Sequence[str] = ()
     name: str = ""
     statements: Sequence[str] = ()
+    strong: Sequence[str] = ()
 
     @classmethod
     def of_rows(
@@ -191,7 +194,9 @@ class Table:
         """As it is shown."""
         rows = list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
         headings = tuple(column.heading for column in self.columns)
-        return TextTable(self.title, headings, rows, self.notes, self.name, self.statements)
+        return TextTable(
+            self.title, headings, rows, self.notes, self.name, self.statements, self.strong
+        )
 
 
 def _plain(cell: Cell, factor: float) -> Plain:

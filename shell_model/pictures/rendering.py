@@ -121,6 +121,10 @@ def render_snapshots(
     return [folder / name for name in (*drawn, ANIMATION)]
 
 
+# Instants nearer to one another than this part of the run look the same.
+SAME = 0.02
+
+
 def _when(motion: xr.Dataset, times: Sequence[float] | None) -> dict[str, float]:
     """Times in s by the names that their files have."""
     return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
@@ -137,8 +141,9 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
     """Times in s that are worth a look, by what happens then.
 
     ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
-    ``largest-force`` of the run, at any station; the ``first-contact``. Without contact there
-    is the first alone.
+    ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
+    ``first-contact``, unless something is pressed from the start. Without contact there is the
+    first alone.
 
     Args:
         motion: trajectories of one model.
@@ -151,8 +156,11 @@ def telling_instants(motion: xr.Dataset) -> dict[str, float]:
         instants = {"first-peak": peak}
     force = np.abs(np.nan_to_num(motion["contact_force_peak"].values))
     if force.any():
-        instants["largest-force"] = float(time[force.max(axis=1).argmax()])
-        instants["first-contact"] = float(time[force.any(axis=1).argmax()])
+        largest = float(time[force.max(axis=1).argmax()])
+        if all(abs(largest - seen) > SAME * time[-1] for seen in instants.values()):
+            instants["largest-force"] = largest
+        if not force[0].any():
+            instants["first-contact"] = float(time[force.any(axis=1).argmax()])
     return instants
 
 

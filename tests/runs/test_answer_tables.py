@@ -11,17 +11,20 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, PlayAdds
+from runs.pipeline.answers import Added, PlayAdds, WallStress
 from runs.pipeline.life import COUNTS
 from runs.pipeline.results import Results
 from runs.report.answer_tables import (
     answer_tables,
-    first_table,
     mode_table,
-    play_note,
-    play_sentence,
     play_table,
     stress_table,
+)
+from runs.report.first_look import (
+    first_table,
+    play_note,
+    play_sentence,
+    trust_line,
     trust_lines,
 )
 from runs.report.tables import Table
@@ -52,16 +55,14 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
         for asked, row in found.items()
     }
     frequency = own.modes[0].frequency
-    assert float(said["Tip at rest at t = 0, mm"]) == pytest.approx(
-        1e3 * own.rests[0].tip, abs=0.06
-    )
+    assert float(said["Tip at rest, t = 0, mm"]) == pytest.approx(1e3 * own.rests[0].tip, abs=0.06)
     assert float(said["First frequency, Hz"]) == pytest.approx(frequency, rel=6e-3)
-    assert float(said["A swing takes, s"]) == pytest.approx(1.0 / frequency, rel=6e-3)
+    assert float(said["One swing takes, s"]) == pytest.approx(1.0 / frequency, rel=6e-3)
     dying = log(10.0) / (2.0 * pi * 0.02 * frequency)
-    assert float(said["It dies to a tenth in, s"]) == pytest.approx(dying, rel=0.06)
+    assert float(said["Swings fade to a tenth in, s"]) == pytest.approx(dying, rel=0.06)
     hardest = max(p.largest for p in own.moved.peaks if p.what == "contact force")
-    assert float(said["Pressed most, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
-    assert found["Pressed most, kN"][TIED] == "–"
+    assert float(said["Station pressed most, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
+    assert found["Station pressed most, kN"][TIED] == "–"
     assert "Damage of its life" not in found
 
 
@@ -77,13 +78,83 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     answers = replace(results.summary.answers, play=[PlayAdds(PLAYED, numbers)])
     told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
     assert play_sentence(told) == (
-        "Play adds 50 mm (+50 %) to the tip at rest and 20 MPa (+20 %) to the largest stress. "
-        "The first frequency is 1.5 Hz in place of 2 Hz."
+        "Play adds 50 mm (+50 %) to the tip at rest under the largest loads and 20 MPa (+20 %) "
+        "to the largest stress of an outer fibre. The first frequency is 1.5 Hz in place of 2 Hz."
     )
     assert play_note(told) == "Of the model kantorovich-5, beside the same without play."
     rows = cells(play_table(told))
     assert rows["stress, inner"]["play adds"] == "−10 MPa"
     assert rows["stress, inner"]["%"] == "−10"
+
+
+def with_stress(results: Results, stress: float) -> Results:
+    """The outer segment's largest stress in Pa, of a steel of 355 MPa, its wall a tenth more."""
+    answers = results.summary.answers
+    assert answers is not None
+    own = answers.models[PLAYED]
+    assert own.moved is not None
+    fibre = replace(own.moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
+    patch = 1.1 * stress
+    wall = WallStress("outer", 10.0, patch, 0.5, 3.0 * patch, patch / 355e6)
+    moved = replace(own.moved, fibres=[fibre], walls=[wall])
+    models = answers.models | {PLAYED: replace(own, moved=moved)}
+    answers = replace(answers, models=models)
+    return replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+
+
+def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
+    """Reference: by hand, 300 and 330 MPa, then 340 and 374 MPa of 355 MPa."""
+    fibre, wall = "Outer fibre, MPa", "Walls over a patch, MPa"
+    near = first_table(with_stress(results, 300e6))
+    found = cells(near)
+    assert found[fibre][PLAYED] == "300, 84.5 %\nouter, 2.0 m"
+    assert found[wall][PLAYED] == "330, 93 %\nouter, 10.0 m"
+    assert found[wall][TIED] == "–"
+    assert near is not None
+    assert list(near.text.strong) == [found[wall][PLAYED]]
+    beyond = first_table(with_stress(results, 340e6))
+    found = cells(beyond)
+    assert found[fibre][PLAYED] == "340, 95.8 %\nouter, 2.0 m"
+    assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, 10.0 m"
+    assert beyond is not None
+    assert set(beyond.text.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
+
+
+def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
+    """Reference: by hand, of a tip that is moved by 20 mm; one that starts at zero tells once."""
+    assert "Tip travels, mm" not in cells(first_table(results))
+    tip = results.trajectories["tip"]
+    moved = replace(results, trajectories=results.trajectories.assign(tip=tip - 0.02))
+    own = tip.sel(model=PLAYED).values
+    most = 1e3 * own[abs(own).argmax()]
+    said = cells(first_table(moved))["Tip travels, mm"][PLAYED]
+    assert float(said.replace("−", "-")) == pytest.approx(most, abs=0.06)
+
+
+def test_one_line_says_how_near_models_are(results: Results) -> None:
+    """Reference: by hand, a second model whose tip rests a tenth lower."""
+    assert trust_line(results) == ""
+    answers = results.summary.answers
+    assert answers is not None
+    own = answers.models[PLAYED]
+    other = replace(own, rests=[replace(rest, tip=0.9 * rest.tip) for rest in own.rests])
+    models = {"kantorovich-4": other, **answers.models}
+    summary = results.summary.model_copy(
+        update={
+            "answers": replace(answers, models=models),
+            "models": {"kantorovich-4": results.summary.models[PLAYED], **results.summary.models},
+        }
+    )
+    tips = results.trajectories.sel(model=[PLAYED, PLAYED, TIED])
+    tips = tips.assign_coords(model=["kantorovich-4", PLAYED, TIED])
+    four = results.case.models[0].model_copy(update={"name": "kantorovich-4"})
+    case = results.case.model_copy(update={"models": (four, *results.case.models)})
+    both = replace(results, case=case, summary=summary, trajectories=tips)
+    line = f"Held against {PLAYED}, the tip at rest under the largest loads is off: "
+    assert trust_line(both) == f"{line}kantorovich-4 −10 %."
+    table = first_table(both)
+    assert table is not None
+    assert list(table.text.headings) == ["", PLAYED, "kantorovich-4", TIED]
 
 
 def test_every_answer_has_its_table(results: Results) -> None:

@@ -13,6 +13,7 @@ import pytest
 from matplotlib import image
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
+from matplotlib.lines import Line2D
 
 from protractile.cases import run_case
 from runs import CASES
@@ -25,6 +26,7 @@ from runs.report.energy_figures import energies, residuals
 from runs.report.figure_context import Figure, Pen, new_sheet
 from runs.report.figures import draw
 from runs.report.horizon_figures import horizons
+from runs.report.model_tables import model_table
 from tests.runs.summaries import changed
 
 pytestmark = pytest.mark.slow
@@ -67,6 +69,11 @@ def everything(
     """All figures of the run."""
     with kept_sheets() as saved:
         return draw(results, tmp_path_factory.mktemp("figures")), saved
+
+
+def model_of(line: Line2D) -> str:
+    """Without what a model without play is made of."""
+    return str(line.get_label()).removesuffix(" (beam)")
 
 
 def labels(axes: Axes) -> list[str]:
@@ -127,7 +134,7 @@ def test_deflections_are_in_millimetres(
     """Reference: the trajectories themselves, in m."""
     draw_some(tip, results, tmp_path)
     (axes,) = sheets["tip"].axes
-    curves = {line.get_label(): np.asarray(line.get_ydata()) for line in axes.get_lines()}
+    curves = {model_of(line): np.asarray(line.get_ydata()) for line in axes.get_lines()}
     for name in results.trajectories["model"].values:
         deflection = results.trajectories["tip"].sel(model=name).values
         np.testing.assert_allclose(curves[name], 1000.0 * deflection, rtol=1e-12)
@@ -167,8 +174,8 @@ def test_one_colour_per_model_in_all_figures(
     for stem in ("tip", "tip-close-up", "head", "contact-first", "contact-peaks"):
         for axes in sheets[stem].axes:
             for line in axes.get_lines():
-                if str(line.get_label()) in results.summary.models:
-                    colours.setdefault(str(line.get_label()), set()).add(str(line.get_color()))
+                if model_of(line) in results.summary.models:
+                    colours.setdefault(model_of(line), set()).add(str(line.get_color()))
     assert set(colours) == {*WITH_PLAY, "beam-fe-tied"}
     assert all(len(shades) == 1 for shades in colours.values())
     assert len(set.union(*colours.values())) == len(colours)
@@ -225,7 +232,62 @@ def test_the_title_follows_the_motion_downwards(results: Results, tmp_path: Path
         draw_some(tip, run_of, tmp_path)[0].title
         for run_of in (results, replace(results, trajectories=down))
     )
-    assert downwards == upwards.replace("up to ", "up to −").replace("play, ", "play, −")
+    assert downwards == upwards.replace("up to ", "up to −")
+    assert upwards.partition(" mm in ")[2] in WITH_PLAY
+    assert "without" not in upwards
+
+
+def test_what_is_without_play_says_what_it_is(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: the case, whose beam elements are tied."""
+    (figure,) = draw_some(heads, results, tmp_path)
+    assert "Dashed: beam-fe-tied (beam), without play." in figure.caption
+    assert "beam-fe-tied (beam)" in labels(sheets["head"].axes[0])
+
+
+def test_what_is_pressed_from_the_start_has_no_first_contact(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: a summary in which all touches at 0 s, of a case without statements."""
+    models = {
+        name: model.model_copy(update={"first_contact": 0.0 if name in WITH_PLAY else None})
+        for name, model in results.summary.models.items()
+    }
+    pressed = results.trajectories.assign(contact_force=results.trajectories["gap"] * 0.0 + 1e3)
+    still = replace(
+        results,
+        case=results.case.model_copy(update={"statements": ()}),
+        trajectories=pressed,
+        summary=results.summary.model_copy(update={"models": models}),
+    )
+    (figure,) = draw_some(close_up, still, tmp_path)
+    assert figure.title.startswith("Tip, first ")
+    assert "touch" not in figure.title + figure.caption
+    assert "verdicts" not in figure.caption
+    assert not any(line.get_marker() == "o" for line in sheets["tip-close-up"].axes[0].get_lines())
+    (figure,) = draw_some(first_contacts, still, tmp_path)
+    assert "impacts" not in figure.caption
+    assert "impacts" in draw_some(first_contacts, results, tmp_path)[0].caption
+    assert "first contact\ns" not in model_table(still).text.headings
+    assert "first contact\ns" in model_table(results).text.headings
+
+
+def test_energies_start_where_the_boom_does(
+    results: Results, tmp_path: Path, sheets: dict[str, Sheet]
+) -> None:
+    """Reference: by hand, 5 J of strain that were there at the start."""
+    loaded = results.trajectories.assign(strain_energy=results.trajectories["strain_energy"] + 5.0)
+    line = {}
+    for name, run in {
+        "from zero": results,
+        "loaded": replace(results, trajectories=loaded),
+    }.items():
+        (figure,) = draw_some(energies, run, tmp_path)
+        (work,) = sheets["energies"].axes[0].get_lines()
+        line[name] = np.asarray(work.get_ydata(), dtype=float)
+        assert ("what was there at the start" in figure.caption) == (name == "loaded")
+    np.testing.assert_allclose(line["loaded"] - line["from zero"], 5.0, rtol=1e-9)
 
 
 def test_each_figure_bears_on_statements(
@@ -339,7 +401,7 @@ def test_a_boom_in_space_moves_to_the_sides(
     draw_some(first_contacts, in_space, tmp_path)
     (axes,) = sheets["tip-lateral"].axes
     for line in axes.get_lines():
-        tip = data["tip"].sel(model=line.get_label()).values
+        tip = data["tip"].sel(model=model_of(line)).values
         np.testing.assert_allclose(np.asarray(line.get_ydata()), 500.0 * tip, rtol=1e-12)
     titles = [panel.get_title(loc="left") for panel in sheets["contact-first"].axes]
     assert titles == ["x = 9 m", "x = 10 m, to the sides"]

@@ -18,6 +18,7 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
+from runs.report.first_look import first_table
 from runs.report.pad_tables import pad_tables
 from tests.runs.coarse_case import COARSE
 
@@ -106,11 +107,31 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
     peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
     assert peaks.min() > 0.0
     assert [row[0:4] for row in table.text.rows] == [
-        ("beam", "inner in outer", "9", "z"), ("beam", "inner in outer", "10", "z"),
+        ("beam", "inner in outer", "9", "below"), ("beam", "inner in outer", "10", "above"),
     ]  # fmt: skip
     told = {column.heading: column.cells for column in table.columns}
     assert told["pressure\nMPa"] == pytest.approx((0.5 * peaks / 0.01).tolist())
     assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 2.0e7).tolist())
+
+
+def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
+    """Reference: the table of all pads; a pad that may bear next to nothing stands out."""
+    found = results(tmp_path, PAD.replace("2e7", "1e3"))
+    table = first_table(found)
+    assert table is not None
+    told = {row[0]: row[1] for row in table.text.rows}
+    (pads,) = pad_tables(found)
+    columns = {column.heading: column for column in pads.columns}
+    most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
+    force, pressure = (columns[name].text[most] for name in ("peak force\nkN", "pressure\nMPa"))
+    lines = told["Pad that presses most"].split("\n")
+    assert lines[0] == f"{force} kN"
+    assert lines[1].startswith(f"{pressure} MPa, ")
+    where = columns["at\nm"].cells[most]
+    face = {"above": "top", "below": "bottom"}[str(columns["side"].cells[most])]
+    assert lines[2:] == ["beyond allowable", f"inner {face}, {where} m"]
+    assert told["Pad that presses most"] in table.text.strong
+    assert not any(asked.startswith("Station") for asked in told)
 
 
 def test_corners_bear_no_pressure(tmp_path: Path) -> None:
@@ -170,7 +191,7 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
     found = results(tmp_path, several(*pads))
     (table,) = pad_tables(found)
     told = {column.heading: column.cells for column in table.columns}
-    assert told["along"] == ["above", "below", "below"] * 2
+    assert told["side"] == ["above", "below", "below"] * 2
     peaks = found.trajectories["contact_force_peak"].values[0]
     down, up = -peaks.min(axis=0), peaks.max(axis=0)
     areas = np.array([0.02, 0.012, 0.008])

@@ -53,6 +53,20 @@ def test_telling_instants_are_those_of_the_motion(trajectories: xr.Dataset) -> N
     assert instants == pytest.approx(expected)
 
 
+def test_an_instant_is_told_once(trajectories: xr.Dataset) -> None:
+    """Reference: by hand. Pressed from the start there is no first contact, and a largest force
+    within 2 % of the run of the first peak is not seen twice."""
+    motion = trajectories.sel(model="shell").copy(deep=True)
+    motion["contact_force_peak"][:] = 1.0e3
+    assert telling_instants(motion) == pytest.approx({"first-peak": 0.5, "largest-force": 0.0})
+    end = float(TIME[-1])
+    for apart, names in ((0.01, ["first-peak"]), (0.03, ["first-peak", "largest-force"])):
+        blow = motion.copy(deep=True)
+        at = int(np.abs(TIME - 0.5 - apart * end).argmin())
+        blow["contact_force_peak"][at, 0] = 2.0e3
+        assert list(telling_instants(blow)) == names
+
+
 def test_motion_without_contact_or_peak_still_has_an_instant(trajectories: xr.Dataset) -> None:
     """Half a period has no peak inside, and a model without stations NaN for its forces."""
     motion = trajectories.sel(model="shell").where(trajectories["time"] < 0.0)

@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a designer asks of a boom, on the first screen: what play adds, the answers, trust."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from math import log, pi
+from typing import NamedTuple
+
+from geometry.arrays import Array
+from geometry.typography import signed
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
+from runs.pipeline.comparisons import reference_of
+from runs.pipeline.results import Results
+from runs.pipeline.trust import off_at_rest
+from runs.report.answer_tables import (
+    MILLI,
+    PER_KILO,
+    PER_MEGA,
+    PERCENT,
+    SHOWN,
+    amount,
+    hardly,
+    play_of,
+    read_first,
+)
+from runs.report.figure_context import farthest
+from runs.report.pad_tables import PressedPad, pressed_pads
+from runs.report.tables import Column, Table
+from runs.report.theme import NONE, fixed, number
+
+# To which part a swing has died that nobody heeds any more.
+TENTH = 0.1
+# From which part of what it may bear a number stands out.
+NEAR = 0.9
+
+
+def first_table(results: Results) -> Table | None:
+    """The answers of the models that are read first, the reference's before the others'."""
+    answers = results.summary.answers
+    if answers is None:
+        return None
+    names = read_first(results)
+    own = {name: answers.models[name] for name in names}
+    tips = {name: results.trajectories["tip"].sel(model=name).values for name in names}
+    walls = {name: _walls(own[name]) for name in names}
+    fibres = {name: _fibres(own[name]) for name in names}
+    pads = _hardest_pads(results)
+    questions: dict[str, Callable[[str], str]] = {
+        "Tip at rest, t = 0, mm": lambda name: _at_rest(own[name].rests[:1]),
+        "Tip at rest, largest loads, mm": lambda name: _at_rest(own[name].rests[1:]),
+        "Tip in motion, farthest, mm": lambda name: _farthest(own[name], tips[name]),
+        "Tip travels, mm": lambda name: _travels(tips[name]),
+        "Tip to the sides, farthest, mm": lambda name: _largest_of(own[name], "lateral deflection"),
+        "First frequency, Hz": lambda name: _frequency(own[name]),
+        "One swing takes, s": lambda name: _period(own[name]),
+        "Swings fade to a tenth in, s": lambda name: _fading(results.case, own[name]),
+        "Pad that presses most": lambda name: _pad(pads[name]) if name in pads else NONE,
+        "Station pressed most, kN": lambda name: NONE if pads else _station(own[name]),
+        "Cylinder, at most, kN": lambda name: _largest_of(own[name], "cylinder force"),
+        "Outer fibre, MPa": lambda name: _stress(fibres[name]),
+        "Walls over a patch, MPa": lambda name: _stress(walls[name]),
+        "Damage of its life": lambda name: _damage(own[name]),
+    }
+    rows = {asked: [answer(name) for name in names] for asked, answer in questions.items()}
+    told = {asked: cells for asked, cells in rows.items() if any(cell != NONE for cell in cells)}
+    columns = [Column("", list(told))]
+    columns += [Column(name, [told[asked][i] for asked in told]) for i, name in enumerate(names)]
+    found = [one for each in (walls, fibres) for one in each.values() if one is not None]
+    strong = [_stress(one) for one in found if (one.part or 0.0) >= NEAR]
+    strong += [_pad(one) for one in pads.values() if (one.utilisation or 0.0) >= NEAR]
+    notes = " ".join(_notes(results, told))
+    return Table("The answers", columns, [notes], "answers", strong=strong)
+
+
+def trust_line(results: Results) -> str:
+    """How far the other models with play are off the one they are held against; else empty."""
+    answers, reference = results.summary.answers, reference_of(results.ran)
+    if answers is None or reference is None:
+        return ""
+    loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
+    offs = {name: off_at_rest(answers.models[reference], answers.models[name]) for name in loose}
+    told = [
+        f"{name} {signed(f'{PERCENT * off:+.2g}')} %"
+        for name, off in offs.items()
+        if off is not None
+    ]
+    if not told:
+        return ""
+    behind = [name for name in results.summary.models if name not in read_first(results)]
+    more = f" Of {_listed(behind)} tables and figures below tell." if behind else ""
+    return (
+        f"Held against {reference}, the tip at rest under the largest loads is off: "
+        f"{', '.join(told)}.{more}"
+    )
+
+
+def trust_lines(results: Results) -> list[str]:
+    """How far the numbers can be trusted."""
+    answers = results.summary.answers
+    return [] if answers is None else [known.line for known in answers.trust]
+
+
+def play_sentence(results: Results) -> str:
+    """What play adds, of the model that the others are held against; else empty."""
+    found = play_of(results)
+    if found is None:
+        return ""
+    by_kind: dict[str, list[Added]] = {}
+    for each in found.numbers:
+        by_kind.setdefault(each.what, []).append(each)
+    first = {what: max(several, key=lambda one: one.played) for what, several in by_kind.items()}
+    told = [(_SAID[what], one) for what, one in first.items() if what in _SAID]
+    more = [f"{_more(one)} to {what}" for what, one in told if not hardly(one)]
+    same = [what for what, one in told if hardly(one)]
+    said = [f"Play adds {_listed(more)}."] if more else []
+    said += [f"It hardly changes {_listed(same)}."] if same else []
+    frequency = first.get("first frequency")
+    if frequency is not None and frequency.tied and not hardly(frequency):
+        both = f"{number(frequency.played)} Hz in place of {number(frequency.tied)} Hz"
+        said.append(f"The first frequency is {both}.")
+    return " ".join(said)
+
+
+_SAID = {
+    "deflection at rest": "the tip at rest under the largest loads",
+    "deflection": "its farthest in motion",
+    "stress": "the largest stress of an outer fibre",
+}
+
+
+def play_note(results: Results) -> str:
+    """Whose numbers the sentences have."""
+    found = play_of(results)
+    if found is None:
+        return ""
+    return f"Of the model {found.model}, beside the same without play."
+
+
+def _more(one: Added) -> str:
+    share = "" if one.share is None else f" ({signed(f'{PERCENT * one.share:+.0f}')} %)"
+    return f"{amount(one.added, one.unit)}{share}"
+
+
+def _listed(parts: Iterable[str]) -> str:
+    *most, last = parts
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+class _Largest(NamedTuple):
+    """A stress in Pa at x in m of a segment, and what part of its yield strength that is."""
+
+    stress: float
+    segment: str
+    x: float
+    part: float | None
+
+
+def _walls(own: ModelAnswers) -> _Largest | None:
+    found = own.moved.walls if own.moved else []
+    return _hardest([_Largest(one.patch, one.segment, one.x, one.utilisation) for one in found])
+
+
+def _fibres(own: ModelAnswers) -> _Largest | None:
+    found = own.moved.fibres if own.moved else []
+    return _hardest(
+        [_Largest(abs(one.stress), one.segment, one.x, one.utilisation) for one in found]
+    )
+
+
+def _hardest(found: Sequence[_Largest]) -> _Largest | None:
+    """Nearest to what its steel bears, else the largest."""
+    return max(found, key=lambda one: (one.part or 0.0, one.stress), default=None)
+
+
+def _hardest_pads(results: Results) -> dict[str, PressedPad]:
+    """Of each model, nearest to what it may bear, else of the largest pressure."""
+    found: dict[str, PressedPad] = {}
+    for pad in pressed_pads(results):
+        if pad.model not in found or _pressure(pad) > _pressure(found[pad.model]):
+            found[pad.model] = pad
+    return found
+
+
+def _pressure(pad: PressedPad) -> tuple[float, float]:
+    return pad.utilisation or 0.0, pad.pressure
+
+
+def _pad(pad: PressedPad) -> str:
+    """Force and pressure of one, and where it is."""
+    used = pad.utilisation
+    part = "" if used is None else f", {number(PERCENT * used)} %"
+    beyond = "\nbeyond allowable" if used and used > 1.0 else ""
+    return (
+        f"{number(PER_KILO * pad.force)} kN\n{number(PER_MEGA * pad.pressure)} MPa{part}{beyond}\n"
+        f"{pad.joint.inner} {_FACES[pad.place]}, {pad.x:g} m"
+    )
+
+
+_FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
+
+
+def _stress(largest: _Largest | None) -> str:
+    if largest is None:
+        return NONE
+    stress, segment, x, part = largest
+    of = "" if part is None else f", {number(PERCENT * part)} %"
+    beyond = "\nbeyond yield" if part and part > 1.0 else ""
+    return f"{number(PER_MEGA * stress)}{of}{beyond}\n{segment}, {x:.1f} m"
+
+
+def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """What the table's numbers are."""
+    yield "Tip: across the boom, from the straight line of the unloaded one."
+    if "Tip travels, mm" in told:
+        yield "It travels: the farthest from where it is at t = 0."
+    if any("×" in cell for cells in told.values() for cell in cells):
+        yield "×: so many times what is at rest under the largest loads."
+    if "Swings fade to a tenth in, s" in told:
+        ratio = number(PERCENT * results.case.damping.modal)
+        yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} % alone."
+    if "Pad that presses most" in told:
+        pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
+        bears = _span(pad.allowable_pressure for pad in pads)
+        yield f"Pad: one of a pair, at its peak{bears and f'; %: of the allowable {bears}'}."
+    strengths = _span(one.material.yield_strength for one in build_boom(results.case).segments)
+    if strengths:
+        yield f"Stresses: % of the yield strength, {strengths}."
+    shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
+    if shells:
+        most = [f"{number(PER_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
+        yield (
+            f"Single triangles beside lines of contact have more ({_listed(most)}), the more the "
+            "finer the mesh; the table of what the walls carry tells where."
+        )
+
+
+def _span(values: Iterable[float | None]) -> str:
+    """From the least to the largest in MPa; empty where none is known."""
+    known = sorted({PER_MEGA * value for value in values if value is not None})
+    return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
+
+
+def _at_rest(rests: Sequence[AtRest]) -> str:
+    return fixed(max((rest.tip for rest in rests), key=abs, default=None), 1, MILLI)
+
+
+def _farthest(own: ModelAnswers, tip: Array) -> str:
+    """With its sign, and how many times the rest that is."""
+    peaks = [peak for peak in own.moved.peaks if peak.what == "deflection"] if own.moved else []
+    return fixed(farthest(tip), 1, MILLI) + (_times(peaks[0]) if peaks else "")
+
+
+def _travels(tip: Array) -> str:
+    """From where it starts; what starts in the straight line has no need of it."""
+    return fixed(farthest(tip - tip[0]), 1, MILLI) if tip[0] else NONE
+
+
+def _largest_of(own: ModelAnswers, what: str) -> str:
+    peak = _peak_of(own, what)
+    if peak is None:
+        return NONE
+    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{_times(peak)}"
+
+
+def _station(own: ModelAnswers) -> str:
+    peak = _peak_of(own, "contact force")
+    return NONE if peak is None else f"{_largest_of(own, peak.what)}\nat {peak.where} m"
+
+
+def _peak_of(own: ModelAnswers, what: str) -> Peak | None:
+    """The largest of its kind."""
+    peaks = [peak for peak in own.moved.peaks if peak.what == what] if own.moved else []
+    return max(peaks, key=lambda one: one.largest, default=None)
+
+
+def _times(peak: Peak) -> str:
+    return "" if peak.factor is None else f" (× {number(peak.factor)})"
+
+
+def _frequency(own: ModelAnswers) -> str:
+    return number(own.modes[0].frequency) if own.modes else NONE
+
+
+def _period(own: ModelAnswers) -> str:
+    return number(1.0 / own.modes[0].frequency) if own.modes else NONE
+
+
+def _fading(case: Case, own: ModelAnswers) -> str:
+    """By its modal damping, of an oscillation that nothing else takes energy from."""
+    ratio = case.damping.modal
+    if not own.modes or ratio == 0.0:
+        return NONE
+    return number(log(1.0 / TENTH) / (2.0 * pi * ratio * own.modes[0].frequency), 2)
+
+
+def _damage(own: ModelAnswers) -> str:
+    found = [life.life_damage for life in own.life if life.life_damage is not None]
+    return number(max(found)) if found else NONE
