@@ -16,6 +16,9 @@ from geometry.drive import Carrier, Drive
 from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text
 from runs.case.places import PlaceTable
 
+# A travel in less time, in s, is a slip of the pen; one of fewer m is none.
+_SHORTEST, _NOWHERE = 1.0e-6, 1.0e-9
+
 # How a drive may go, by the key that says it.
 _WAYS = ("time", "speed", "table")
 
@@ -77,6 +80,10 @@ class DriveTable(Table):
             raise BoomError(f"{where}.{given[1]}", f"{given[0]} is given; leave one of them out")
         if self.ramp and self.speed is None:
             raise BoomError(f"{where}.ramp", f"{given[0]} is given; only a speed has a ramp")
+        for key, seconds in (("time", self.time), ("ramp", self.ramp)):
+            if seconds and seconds < _SHORTEST:
+                what = f"must be at least {_SHORTEST:g} s, got {seconds:g} s"
+                raise BoomError(f"{where}.{key}", what)
         if self.table is not None:
             return self._tabled(where)
         if self.travel is None:
@@ -84,6 +91,10 @@ class DriveTable(Table):
         if self.time is not None:
             return SCurve(self.travel, self.time, self.start)
         assert self.speed is not None
+        if not np.isfinite(abs(self.travel) / self.speed):
+            raise BoomError(
+                f"{where}.speed", f"never comes to {self.travel:g} m; give a larger one"
+            )
         try:
             return Stroke(self.travel, self.speed, self.ramp, self.start)
         except ValueError as error:
@@ -122,7 +133,8 @@ class DriveTable(Table):
         history = self.history(f"{where}.drive")
         carriers = tuple(_carrier(where, place, inner) for place in stations)
         drive = Drive(history, carriers, self.least_overlap)
-        return drive if any(drive.reach) else None
+        low, high = drive.reach
+        return drive if high - low > _NOWHERE else None
 
 
 def _said(key: str) -> str:

@@ -42,6 +42,7 @@ def case_file(folder: Path, before: str, after: str) -> str:
         (TABLE, [0.0, 0.5, -1.0], (-1.0, 2.0)),
         ('drive = { file = "ways.csv" }\n', [0.0, 0.5, -1.0], (-1.0, 2.0)),
         ("drive = { travel = 0.0, time = 5.0 }\n", None, None),
+        ("drive = { travel = 1e-300, time = 5.0 }\n", None, None),
     ],
 )
 def test_a_drive_has_a_history(
@@ -116,6 +117,10 @@ kind = "finite-element"
         (DRIVE, "drive = { travel = 4.0, speed = 4.0, ramp = 2.0 }\n",
          "joint[1].drive.ramp: within a travel of 4 m a ramp of 2 s does not come to 4 m/s; the "
          "ramp must be at most 1 s"),
+        (DRIVE, "drive = { travel = 4.0, time = 1e-9 }\n",
+         "joint[1].drive.time: must be at least 1e-06 s, got 1e-09 s"),
+        (DRIVE, "drive = { travel = 1e308, speed = 1e-300 }\n",
+         "joint[1].drive.speed: never comes to 1e+308 m; give a larger one"),
         (DRIVE, TABLE.replace("table", "travel = 1.0, table"),
          "joint[1].drive.travel: table is given; leave one of them out"),
         (DRIVE, TABLE.replace("[0.0, 0.0]", "[0.0, 0.5]"),
