@@ -38,7 +38,8 @@ def play_table(results: Results) -> Table | None:
         ),
         Column("%", [None if hardly(one) else one.share for one in rows], ".3g", PERCENT),
     )
-    return Table(f"What play adds: {found.model}", columns, (), "play")
+    notes = ("By their absolute values.",)
+    return Table(f"What play adds: {found.model}", columns, notes, "play")
 
 
 def rest_tables(results: Results) -> list[Table]:
@@ -132,7 +133,10 @@ def peak_table(results: Results) -> Table | None:
         found = {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
         cells = [_peak_cell(found.get(where)) for where in wheres]
         columns.append(Column(name, cells))
-    notes = ("In brackets: how many times what is at rest under the largest loads.",)
+    notes = (
+        "By their absolute values. In brackets: how many times what is at rest under the largest "
+        "loads.",
+    )
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 

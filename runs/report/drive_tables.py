@@ -16,9 +16,13 @@ PER_KILO = 1.0e-3
 def drive_table(results: Results) -> Table | None:
     """Of every model and drive; None where nothing is drawn out."""
     data = results.trajectories
-    time = np.asarray(data["time"].values, dtype=float)
     rows = [
-        _taken(str(model), inner, time, *(_of(results, str(model), n + suffix) for n in _READ))
+        _taken(
+            str(model),
+            inner,
+            data["time"].values,
+            *(_of(results, str(model), n + suffix) for n in _READ),
+        )
         for suffix, inner in driven(results.case).items()
         if f"drive_power{suffix}" in data
         for model in data["model"].values

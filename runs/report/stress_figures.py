@@ -42,8 +42,8 @@ def stress_history(pen: Pen) -> list[Figure]:
         fullest = max(panels, key=lambda axes: len(axes.lines))
         patch = max(max(row.von_mises_patch) for row in rows) / MEGA
         title = (
-            f"{name}: von Mises stress up to {stress.von_mises / MEGA:.3g} MPa, over a patch "
-            f"up to {patch:.3g} MPa"
+            f"{name}: von Mises stress over a patch up to {patch:.3g} MPa, in a triangle up to "
+            f"{stress.von_mises / MEGA:.3g} MPa"
         )
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "

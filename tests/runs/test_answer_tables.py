@@ -11,13 +11,14 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, PlayAdds, WallStress
+from runs.pipeline.answers import Added, PlayAdds, Reaction, WallStress
 from runs.pipeline.life import COUNTS
 from runs.pipeline.results import Results
 from runs.report.answer_tables import (
     answer_tables,
     mode_table,
     play_table,
+    rest_tables,
     stress_table,
 )
 from runs.report.first_look import (
@@ -85,6 +86,27 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     rows = cells(play_table(told))
     assert rows["stress, inner"]["play adds"] == "−10 MPa"
     assert rows["stress, inner"]["%"] == "−10"
+    assert rows["stress, inner"]["without play"] == "100 MPa"
+    assert rows["tip at rest, largest loads"]["with play"] == "150 mm"
+
+
+def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
+    """Reference: by hand, a hinge whose moment is round-off beside a clamp of 5 kN m."""
+    assert results.summary.answers is not None
+    bears = [
+        Reaction("outer", 0.0, 1e3, 5e3, None),
+        Reaction("outer", 3.0, 2e3, 1.6e-7, None),
+    ]
+    answers = replace(results.summary.answers, reactions=bears)
+    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    tables = rest_tables(told)
+    assert [table.title.partition(":")[0] for table in tables] == [
+        "At rest under the largest loads",
+        "At rest under the largest loads",
+        "At rest at t = 0",
+    ]
+    moments = [row[2] for row in tables[-1].text.rows]
+    assert moments == ["5", "0"]
 
 
 def with_stress(results: Results, stress: float) -> Results:

@@ -37,6 +37,14 @@ def test_a_lift_stands_at_its_angle() -> None:
         assert nearest < 0.11  # half the height of the fly
 
 
+def test_walls_that_differ_are_named() -> None:
+    """Reference: the case file, whose last box has walls of one thickness."""
+    texts = [text.get_text() for axes in drawn("lift").axes for text in axes.texts]
+    assert [text for text in texts if " × " in text] == [
+        "300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\n4",
+    ]  # fmt: skip
+
+
 def test_all_that_a_lift_has_is_said() -> None:
     """Reference: the case file."""
     assert legend(drawn("lift")) == [

@@ -179,7 +179,7 @@ def test_contact_laws_are_those_of_the_models() -> None:
     table = law_table(results())
     assert table is not None
     assert table.text.rows == [
-        (name, "inner in outer", "7.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
+        (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
     assert statements(table) == ("S9",)
     free = results()

@@ -64,7 +64,9 @@ def results(stress: dict[str, Any] | None) -> Results:
 def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         (figure,) = stress_history(Pen(results(STRESS), tmp_path))
-    assert figure.title == "shell: von Mises stress up to 91.6 MPa, over a patch up to 31 MPa"
+    assert figure.title == (
+        "shell: von Mises stress over a patch up to 31 MPa, in a triangle up to 91.6 MPa"
+    )
     assert "grows as the mesh refines" in figure.caption
     with Image.open(figure.path) as image:
         image.verify()
