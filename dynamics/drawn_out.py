@@ -20,6 +20,7 @@ from dynamics.energy import DRAWN_ENERGIES, check_energy
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.drawn_steps import Rows, Still, march_drawn, space_for
+from dynamics.kernels.drawn_strides import strides_for
 from dynamics.kernels.integrator_state import (
     CHANGES,
     FIRST_CONTACT,
@@ -77,8 +78,10 @@ def integrate_drawn(
         made = min(chunk, outputs - done)
         times = h * np.arange(done * substeps, (done + made) * substeps + 1)
         excitations, ways = _followed(system, times, h)
+        straight = excitation_arrays(replace(system, travels=()), times, h)[4]
+        strides = strides_for(system, straight, ways, h)
         march_drawn(
-            state, still, rows, tables, ways, excitations, space, h, substeps,
+            state, still, rows, tables, ways, excitations, space, strides, h, substeps,
             tuple(array[1 + done : 1 + done + made] for array in recorded),
         )  # fmt: skip
         check_energy(energies[: 1 + done + made], h, energy_bound, least)
@@ -118,7 +121,7 @@ def _still(system: GapSystem) -> Still:
 
 def _rows(system: GapSystem) -> Rows:
     now = stacked_rows(system)
-    return now, now.copy(), now.copy(), np.zeros_like(now), np.zeros((3, len(now)))
+    return now, now.copy(), now.copy(), np.zeros((3, len(now)))
 
 
 def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations, Array]:

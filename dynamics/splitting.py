@@ -27,7 +27,6 @@ from dynamics.closed_contacts import ClosedContacts, closable, pressing
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
 from dynamics.drawn_out import integrate_drawn
 from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
-from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import (
     add_closed_forces,
     contact_energy,
@@ -56,67 +55,17 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
 from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, move, tabulate, travel
+from dynamics.kernels.strides import STRIDES, closing_bounds, safe_stride
 from dynamics.motion import Motion
 from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
 
-# How many steps may be made at once while nothing touches, and while contacts stay closed, which
-# dashpots and the recorded peaks want told more finely.
-STRIDES = np.array([1, 8, 64, 512])
+# How many steps may be made at once while contacts stay closed, which dashpots and the recorded
+# peaks want told more finely.
 _CLOSED_STRIDES = np.array([1, 4, 16, 64, 256, 1024])
 
 # Part of a contact's force by which its peak may pass what the ends of strides tell.
 _UNTOLD = 0.01
-
-
-@njit(**SUMS)
-def _reach(
-    a: Array, v: Array, omega2: Array, load: Array, now: Array, then: Array, reach: Array
-) -> None:
-    """Speeds that swinging modes do not exceed while nothing touches.
-
-    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
-    under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
-    than the change over ω.
-    """
-    for i in range(a.size):
-        if omega2[i] > 0.0:
-            off = a[i] - (load[i] + now[i]) / omega2[i]
-            growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
-            reach[i] = np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth
-
-
-@njit(**SUMS)
-def _closing_bounds(
-    a: Array,
-    v: Array,
-    omega2: Array,
-    load: Array,
-    now: Array,
-    then: Array,
-    rows: Array,
-    duration: float,
-    reach: Array,
-    bounds: Array,
-) -> None:
-    """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
-
-    Rigid modes fall; those that tip over do so by cosh κt, κ² = −ω².
-    """
-    _reach(a, v, omega2, load, now, then, reach)
-    for j in range(rows.shape[0]):
-        swing = 0.0
-        speed = 0.0
-        fall = 0.0
-        for i in range(a.size):
-            if omega2[i] > 0.0:
-                swing += abs(rows[j, i]) * reach[i]
-            else:
-                tips = np.cosh(np.sqrt(-omega2[i]) * duration)
-                pull = abs(load[i] + now[i] - omega2[i] * a[i]) + abs(then[i] - now[i])
-                speed += tips * abs(rows[j, i] * v[i])
-                fall += tips * abs(rows[j, i]) * pull
-        bounds[j] = swing + speed + fall * duration
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -145,23 +94,6 @@ def _telling(
             if stiffness[j] * beyond > _UNTOLD * abs(pressed[j]):
                 return s
     return strides.size
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _stride(
-    y: Array, limits: Limits, bounds: Array, step: float, left: int, strides: Indices
-) -> int:
-    """Position in ``strides`` of the most steps, up to ``left``, that no gap can shut within."""
-    free = float(left)
-    for j in range(y.size):
-        reach = bounds[j] * step
-        if reach > 0.0:
-            free = min(free, (limits[j]["high"] - y[j]) / reach)
-            free = min(free, (y[j] - limits[j]["low"]) / reach)
-    stride = 0
-    while stride + 1 < strides.size and strides[stride + 1] <= free:
-        stride += 1
-    return stride
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -233,14 +165,14 @@ def _march(
                 if not flying:
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
-                    _closing_bounds(
+                    closing_bounds(
                         a, v, omega2, load, now, then, rows, substeps * step, reach, bounds
                     )
                     telling = strides
                     if closed:
                         count = _telling(reach, omega2, rows, stiffness, pressed, step, strides)
                         telling = strides[:count]
-                stride = _stride(y, limits, bounds, step, until - done, telling)
+                stride = safe_stride(y, limits, bounds, step, until - done, telling)
             flying = not (touching or lossy) and done + strides[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(

@@ -17,6 +17,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces
 from dynamics.kernels.decay import fade, kept_after
+from dynamics.kernels.drawn_strides import Strides, glide
 from dynamics.kernels.friction_step import (
     add_pressed_bounds,
     filter_rows,
@@ -46,6 +47,9 @@ from dynamics.kernels.integrator_state import (
 from dynamics.kernels.modal_flow import drive, modal_energy, move, tabulate, travel
 from dynamics.kernels.moving_rows import Tables, carry, moving_drag, moving_kick, place_rows
 
+# After so many steps apart it is worth the while to look how many more can be made at once.
+_APART = 8
+
 # Rows that turn within this part of a step of one another turn together.
 _TOGETHER = 1.0e-9
 
@@ -54,10 +58,9 @@ _TOGETHER = 1.0e-9
 # num_rows), the travel of each row or −1.
 Still = tuple[Array, Array, Terms, Limits, Array, Array, Array, Indices]
 
-# All rows where a part of a step begins, where it ends, in the mean, their change, a copy of the
-# first (num_all, num_modes); convective rates, what the drive has done at each row in this part
-# and in all (3, num_all).
-Rows = tuple[Array, Array, Array, Array, Array]
+# All rows where a part of a step begins, where it ends, and in the mean (num_all, num_modes);
+# convective rates, what the drive has done at each row in this part and in all (3, num_all).
+Rows = tuple[Array, Array, Array, Array]
 
 # Of a length of step (1,): the flow over its half (9, num_modes), what modes keep over a quarter,
 # and likewise the flow over all of it; filtered friction rows and their matrix, D Dᵀ; for modes
@@ -123,15 +126,19 @@ def drawn_steps(
     first: int,
     last: int,
     substeps: int,
-) -> None:
+    gliding: bool,
+) -> int:
     """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
 
     Args:
         ways: (num_parts + 1, num_travels) how far each travel is where parts of steps begin.
+        gliding: whether to stop after a step at whose end nothing touches.
+
+    Gives the number of the next step.
     """
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
     omega2, load, terms, limits, rates, given, pressing, travel_of = still
-    now, then, middles, change, told = rows
+    now, then, middles, told = rows
     loads, _, spans, parts, _, pushes = excitations
     start, centre, end = pushes
     length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem = space
@@ -139,19 +146,27 @@ def drawn_steps(
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     carried, driven, done = told
-    m, f = y.size, friction.size
-    d = now.shape[0] - m - f
     fading, pressed, excited = rates.size > 0, pressing.any(), loads.shape[0] > 0
+    rubbing = pressed or (given[0] * given[1]).any()
+    m, o = y.size, y.size + friction.size
+    f = friction.size if rubbing else 0
+    d = now.shape[0] - o
     halved = fading or d > 0 or f > 0
+    touching_rows, rubbing_rows = then[:m], then[m : m + f]
+    between, dragging = middles[m : m + f], middles[o:]
+    carried_on, driven_on = carried[o:], driven[o:]
     none, no_rates, no_work = np.zeros(a.size), np.zeros(d), np.zeros(d)
     place = np.zeros(ways.shape[1])
+    k, apart, touching, pressed_then = first, 0, force.any(), False
     for p in range(parts[first], parts[last]):
         span = spans[p]
         left = span
         cuts = 0
         while left > 0.0:
-            for i in range(whole.size):
-                kept[i] = whole[i]
+            before[:] = y
+            if f > 0:
+                for i in range(whole.size):
+                    kept[i] = whole[i]
             time = left
             cut = False
             while True:
@@ -159,56 +174,60 @@ def drawn_steps(
                 for t in range(place.size):
                     place[t] = ways[p, t] + reached * (ways[p + 1, t] - ways[p, t])
                 place_rows(place, tables, then)
-                for j in range(now.shape[0]):
-                    if travel_of[j] >= 0:
+                if halved:
+                    for j in range(m, now.shape[0]):
                         for i in range(a.size):
                             middles[j, i] = 0.5 * (now[j, i] + then[j, i])
-                            change[j, i] = then[j, i] - now[j, i]
                 if time != length[0]:
                     length[0] = time
                     tabulate(half, omega2, load, none, 0.5 * time if halved else time)
                     kept_after(rates, 0.25 * time, faded)
                 if f > 0:
-                    filter_rows(middles[m : m + f], half, time, filtered)
+                    filter_rows(between, half, time, filtered)
                 for j in range(f):
                     ahead[:] = filtered[j]
-                    _damp(ahead, faded, middles[m + f :], no_rates, 0.5 * time, False, no_work)
+                    _damp(ahead, faded, dragging, no_rates, 0.5 * time, False, no_work)
                     read(filtered, ahead, matrix[j])
                     matrix[j] *= 0.5 * time
-                    read(then[m : m + f], then[m + j], masses[j])
+                    read(rubbing_rows, then[m + j], masses[j])
                 for j in range(f):
-                    for k in range(j):
-                        matrix[j, k] = matrix[k, j] = 0.5 * (matrix[j, k] + matrix[k, j])
+                    for i in range(j):
+                        matrix[j, i] = matrix[i, j] = 0.5 * (matrix[j, i] + matrix[i, j])
                 if excited:
                     excite(excitations, p, p + 1, 1.0 - left / span, reached)
                 share = 0.5 * time / (substeps * step)
                 driven[:] = 0.0
 
-                carry(change, a, time, carried)
-                loss = moving_kick(v, now, carried, force, limits, 0.5 * time, False, push, driven)
-                for j in range(m):
-                    mean[j] += share * push[j]
+                loss = 0.0
+                if touching:
+                    carry(now, then, a, time, carried)
+                    loss += moving_kick(
+                        v, now, carried, force, limits, 0.5 * time, False, push, driven
+                    )
+                    for j in range(m):
+                        mean[j] += share * push[j]
+                else:
+                    push[:] = 0.0
                 if halved:
                     _flow(a, v, half, 0.5 * time, still, excited, start, centre, tally)
-                    carry(change, a, time, carried)
-                    dragged = carried[m + f :]
+                    carry(now, then, a, time, carried)
                     tally[DAMPING] += _damp(
-                        v, faded, middles[m + f :], dragged, 0.5 * time, False, driven[m + f :]
+                        v, faded, dragging, carried_on, 0.5 * time, False, driven_on
                     )
                     if f > 0:
                         for i in range(a.size):
                             ahead[i] = v[i]
-                        _damp(ahead, faded, middles[m + f :], dragged, 0.5 * time, True, no_work)
+                        _damp(ahead, faded, dragging, carried_on, 0.5 * time, True, no_work)
                         look_ahead(a, ahead, half, ahead)
                         if excited:
                             drive(ahead, half, centre, end)
                         prescribed_bounds(given, time, grip)
                         if pressed:
                             add_pressed_bounds(
-                                ahead, v, then[:m], terms, limits, push, pressing, given, time,
+                                ahead, v, touching_rows, terms, limits, push, pressing, given, time,
                                 y_ahead, force_ahead, grip,
                             )  # fmt: skip
-                        read(then[m : m + f], ahead, slips)
+                        read(rubbing_rows, ahead, slips)
                         round_off(masses, ahead, noise)
                         for j in range(f):
                             slips[j] -= grip[PLACE, j]
@@ -216,26 +235,30 @@ def drawn_steps(
                         for j in range(f):
                             driven[m + j] -= grip[MIDDLE, j] * carried[m + j]
                     tally[DAMPING] += _damp(
-                        v, faded, middles[m + f :], dragged, 0.5 * time, True, driven[m + f :]
+                        v, faded, dragging, carried_on, 0.5 * time, True, driven_on
                     )
                     _flow(a, v, half, 0.5 * time, still, excited, centre, end, tally)
                 else:
                     _flow(a, v, half, time, still, excited, start, end, tally)
-                contact_forces(a, then[:m], terms, y, force)
-                carry(change, a, time, carried)
-                loss += moving_kick(v, then, carried, force, limits, 0.5 * time, True, push, driven)
+                pressed_then = contact_forces(a, touching_rows, terms, y, force)
+                if pressed_then or f > 0:
+                    carry(now, then, a, time, carried)
+                if pressed_then:
+                    loss += moving_kick(
+                        v, then, carried, force, limits, 0.5 * time, True, push, driven
+                    )
+                    for j in range(m):
+                        mean[j] += share * push[j]
+                        if abs(push[j]) > abs(peak[j]):
+                            peak[j] = push[j]
                 tally[CONTACT] += loss
-                for j in range(m):
-                    mean[j] += share * push[j]
-                    if abs(push[j]) > abs(peak[j]):
-                        peak[j] = push[j]
                 changed = False
                 if f > 0:
-                    read(then[m : m + f], v, slips)
+                    read(rubbing_rows, v, slips)
                     round_off(masses, v, noise)
                     for j in range(f):
                         slips[j] += carried[m + j]
-                    tally[FRICTION] += settle(v, then[m : m + f], masses, grip, problem)
+                    tally[FRICTION] += settle(v, rubbing_rows, masses, grip, problem)
                     for j in range(f):
                         driven[m + j] -= grip[REST, j] * carried[m + j]
                         friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
@@ -258,8 +281,15 @@ def drawn_steps(
                 if travel_of[j] >= 0:
                     for i in range(a.size):
                         now[j, i] = then[j, i]
+            touching = pressed_then
             left -= time
             cuts += 1
+        if p + 1 == parts[k + 1]:
+            k += 1
+            apart = 0 if touching else apart + 1
+            if gliding and apart >= _APART:
+                break
+    return k
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -271,6 +301,7 @@ def march_drawn(
     ways: Array,
     excitations: Excitations,
     space: Space,
+    strides: Strides,
     step: float,
     substeps: int,
     out: tuple[Array, ...],
@@ -281,18 +312,32 @@ def march_drawn(
     of the drive at each row), one row an interval; velocities may have no columns.
     """
     _, a, v, y, _, _, tally, mean, peak, friction, _, _ = state
-    omega2, load, terms = still[:3]
+    omega2, load, terms, limits, rates, given, pressing, _ = still
+    modal = omega2, load, rates
+    # What rubs or drags does so in every step.
+    dragged = len(rows[0]) > y.size + friction.size
+    gliding = not (dragged or pressing.any() or (given[0] * given[1]).any())
     states, velocities, energies, gaps, means, peaks, frictions, drives = out
-    done = rows[4][2]
+    done = rows[3][2]
     for interval in range(states.shape[0]):
         start = a.copy()
         mean[:] = 0.0
         peak[:] = 0.0
         friction[:] = 0.0
-        drawn_steps(
-            state, still, rows, tables, ways, excitations, space, step,
-            interval * substeps, (interval + 1) * substeps, substeps,
-        )  # fmt: skip
+        k, end = interval * substeps, (interval + 1) * substeps
+        while k < end:
+            made = 0
+            if gliding:
+                made = glide(
+                    state, rows[0], modal, limits, tables, ways, excitations, strides, step, k, end
+                )
+            if made > 0:
+                k += made
+            else:
+                k = drawn_steps(
+                    state, still, rows, tables, ways, excitations, space, step, k, end, substeps,
+                    gliding,
+                )  # fmt: skip
         tally[WORK] += np.dot(load, a - start)
         states[interval] = a
         velocities[interval] = v[: velocities.shape[1]]

@@ -44,29 +44,34 @@ def row_tables(system: GapSystem) -> Tables:
     return np.concatenate(knots), starts, flat, np.array(moving, dtype=np.int64).reshape(-1, 3)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**SUMS)
 def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
     """Set those of all rows that move to where travels have come, ``ways`` (num_travels,) in m."""
     knots, starts, coefficients, moving = tables
     for m in range(moving.shape[0]):
         row, travel, first = moving[m]
-        own = knots[starts[travel] : starts[travel + 1]]
-        piece = np.searchsorted(own, ways[travel], side="right") - 1
-        piece = min(max(piece, 0), own.size - 2)
-        u = (ways[travel] - own[piece]) / (own[piece + 1] - own[piece])
-        cubic = coefficients[first + piece]
+        low, high = starts[travel], starts[travel + 1] - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if knots[middle] <= ways[travel]:
+                low = middle
+            else:
+                high = middle
+        u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
+        piece = first + low - starts[travel]
         for i in range(rows.shape[1]):
-            high = cubic[2, i] + u * cubic[3, i]
-            rows[row, i] = cubic[0, i] + u * (cubic[1, i] + u * high)
+            bent = coefficients[piece, 2, i] + u * coefficients[piece, 3, i]
+            straight = coefficients[piece, 1, i] + u * bent
+            rows[row, i] = coefficients[piece, 0, i] + u * straight
 
 
 @njit(**SUMS)
-def carry(change: Array, a: Array, time: float, rates: Array) -> None:
+def carry(now: Array, then: Array, a: Array, time: float, rates: Array) -> None:
     """Fill in the convective rates ΔB a/τ of all rows in m/s."""
-    for j in range(change.shape[0]):
+    for j in range(now.shape[0]):
         total = 0.0
         for i in range(a.size):
-            total += change[j, i] * a[i]
+            total += (then[j, i] - now[j, i]) * a[i]
         rates[j] = total / time
 
 
