@@ -68,13 +68,11 @@ def _thick(plate: Plate) -> Array:
 
 
 def _walls(section: Section) -> str:
-    """How thick they are in mm, by name where webs and flanges differ."""
+    """How thick they are in mm, by name where webs, which carry what acts along z, differ."""
+    webs = {number for number, _ in section.carriers("z")}
+    thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (
-        ", ".join(f"{t:g}" for t in sorted({_millimetres(section, i) for i, _ in carriers}))
-        for carriers in (section.carriers("z"), section.carriers("y"))
+        ", ".join(f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == one}))
+        for one in (True, False)
     )
-    return web if web == flange else f"web {web}\nflange {flange}"
-
-
-def _millimetres(section: Section, plate: int) -> float:
-    return round(1e3 * section.plates[plate].thickness, 1)
+    return f"web {web}\nflange {flange}" if flange and web != flange else web
