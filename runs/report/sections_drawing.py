@@ -75,4 +75,7 @@ def _walls(section: Section) -> str:
         ", ".join(f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == one}))
         for one in (True, False)
     )
-    return f"web {web}\nflange {flange}" if flange and web != flange else web
+    if not flange or web == flange:
+        return web
+    both = "flanges\n" if "," in flange else "flange "
+    return f"web {web}\n{both}{flange}"

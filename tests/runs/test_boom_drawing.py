@@ -46,7 +46,7 @@ def test_walls_that_differ_are_named() -> None:
 
     boxes = ["300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\n4"]
     assert sizes("lift") == boxes
-    assert sizes("crane")[0] == "940 × 680\nweb 6\nflange 8, 10"
+    assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
 
 
 def test_all_that_a_lift_has_is_said() -> None:
