@@ -36,9 +36,9 @@ endif
 help: ## list these targets
 	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
 
-# As many cases at a time as there are cores.
+# As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
 verify: $(READY) ## run the cases where they are not up to date, print the verdicts
-	@$(MAKE) --no-print-directory --jobs=$$(nproc) $(REPORTS) $(READINGS)
+	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS) $(READINGS)
 	@cp $(READINGS) runs/out/paper/
 	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 
