@@ -200,7 +200,7 @@ def _but_exponent(reading: Reading) -> Reading:
 
 
 def _results(case: Case) -> Results:
-    finished = run_case(case, "paper.toml", None, Path(), silent)
+    finished = run_case(case, "paper.toml", None, Path(), silent, asked=False)
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")

@@ -87,6 +87,7 @@ def run_case(
     progress: Progress,
     cache: Cache | None = None,
     kept: Cache | None = None,
+    asked: bool = True,
 ) -> Run | None:
     """Run all models of a case. Collective; None but on rank 0.
 
@@ -101,6 +102,7 @@ def run_case(
         progress: told about every stage.
         cache: of reduced shells.
         kept: where motions are that have ended before, and those that end now are kept.
+        asked: whether a designer's questions are answered.
 
     Raises:
         NumericsError: no model can be computed, or a shell that several ranks share.
@@ -119,8 +121,9 @@ def run_case(
             # What overflows is found where it matters, and said there.
             with np.errstate(all="ignore"):
                 outcome = _run_model(
-                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
-                )
+                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache,
+                    kept, asked,
+                )  # fmt: skip
         except _NUMERICS as error:
             failures[model.name] = why = _reason(error)
             first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")
@@ -155,7 +158,8 @@ def run_case(
         ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
         for name, values in ensembles.data_vars.items():
             values.attrs.update(data[name].attrs)
-    summary.answers = answering.of_run(boom, case, summary, answered)
+    if asked:
+        summary.answers = answering.of_run(boom, case, summary, answered)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Run(Results(case, data, summary, ensembles), shells, beams)
 
@@ -188,6 +192,7 @@ def _run_model(
     progress: Progress,
     cache: Cache | None,
     kept: Cache | None,
+    asked: bool,
 ) -> tuple[Finished, ShellOutput | BeamOutput, ModelAnswers] | None:
     """What a model leaves, on rank 0; None elsewhere."""
     begin = perf_counter()
@@ -228,7 +233,9 @@ def _run_model(
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
     with stages.stage("answers"):
-        answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
+        answers = ModelAnswers()
+        if asked:
+            answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
     left = shell or BeamOutput.of(model.lines(boom, built), moved.trajectory)
     summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
     return moved, left, answers
