@@ -2,12 +2,13 @@
 """What every command keeps to, whatever it is given, and a process that shows whether it does.
 
 Exit status 0, 1, 2 or 3; nothing on stderr but one line, shorter than 300 characters, printable,
-where it is not 0; 4 GB; 60 s of CPU beyond what was announced.
+where it is not 0, besides how far it is; 4 GB; 60 s of CPU beyond what was announced.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import resource
 import sys
 import traceback
@@ -34,6 +35,10 @@ MOST_CPU = 60
 OUT, ERR = ".stdout", ".stderr"
 
 
+# What runs/process/progress.py says of what takes long.
+_PROGRESS = re.compile(r".+: .+ (begins|is done|took \d+ s|\d+ %, \d+ s left)")
+
+
 @dataclass(frozen=True, slots=True)
 class Ending:
     """How a command ended.
@@ -56,7 +61,8 @@ class Ending:
             return f"exit status {self.status}: {self.err[-300:]!r}"
         if self.memory > MOST_MEMORY:
             return f"{self.memory / 1e9:.2g} GB"
-        lines = self.err.decode("utf-8", "replace").splitlines()
+        said = self.err.decode("utf-8", "replace").splitlines()
+        lines = [line for line in said if not _PROGRESS.fullmatch(line)]
         if len(lines) != (0 if self.status == 0 else 1):
             return f"{len(lines)} lines with exit status {self.status}: {self.err[-300:]!r}"
         if any(len(line) >= LONGEST or not line.isprintable() for line in lines):

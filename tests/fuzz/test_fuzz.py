@@ -31,6 +31,7 @@ def test_a_sample_keeps_the_contract() -> None:
     [
         (0, b"", ""),
         (2, b"protractile: a: b: c\n", ""),
+        (0, b"report: pictures and figures took 5 s\nshell (1 of 2): motion 6 %, 12 s left\n", ""),
         (2, b"", "0 lines with exit status 2: b''"),
         (0, b"warning\n", "1 lines with exit status 0: b'warning\\n'"),
         (3, b"protractile: a\nb\n", "2 lines with exit status 3: b'protractile: a\\nb\\n'"),

@@ -42,6 +42,7 @@ def test_every_file_of_a_series_run_opens(series: Path) -> None:
         "summary.json",
         "verdicts.json",
         "report.html",
+        "viewer.html",
         ".manifest",
     }
 
