@@ -36,7 +36,7 @@ OUT, ERR = ".stdout", ".stderr"
 
 
 # What runs/process/progress.py says of what takes long.
-_PROGRESS = re.compile(r".+: .+ (begins|is done|took \d+ s|\d+ %, \d+ s left)")
+PROGRESS = re.compile(r".+: .+ (begins|is done|took \d+ s|\d+ %, \d+ s left)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class Ending:
         if self.memory > MOST_MEMORY:
             return f"{self.memory / 1e9:.2g} GB"
         said = self.err.decode("utf-8", "replace").splitlines()
-        lines = [line for line in said if not _PROGRESS.fullmatch(line)]
+        lines = [line for line in said if not PROGRESS.fullmatch(line)]
         if len(lines) != (0 if self.status == 0 else 1):
             return f"{len(lines)} lines with exit status {self.status}: {self.err[-300:]!r}"
         if any(len(line) >= LONGEST or not line.isprintable() for line in lines):

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runs import CASES
+from tests.fuzz.contract import PROGRESS
 
 Row = tuple[str, int, int, str]
 
@@ -73,9 +74,10 @@ def _start(models: Sequence[str], out: Path, cache: Path) -> subprocess.Popen[st
 
 
 def _finish(processes: Sequence[subprocess.Popen[str]]) -> bool:
-    """Whether all end well without a word."""
-    said = [process.communicate()[1] for process in processes]
-    return not any(said) and not any(process.returncode for process in processes)
+    """Whether all end well without a word but of how far they are."""
+    said = [line for process in processes for line in process.communicate()[1].splitlines()]
+    silent = all(PROGRESS.fullmatch(line) for line in said)
+    return silent and not any(process.returncode for process in processes)
 
 
 def _left(folder: Path) -> dict[str, bytes]:
