@@ -26,7 +26,8 @@ def between(tail: Section, head: Section, part: float) -> Section:
         one.name: _mixed(getattr(tail, one.name), getattr(head, one.name), part)
         for one in fields(shape)
     }
-    return type(shape)(**mixed)  # type: ignore[no-any-return]
+    between: Section = type(shape)(**mixed)
+    return between
 
 
 def _mixed(tail: Any, head: Any, part: float) -> Any:

@@ -18,6 +18,7 @@ from matplotlib.patches import Polygon
 from matplotlib.path import Path as Shape
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, Transform
+from matplotlib.typing import HashableList
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Segment, Stop, Support
@@ -136,14 +137,17 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     beside = abs(angle) > STEEP and 0 < len(sections) <= BESIDE
     room = (0.45 if beside else 1.0) * theme.WIDTH
     standing = min(max(LEAST, room * (high - low)[1] / (high - low)[0]), HIGHEST)
-    rows = [["whole", "sections" if beside else "whole"], ["along", "along"]]
+    rows: list[HashableList[str]] = [
+        ["whole", "sections" if beside else "whole"],
+        ["along", "along"],
+    ]
     heights = [standing, LYING]
     if sections and not beside:
         rows.append(["sections", "sections"])
         heights.append(SECTIONS)
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
     FigureCanvasAgg(sheet)
-    panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)  # type: ignore[arg-type]
+    panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
     acts = list(acting(case, boom))
     _draw_whole(
         Drawing(panels["whole"], Affine2D().rotate_deg(angle), 1.0, True), boom, acts, angle

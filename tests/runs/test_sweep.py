@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
@@ -14,44 +12,19 @@ from shutil import rmtree
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.figure import Figure as Sheet
-from PIL import Image
 
 from protractile.cases import run_case
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.folder.files import beside
 from runs.process.shown import shown
-from runs.report import theme
-from runs.report.theme import number
 from runs.sweep import output
 from runs.sweep import run as sweep
-from runs.sweep.figures import in_shown_units
-from runs.sweep.points import Plan, plan
 from runs.sweep.quantities import QUANTITIES, measure, settling_time
 from runs.sweep.run import Outcome
-
-COARSE = CASES / "coarse.toml"
-FAST = ["kantorovich-4", "beam-fe-tied"]
-
-Planned = Callable[..., Plan]
-
-
-@pytest.fixture
-def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
-    """Plans a sweep of case.toml, the coarse case until shortly after its first contact."""
-    monkeypatch.chdir(tmp_path)
-    text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
-    Path("case.toml").write_text(text, encoding="utf-8")
-
-    def sweep_of(*texts: str, models: Sequence[str] | None = None) -> Plan:
-        return plan("case.toml", texts, models or FAST, None)
-
-    return sweep_of
+from tests.runs.sweeping import FAST, Planned, run
 
 
 @pytest.fixture
@@ -66,13 +39,6 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
 
     monkeypatch.setattr(sweep, "run_point", count)
     return cases
-
-
-def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
-    """All outcomes of a sweep, run in this process."""
-    sweep.prepare(folder, planned.file)
-    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
-        return sweep.run_points(planned.points, folder, pool, scratch, lambda *_: None)
 
 
 @pytest.mark.parametrize(
@@ -397,126 +363,6 @@ def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
     assert len(list(Path("out/points").iterdir())) == 1
 
 
-# What invented numbers give charts: all that is no noise but the settling time, which has none.
-CHARTED = [one.name for one in QUANTITIES if one.charted and one.name != "settling_time"]
-
-
-@pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
-    """The matplotlib figures behind the files that are saved."""
-    saved: list[Sheet] = []
-    save = Sheet.savefig
-
-    def keep(sheet: Sheet, path: Path) -> None:
-        saved.append(sheet)
-        save(sheet, path)
-
-    monkeypatch.setattr(Sheet, "savefig", keep)
-    return saved
-
-
-def charts(sweeping: Plan) -> list[str]:
-    """Draw invented numbers, with a gap; what has been drawn."""
-    outcomes = [
-        Outcome(
-            {
-                name: {
-                    quantity.name: 1.0 + 0.1 * i if quantity.name != "settling_time" else None
-                    for quantity in QUANTITIES
-                }
-                for name in FAST[: 1 if i == 2 else 2]
-            },
-            {FAST[1]: "no number is finite"} if i == 2 else {},
-        )
-        for i in range(len(sweeping.points))
-    ]
-    out = Path("out")
-    out.mkdir()
-    output.write(sweeping, outcomes, out)
-    names = sorted(path.name for path in (out / "figures").glob("*.png"))
-    for name in names:
-        with Image.open(out / "figures" / name) as image:
-            assert image.size[0] == round(theme.WIDTH * theme.DPI)
-            assert np.asarray(image.convert("L")).min() < 128
-    return names
-
-
-@pytest.mark.parametrize(
-    ("texts", "names"),
-    [
-        (["joint.play=0:0.01:4"], ["sweep-lines.png"]),
-        (
-            ["joint.play=0:0.01:4", "joint.stiffness=1e8,1e9,1e10,1e11"],
-            [f"sweep-{name.replace('_', '-')}.png" for name in sorted(CHARTED)],
-        ),
-        (
-            ["joint.play=0,0.01", "segment[2].load=20,40,60", "damping.modal=0,0.1"],
-            [f"sweep-lines-{number}.png" for number in range(1, 5)],
-        ),
-    ],
-    ids=["one key", "two keys", "three keys"],
-)
-def test_charts_fit_the_number_of_keys(
-    planned: Planned, texts: list[str], names: list[str]
-) -> None:
-    """What no model has anywhere, the settling time here, has no chart, and noise has none."""
-    assert charts(planned(*texts)) == names
-
-
-def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: list[Sheet]) -> None:
-    """Where many values are, or values here and there, others are labelled."""
-    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"))
-    axes = sheets[0].axes[0]
-    assert axes.get_xlabel() == ""
-    assert sheets[0].axes[1].get_xlabel() == "joint.play (mm)"
-    np.testing.assert_allclose(axes.get_xticks(), [6.0, 10.0, 14.0])
-    assert axes.get_yticks().tolist() != [20.0, 40.0, 45.0]
-
-
-def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers, in kN; the fourth of one model is missing."""
-    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40"))
-    sheet = next(one for one in sheets if one.axes[-1].get_ylabel() == "contact force (kN)")
-    shown = [sorted(text.get_text() for text in axes.texts) for axes in sheet.axes[:2]]
-    forces = [1e-3 * (1.0 + 0.1 * i) for i in range(6)]
-    assert shown[0] == sorted(number(force) for force in forces)
-    assert shown[1] == sorted(number(force) for i, force in enumerate(forces) if i != 2)
-
-
-def test_what_does_not_change_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
-    """The mass of a boom whose play is varied; offsets stand at no axis."""
-    sweeping = planned("joint.play=0:0.009:4")
-    outcomes = [
-        Outcome({name: {"mass": 1382.3, "stress": 5e7 + 1e3 * i} for name in FAST}, {})
-        for i in range(4)
-    ]
-    Path("out").mkdir()
-    output.write(sweeping, outcomes, Path("out"))
-    assert [axes.get_title(loc="left") for axes in sheets[0].axes] == ["stress (MPa)"]
-    (axes,) = sheets[0].axes
-    assert axes.yaxis.get_major_formatter().get_offset() == ""
-
-
-def test_keys_are_shown_in_units_of_their_size() -> None:
-    """Reference: by hand."""
-    data = xr.Dataset(
-        coords={
-            "play": ("play", [0.0, 0.0035], {"units": "m"}),
-            "extension": ("extension", [0.5, 8.0], {"units": "m"}),
-            "load": ("load", [-12e3, 500.0], {"units": "N"}),
-            "small": ("small", [-120.0, 5.0], {"units": "N"}),
-            "model": ("model", ["one"]),
-        }
-    )
-    shown = in_shown_units(data)
-    expected = {
-        "play": ([0.0, 3.5], "mm"), "extension": ([0.5, 8.0], "m"), "load": ([-12.0, 0.5], "kN"),
-        "small": ([-120.0, 5.0], "N"),
-    }  # fmt: skip
-    for name, (values, unit) in expected.items():
-        assert (shown[name].values.tolist(), shown[name].attrs["units"]) == (values, unit)
-
-
 def test_quantities_are_those_that_the_models_answer(planned: Planned) -> None:
     """Reference: other numbers of the same run; the mass of the paper's boom by hand."""
     sweeping = planned("joint.play=0.008,0.014")
@@ -532,23 +378,3 @@ def test_quantities_are_those_that_the_models_answer(planned: Planned) -> None:
         assert own.moved is not None
         assert measured["dynamic_factor"] == own.moved.peaks[0].factor
         assert measured["damage"] is None
-
-
-def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers, 1.0, 1.1, ... m and N, the third missing in one model."""
-    charts(planned("joint.play=0:0.009:4"))
-    (sheet,) = sheets
-    panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}
-    assert list(panels) == [
-        f"{quantity.title} ({quantity.shown_unit})"
-        for quantity in QUANTITIES
-        if quantity.name in CHARTED
-    ]
-    assert sheet.axes[-1].get_xlabel() == "joint.play (mm)"
-    for title, factor in (("tip amplitude (mm)", 1e3), ("contact force (kN)", 1e-3)):
-        lines = {str(line.get_label()): line for line in panels[title].get_lines()}
-        assert list(lines) == FAST
-        for name, third in zip(FAST, (1.2, math.nan), strict=True):
-            expected = factor * np.array([1.0, 1.1, third, 1.3])
-            np.testing.assert_allclose(lines[name].get_ydata(), expected, rtol=1e-12)
-            np.testing.assert_allclose(lines[name].get_xdata(), [0.0, 3.0, 6.0, 9.0])

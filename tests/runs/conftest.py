@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Sweeps that are planned and not run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from runs.sweep.points import Plan, plan
+from tests.runs.sweeping import COARSE, FAST, Planned
+
+
+@pytest.fixture
+def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
+    """Plans a sweep of case.toml, the coarse case until shortly after its first contact."""
+    monkeypatch.chdir(tmp_path)
+    text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
+    Path("case.toml").write_text(text, encoding="utf-8")
+
+    def sweep_of(*texts: str, models: Sequence[str] | None = None) -> Plan:
+        return plan("case.toml", texts, models or FAST, None)
+
+    return sweep_of

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sweep of the coarse case's quick models, run in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from runs import CASES
+from runs.folder.files import beside
+from runs.sweep import run as sweep
+from runs.sweep.points import Plan
+from runs.sweep.run import Outcome
+
+COARSE = CASES / "coarse.toml"
+FAST = ["kantorovich-4", "beam-fe-tied"]
+
+Planned = Callable[..., Plan]
+
+
+def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
+    """All outcomes of a sweep, run in this process."""
+    sweep.prepare(folder, planned.file)
+    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
+        return sweep.run_points(planned.points, folder, pool, scratch, lambda *_: None)
