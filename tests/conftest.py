@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import infer_inner_section, infer_outer_section
 from runs.folder.cache import VARIABLE
+from runs.process import progress
 from tests.space import in_space
 
 # The same examples every time, however slow the machine.
@@ -32,6 +34,12 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+@pytest.fixture(autouse=True)
+def _no_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a command says depends not on how slow the machine is."""
+    monkeypatch.setattr(progress, "EVERY", inf)
 
 
 @pytest.fixture(scope="session")

@@ -3,12 +3,18 @@
 
 from __future__ import annotations
 
-from runs.process.progress import EVERY, Lines
+import pytest
+
+from runs.process import progress
+from runs.process.progress import Lines
+
+EVERY = 5.0
 
 
-def test_tells_the_stage_and_what_is_left() -> None:
+def test_tells_the_stage_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: by hand. Of 40 % in 12 s, 18 s are left; what follows within five seconds is not
     told, nor what has ended by then. What a stage took that is told of at its end is not known."""
+    monkeypatch.setattr(progress, "EVERY", EVERY)
     said: list[str] = []
     times: list[float] = [0.0]
     lines = Lines(["beam", "shell"], said.append, lambda: times[-1])
