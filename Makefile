@@ -49,7 +49,7 @@ gallery: $(REPORTS) ## the pictures of docs/gallery.md, from the verify cases
 	$(BIN)/python -m runs.report.gallery
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
-	$(BIN)/python -m runs.benchmarks.bench
+	$(BIN)/python -m runs.studies.cost.bench
 
 readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
 	$(BIN)/python -m runs.paper.readings

@@ -314,8 +314,8 @@ def export(
     """Write a model of beam elements, calibrated or not, as a script for another program."""
     from runs.case import reading
     from runs.case.messages import BadInput
-    from runs.export.opensees import write
     from runs.folder.cache import Cache
+    from runs.report.opensees import write
 
     if to != "opensees":
         raise BadInput(case, "--to", f"must be 'opensees', got {to!r}")

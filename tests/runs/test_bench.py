@@ -13,7 +13,8 @@ from rich.console import Console
 
 from dynamics.event_driven import TOLERANCE, integrate_events
 from dynamics.motion import Motion
-from runs.benchmarks.bench import (
+from runs.case import reading as case_file
+from runs.studies.cost.bench import (
     COMPILED,
     LEVELS,
     NUMPY,
@@ -23,7 +24,7 @@ from runs.benchmarks.bench import (
     five_terms,
     pressed_system,
 )
-from runs.benchmarks.generic_solvers import (
+from runs.studies.cost.generic_solvers import (
     SOLVERS,
     array_rates,
     compiled_rates,
@@ -31,7 +32,6 @@ from runs.benchmarks.generic_solvers import (
     matched,
     residual_of,
 )
-from runs.case import reading as case_file
 
 SIZES = Sizes(
     duration=0.2,

@@ -21,8 +21,8 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.export.opensees import _points, write
 from runs.pipeline.models import build
+from runs.report.opensees import _points, write
 from runs.studies.motions import friction_case, model_of, move
 from runs.studies.pads import with_pads
 

@@ -8,9 +8,9 @@ from functools import partial
 
 import pytest
 
-from runs.benchmarks import timing
-from runs.benchmarks.timing import MEASURABLE, by_turns
 from runs.report.theme import repeated
+from runs.studies.cost import timing
+from runs.studies.cost.timing import MEASURABLE, by_turns
 
 
 class Clock:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the integrators cost, and what a shell does: ``python -m runs.benchmarks.bench``.
+"""What the integrators cost, and what a shell does: ``python -m runs.studies.cost.bench``.
 
 Everything is measured in one process; methods that are compared take turns, so that what else
 the machine does falls on all of them.
@@ -29,16 +29,6 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.splitting import integrate
 from runs import CASES
-from runs.benchmarks import scaling
-from runs.benchmarks.generic_solvers import (
-    METHODS,
-    OUTPUT_STEP,
-    array_rates,
-    compiled_rates,
-    generic,
-    matched,
-)
-from runs.benchmarks.timing import NOISE, by_turns, leave
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
@@ -46,6 +36,16 @@ from runs.pipeline.models import build
 from runs.process import notices
 from runs.report.tables import Table, wide_console
 from runs.report.theme import repeated
+from runs.studies.cost import scaling
+from runs.studies.cost.generic_solvers import (
+    METHODS,
+    OUTPUT_STEP,
+    array_rates,
+    compiled_rates,
+    generic,
+    matched,
+)
+from runs.studies.cost.timing import NOISE, by_turns, leave
 from runs.studies.motions import gap_system, model_of, shell_of
 
 PAPER = CASES / "paper.toml"

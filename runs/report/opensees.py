@@ -39,7 +39,7 @@ from runs.pipeline.models import build, workshop
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-TEMPLATE = Path(__file__).with_name("opensees_script.py.txt")
+TEMPLATE = Path(__file__).parent / "templates" / "opensees_script.py.txt"
 
 # N up to which a contact law is followed, and points of one that is no straight line.
 LARGEST, POINTS = 1.0e7, 80

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a shell costs by its size and by ranks: ``python -m runs.benchmarks.scaling``.
+"""What a shell costs by its size and by ranks: ``python -m runs.studies.cost.scaling``.
 
 Every run has processes of its own, so that its peak memory is its own.
 """
@@ -27,13 +27,13 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from runs import CASES
-from runs.benchmarks.timing import leave
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.process import notices
 from runs.report.tables import Table, wide_console
+from runs.studies.cost.timing import leave
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")
@@ -165,7 +165,7 @@ def _measured(ranks: int, *what: object) -> dict[str, Any]:
     if launcher and shutil.which("mpirun") is None:
         raise FileNotFoundError("several ranks take mpirun, which is not installed")
     done = subprocess.run(
-        [*launcher, sys.executable, "-m", "runs.benchmarks.scaling", *map(str, what)],
+        [*launcher, sys.executable, "-m", "runs.studies.cost.scaling", *map(str, what)],
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
