@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
@@ -54,6 +54,7 @@ class ReducedShell:
         critical_factor: of the axial forces with the joints pressed, see
             :func:`dynamics.second_order.buckling_factor`; infinite without any.
         far_fields: of the segments, which tell what beams they are.
+        own_loads: (num_segments, num_modes) the part of each in ``system.load``, in N/√kg.
     """
 
     system: GapSystem
@@ -66,6 +67,7 @@ class ReducedShell:
     meshes: Sequence[SegmentMesh]
     critical_factor: float | None = float("inf")
     far_fields: Sequence[FarField] = ()
+    own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def reduce_boom(
@@ -95,7 +97,8 @@ def reduce_boom(
     reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
     coordinates = BoomCoordinates(comm, full.shells, reduced, full.ties, full.lines)
     with stages.stage("rows"):
-        system = _gap_system(full, coordinates)
+        own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
+        system = _gap_system(full, coordinates, own_loads)
     with stages.stage("fields"):
         fields = gather_fields(full.shells, reduced)
         if fields is not None:
@@ -127,6 +130,7 @@ def reduce_boom(
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
         critical_factor=_critical_factor(boom, full, reduced),
         far_fields=far_fields,
+        own_loads=own_loads,
     )
 
 
@@ -144,13 +148,12 @@ def _reduced(full: BoomShell, number: int, options: ShellOptions, stages: Stages
     return own
 
 
-def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
+def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
     """The boom in its coordinates."""
-    own_loads = [coordinates.push(number, load) for number, load in enumerate(full.own_loads)]
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
-        np.sum(own_loads, axis=0),
+        own_loads.sum(axis=0),
         full.stations,
         full.observed,
         [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from runs.folder import records
-from runs.folder.files import beside
+from runs.folder.files import beside, in_turn
 from runs.process.notices import NOTICES
 from runs.process.shown import shown
 
@@ -106,6 +106,15 @@ class Cache:
         )
         self._drop(entry)
         return None
+
+    @contextmanager
+    def making(self, key: str) -> Iterator[None]:
+        """Who else is at the same entry waits meanwhile, unless the cache cannot be written."""
+        with ExitStack() as stack:
+            with suppress(OSError):
+                self.folder.mkdir(parents=True, exist_ok=True)
+                stack.enter_context(in_turn(self.folder / f".{key}.lock"))
+            yield
 
     def keep(self, key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> None:
         """Keep an entry. Where another process has kept the same meanwhile, that one stays.

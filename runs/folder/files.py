@@ -92,6 +92,27 @@ def alone(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
+def in_turn(path: Path) -> Iterator[None]:
+    """Processes that name the same file go on one after another; nothing is left of it.
+
+    Raises:
+        OSError: no file can be there.
+    """
+    while True:
+        with path.open("a", encoding="utf-8") as lock:
+            _lock(lock, fcntl.LOCK_EX)
+            # Who went before has taken it away, and another one may have come since.
+            if _is_at(path, lock):
+                remove = partial(path.unlink, missing_ok=True)
+                try:
+                    with undone(remove):
+                        yield
+                finally:
+                    remove()
+                return
+
+
+@contextmanager
 def beside(path: Path) -> Iterator[Path]:
     """An empty folder to work in beside a path; it goes in the end, and so do earlier ones."""
     path = path.resolve()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -31,7 +32,8 @@ def remembered(
 ) -> ReducedShell:
     """A shell as ``compute`` gives it, from the cache if it is there. Collective.
 
-    A cache that cannot be read or written costs time and a line to say so, and nothing else.
+    A cache that cannot be read or written costs time and a line to say so, and nothing else. Of
+    processes that want the same shell at a time one makes it, and the others wait for it.
 
     Args:
         cache: of the user.
@@ -42,15 +44,16 @@ def remembered(
     """
     start = perf_counter()
     name = key(list(content), program())
-    found = _load(cache, name, mesh_folder) if comm.rank == 0 else None
-    # Fields and meshes are the first rank's alone.
-    shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
-    if shared is not None:
-        return replace(found or shared, seconds={"cache": perf_counter() - start})
-    reduced = compute()
-    if comm.rank == 0:
-        meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
-        cache.remember(name, records.pack(reduced) | meshes)
+    with cache.making(name) if comm.rank == 0 else nullcontext():
+        found = _load(cache, name, mesh_folder) if comm.rank == 0 else None
+        # Fields and meshes are the first rank's alone.
+        shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
+        if shared is not None:
+            return replace(found or shared, seconds={"cache": perf_counter() - start})
+        reduced = compute()
+        if comm.rank == 0:
+            meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
+            cache.remember(name, records.pack(reduced) | meshes)
     return reduced
 
 

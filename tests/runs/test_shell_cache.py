@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 from pathlib import Path
 from shutil import rmtree
+from time import sleep
 
 import numpy as np
 import pytest
@@ -13,15 +16,19 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from dynamics.excitation import Ramp
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case
+from runs.case.build import build_boom, joined
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case, LoadTable
+from runs.case.sections import SectionTable
 from runs.folder import records
 from runs.folder.cache import Cache
+from runs.folder.shell_cache import remembered
 from runs.pipeline.models import build, workshop
 from runs.process.shown import shown
-from shell_model.reduced_shell import ReducedShell
+from shell_model.reduced_shell import ReducedShell, reduce_boom
 
 pytestmark = pytest.mark.slow
 
@@ -55,6 +62,72 @@ def test_a_second_run_skips_mesh_and_reduction(case: Case, tmp_path: Path) -> No
     files = [sorted((tmp_path / name).glob("*.msh")) for name in ("first", "second")]
     assert [path.name for path in files[1]] == ["inner.msh", "outer.msh"]
     assert [path.read_bytes() for path in files[0]] == [path.read_bytes() for path in files[1]]
+
+
+def varied(case: Case, play: float, times: float, ramp: float) -> Case:
+    """The case with another play, so many times its loads, and a gust that rises within ``ramp``
+    in s.
+    """
+    gust = LoadTable(segment="inner", x="head", magnitude=-50.0 * times, ramp=ramp)
+    joints = tuple(joint.model_copy(update={"play": play}) for joint in case.joints)
+    sections = [segment.section for segment in build_boom(case).segments]
+    segments = tuple(
+        segment.model_copy(
+            update={
+                "load": times * segment.load,
+                "height_to_width": None,
+                "section": SectionTable(**asdict(section)) if section is not None else None,
+            }
+        )
+        for segment, section in zip(case.segments, sections, strict=True)
+    )
+    return case.model_copy(update={"joints": joints, "segments": segments, "loads": (gust,)})
+
+
+def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) -> None:
+    """Reference: other code, the same boom reduced with its own play and loads at once.
+
+    Its basis is found by other round-off: compared is what loads do to contacts.
+    """
+    cache = Cache(tmp_path / "cache")
+    reduce(varied(case, 0.014, 1.0, 0.5), cache, tmp_path / "first")
+    other = varied(case, 0.004, -3.0, 0.1)
+    found = reduce(other, cache, tmp_path / "second").system
+    assert len(list(cache.folder.iterdir())) == 1
+    boom, (model,) = build_boom(other), other.models
+    assert isinstance(model, ShellTable)
+    contacts = joined(other, boom, model)
+    own = reduce_boom(boom, contacts.laws, model.options(), MPI.COMM_SELF).system
+    assert found.laws == own.laws
+    assert [x.history for x in found.excitations] == [Ramp(0.1)]
+    for mine, theirs in (
+        (found.load, own.load),
+        (found.excitations[0].load, own.excitations[0].load),
+    ):
+        moved = found.rows / (found.omega2 + 1.0e4) @ mine
+        expected = own.rows / (own.omega2 + 1.0e4) @ theirs
+        assert np.abs(moved - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+def test_of_two_at_a_time_one_reduces(case: Case, tmp_path: Path) -> None:
+    """Reference: analytic, one reduction, though both have looked before it was kept."""
+    cache = Cache(tmp_path / "cache")
+    shell = reduce(case, None, tmp_path / "shell")
+    made: list[int] = []
+
+    def slow() -> ReducedShell:
+        made.append(1)
+        sleep(0.5)
+        return shell
+
+    def one(name: str) -> ReducedShell:
+        return remembered(cache, ("the same",), MPI.COMM_SELF, tmp_path / name, slow)
+
+    with ThreadPoolExecutor(2) as pool:
+        first, second = pool.map(one, ("one", "other"))
+    assert len(made) == 1
+    assert np.array_equal(first.system.omega2, second.system.omega2)
+    assert len(list(cache.folder.iterdir())) == 1
 
 
 def test_another_mesh_is_another_entry(case: Case, tmp_path: Path) -> None:

@@ -91,17 +91,22 @@ class ShellTable(ModelTable):
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
         from shell_model.reduced_shell import reduce_boom
+        from shell_model.standard import standard_boom, standard_laws, with_plays_and_loads
 
         assert workshop is not None
         comm, folder = workshop.comm, workshop.mesh_folder
         if comm.rank == 0:
             folder.mkdir(parents=True)
-        boom, laws, lateral = joined.boom, joined.laws, joined.lateral_laws
+        boom, of_joints = standard_boom(joined.boom), (joined.laws, joined.lateral_laws)
+        laws, lateral = (standard_laws(boom, own) for own in of_joints)
         options = self.options()
         there = replace(options, mesh_folder=folder)
-        shell = workshop.remember(
+        made = workshop.remember(
             (boom, laws, lateral, options),
             partial(reduce_boom, boom, laws, there, comm, workshop.tell, lateral),
+        )
+        shell = with_plays_and_loads(
+            made, joined.boom, dict(zip(("z", "y"), of_joints, strict=True))
         )
         return Built(shell.system, shell.num_dofs, shell.seconds, shell.critical_factor, shell)
 

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""One reduced shell for all booms that differ in plays and in how much they are loaded.
+
+What a shell is reduced on are directions of forces, whatever their size, and a play is where a
+contact begins: neither has a part in the coordinates. So the shell of the boom without play and
+under unit loads is reduced, and plays, loads and their histories are put into its system. In space
+the lateral lever of a contact goes with the play, and stays what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.contact import ContactLaw
+from dynamics.excitation import Excitation, Released, Step, Thrown
+from geometry.boom import Boom, Direction, Joint, Segment
+from geometry.load import Load
+from shell_model.reduced_shell import ReducedShell
+
+
+def standard_boom(boom: Boom) -> Boom:
+    """The boom under unit loads, in the plane without play."""
+    joints = boom.joints
+    if not boom.spatial:
+        joints = tuple(replace(joint, clearance=0.0) for joint in joints)
+    return replace(
+        boom,
+        segments=tuple(map(_unit_segment, boom.segments)),
+        joints=joints,
+        loads=tuple(map(_unit_load, boom.loads)),
+    )
+
+
+def standard_laws(boom: Boom, laws: Sequence[ContactLaw]) -> list[ContactLaw]:
+    """The laws of a boom's joints without play; as they are where shims take some of it."""
+    return [
+        law if _shimmed(joint) else law.behind(0.0)
+        for joint, law in zip(boom.joints, laws, strict=False)
+    ]
+
+
+def with_plays_and_loads(
+    shell: ReducedShell, boom: Boom, laws: Mapping[Direction, Sequence[ContactLaw]]
+) -> ReducedShell:
+    """The shell of a boom from that of its :func:`standard_boom`.
+
+    Args:
+        shell: with the boom's :func:`standard_laws`.
+        boom: as it is.
+        laws: of its joints along each direction.
+    """
+    system = shell.system
+    more = [
+        0.0 if _shimmed(joint) else law.clearance
+        for direction in boom.directions
+        for joint, law in zip(boom.joints, laws[direction], strict=True)
+        if not joint.tied
+        for _ in joint.stations
+    ]
+    # Behind those of the joints come those of stops, which keep theirs.
+    more += [0.0] * (len(system.stations) - len(more))
+    factors = np.array([_own_load(segment) for segment in boom.segments])
+    changing = [load for load in boom.loads if _changing(load)]
+    opened = replace(
+        system,
+        laws=[
+            law.behind(law.clearance + more[station]) if more[station] else law
+            for law, station in zip(system.laws, system.station_of_row.tolist(), strict=True)
+        ],
+        load=factors @ shell.own_loads,
+        excitations=[
+            Excitation(load.magnitude * unit.load, load.history)
+            for load, unit in zip(changing, system.excitations, strict=True)
+        ],
+    )
+    return replace(shell, system=opened, own_loads=factors[:, None] * shell.own_loads)
+
+
+def _own_load(segment: Segment) -> float:
+    """What its uniform loads are measured by in N/m."""
+    return segment.load or (0.0 if segment.lateral is None else segment.lateral.load)
+
+
+def _unit_segment(segment: Segment) -> Segment:
+    unit = _own_load(segment)
+    if unit == 0.0:
+        return segment
+    lateral = segment.lateral
+    if lateral is not None:
+        lateral = replace(lateral, load=lateral.load / unit)
+    return replace(segment, load=segment.load / unit, lateral=lateral)
+
+
+def _changing(load: Load) -> bool:
+    """Whether it follows a history, and is not over at t = 0."""
+    return not isinstance(load.history, Released | Thrown)
+
+
+def _unit_load(load: Load) -> Load:
+    if not _changing(load):
+        return load
+    return replace(load, magnitude=float(load.magnitude != 0.0), history=Step())
+
+
+def _shimmed(joint: Joint) -> bool:
+    return any(pad.shim for pad in joint.pads)
