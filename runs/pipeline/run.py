@@ -24,7 +24,8 @@ from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
 from runs.folder.versions import versions
-from runs.pipeline import answering, members
+from runs.pipeline import members
+from runs.pipeline.answering import of_model, of_run
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
 from runs.pipeline.card import card
@@ -53,21 +54,13 @@ def silent(model: str, stage: str, part: float) -> None:
 HALVINGS = 2
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
-    """Results, and by the model's name what each shell and each beam leaves."""
-
-    results: Results
-    shells: dict[str, ShellOutput]
-    beams: dict[str, BeamOutput]
-
-
 class Stages:
     """The stages of one model, how far each is, and the wall time of those that are done in s."""
 
     def __init__(self, model: str, progress: Progress) -> None:
         self.tell = partial(progress, model)
         self.seconds: dict[str, float] = {}
+        self.begin = perf_counter()
 
     @contextmanager
     def stage(self, name: str) -> Iterator[Callable[[float], None]]:
@@ -79,6 +72,27 @@ class Stages:
         self.seconds[name] = perf_counter() - begin
 
 
+@dataclass(frozen=True, slots=True)
+class Ran:
+    """A model as it was built, its motion, what a shell leaves, and how long all that took."""
+
+    model: Model
+    built: Built
+    moved: Finished
+    shell: ShellOutput | None
+    stages: Stages
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Results, and by the model's name what each shell and each beam leaves."""
+
+    results: Results
+    shells: dict[str, ShellOutput]
+    beams: dict[str, BeamOutput]
+    ran: dict[str, Ran]
+
+
 def run_case(
     case: Case,
     file: str,
@@ -87,7 +101,39 @@ def run_case(
     progress: Progress,
     cache: Cache | None = None,
     kept: Cache | None = None,
-    asked: bool = True,
+) -> Run | None:
+    """Run all models of a case, as :func:`move_case` does, and answer what a designer asks.
+
+    A model that has moved and cannot be answered for is in ``failures``, too.
+    """
+    run = move_case(case, file, comm, mesh_folder, progress, cache, kept)
+    if run is None:
+        return None
+    boom, summary = build_boom(case), run.results.summary
+    answers = {}
+    for name, ran in run.ran.items():
+        own, shell = summary.models[name], ran.shell
+        with ran.stages.stage("answers"), np.errstate(all="ignore"):
+            try:
+                answers[name] = of_model(
+                    boom, case, ran.model, ran.built, ran.moved.trajectory, shell
+                )
+            except _NUMERICS as error:
+                summary.failures[name], answers[name] = _reason(error), ModelAnswers()
+        own.seconds = ran.stages.seconds
+        own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
+    summary.answers = of_run(boom, case, summary, answers)
+    return run
+
+
+def move_case(
+    case: Case,
+    file: str,
+    comm: MPI.Intracomm | None,
+    mesh_folder: Path,
+    progress: Progress,
+    cache: Cache | None = None,
+    kept: Cache | None = None,
 ) -> Run | None:
     """Run all models of a case. Collective; None but on rank 0.
 
@@ -102,7 +148,6 @@ def run_case(
         progress: told about every stage.
         cache: of reduced shells.
         kept: where motions are that have ended before, and those that end now are kept.
-        asked: whether a designer's questions are answered.
 
     Raises:
         NumericsError: no model can be computed, or a shell that several ranks share.
@@ -110,10 +155,7 @@ def run_case(
     boom = build_boom(case)
     first_rank = comm is None or comm.rank == 0
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
-    outcomes: dict[str, Finished] = {}
-    answered: dict[str, ModelAnswers] = {}
-    shells: dict[str, ShellOutput] = {}
-    beams: dict[str, BeamOutput] = {}
+    ran: dict[str, Ran] = {}
     failures: dict[str, str] = {}
     first_failure = None
     for number, model in enumerate(case.models, start=1):
@@ -121,9 +163,8 @@ def run_case(
             # What overflows is found where it matters, and said there.
             with np.errstate(all="ignore"):
                 outcome = _run_model(
-                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache,
-                    kept, asked,
-                )  # fmt: skip
+                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
+                )
         except _NUMERICS as error:
             failures[model.name] = why = _reason(error)
             first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")
@@ -131,15 +172,12 @@ def run_case(
         except _SharedFailure as error:
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         if outcome is not None:
-            outcomes[model.name], left, answered[model.name] = outcome
-            if isinstance(left, ShellOutput):
-                shells[model.name] = left
-            else:
-                beams[model.name] = left
+            ran[model.name] = outcome
     if not first_rank:
         return None
-    if first_failure is not None and not outcomes:
+    if first_failure is not None and not ran:
         raise first_failure
+    outcomes = {name: one.moved for name, one in ran.items()}
     summary = Summary(
         title=case.title,
         case_hash=toml.digest(case),
@@ -158,10 +196,17 @@ def run_case(
         ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
         for name, values in ensembles.data_vars.items():
             values.attrs.update(data[name].attrs)
-    if asked:
-        summary.answers = answering.of_run(boom, case, summary, answered)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
-    return Run(Results(case, data, summary, ensembles), shells, beams)
+    return Run(
+        Results(case, data, summary, ensembles),
+        {name: one.shell for name, one in ran.items() if one.shell is not None},
+        {
+            name: BeamOutput.of(one.model.lines(boom, one.built), one.moved.trajectory)
+            for name, one in ran.items()
+            if one.shell is None
+        },
+        ran,
+    )
 
 
 # What a model's numbers may lead to.
@@ -192,10 +237,8 @@ def _run_model(
     progress: Progress,
     cache: Cache | None,
     kept: Cache | None,
-    asked: bool,
-) -> tuple[Finished, ShellOutput | BeamOutput, ModelAnswers] | None:
+) -> Ran | None:
     """What a model leaves, on rank 0; None elsewhere."""
-    begin = perf_counter()
     first_rank = comm is None or comm.rank == 0
     stages = Stages(model.name, progress)
     if model.needs_shell or first_rank:
@@ -232,13 +275,8 @@ def _run_model(
         with stages.stage("stress"):
             shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
         summary.stress = shell.largest
-    with stages.stage("answers"):
-        answers = ModelAnswers()
-        if asked:
-            answers = answering.of_model(boom, case, model, built, moved.trajectory, shell)
-    left = shell or BeamOutput.of(model.lines(boom, built), moved.trajectory)
-    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
-    return moved, left, answers
+    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - stages.begin
+    return Ran(model, built, moved, shell, stages)
 
 
 def _move(
