@@ -46,6 +46,13 @@ class Member:
     integrator: Integrator
     kept: Sequence[str] = KEPT
 
+    def within(self, part: float) -> Member:
+        """The beginning of the run, in whole output steps."""
+        outputs = max(1, round(part * self.motion.outputs))
+        return replace(
+            self, motion=replace(self.motion, duration=outputs * self.motion.output_step)
+        )
+
 
 def perturbations(members: int, relative: float, seed: int) -> Array:
     """(members,) relative changes: none for member 0, the others uniform within ±relative."""

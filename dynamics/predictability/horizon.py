@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from itertools import chain
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -33,6 +33,11 @@ from dynamics.trajectory import Trajectory
 SHARES = (0.01, 0.20)
 # A part at which curves that started close still part in proportion to how close.
 EARLY = 1.0e-4
+
+# Of the duration, in which runs part most often, and else all of it.
+_PARTS = 0.25, 1.0
+# Of the progress, what each of these is for the large changes, and again for the small ones.
+_STAGE = 0.5 / len(_PARTS)
 
 
 def spread(members: Array) -> Array:
@@ -160,7 +165,7 @@ def measure_horizons(
     """Run the motion as it is, with a finer step, and changed by each size.
 
     Where the largest change parts no two runs to the first share, smaller ones do not either, and
-    are not run.
+    are not run; nor is the rest of those that have parted early to all shares.
 
     Few partners are enough for the growth at a small share; its scatter tells how well it is known.
     Horizons at large shares are chance, and come sooner the more partners there are.
@@ -195,37 +200,42 @@ def measure_horizons(
     *smaller, largest = [
         [replace(one, change=float(change)) for change in size * parts] for size in sizes
     ]
-    # The longest run first, so that none waits for it in the end.
-    first = [replace(one, integrator=integrator.finer()), *largest]
+    finer = [replace(one, integrator=integrator.finer())]
     if unchanged is None:
-        first.append(one)
-    share_of_first = len(first) / (len(first) + sum(map(len, smaller)))
-    runs = run_members(first, executor, lambda part: progress(part * share_of_first))
-    finer, *changed = (run[observer].values for run in runs)
-    whole = changed.pop() if unchanged is None else unchanged.data[observer].values
-    time = runs[0]["time"].values
+        (alone,) = run_members([one], executor)
+    else:
+        alone = unchanged.data
+    whole, time = alone[observer].values, alone["time"].values
 
-    def reached(near: Sequence[Array]) -> list[float]:
-        return [horizon(np.array([whole, *near]), time, share) for share in shares]
+    def told(before: float, part: float) -> None:
+        progress(before + _STAGE * part)
 
-    times = np.full((sizes.size, len(shares)), np.nan)
-    times[-1] = reached(changed)
-    if smaller and np.isfinite(times[-1, 0]):
-        runs = run_members(
-            [*chain.from_iterable(smaller)],
-            executor,
-            lambda part: progress(share_of_first + part * (1.0 - share_of_first)),
-        )
-        tips = [run[observer].values for run in runs]
-        times[:-1] = [reached(tips[i : i + partners]) for i in range(0, len(tips), partners)]
+    def parted(groups: Sequence[Sequence[Member]], done: float) -> Array:
+        """(num_groups, num_shares) in s, where ``done`` is the part done before."""
+        found = np.full((len(groups), len(shares)), np.nan)
+        for number, part in enumerate(_PARTS):
+            left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
+            asked = [member.within(part) for g in left for member in groups[g]]
+            runs = iter(run_members(asked, executor, partial(told, done + number * _STAGE)))
+            for g in left:
+                tips = [next(runs)[observer].values for _ in groups[g]]
+                near = [np.append(tip, whole[tip.size :]) for tip in tips]
+                found[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
+        return found
+
+    # The longest run first, so that none waits for it in the end.
+    of_step, of_largest = parted([finer, largest], 0.0)
+    of_smaller = np.full((len(smaller), len(shares)), np.nan)
+    if np.isfinite(of_largest[0]):
+        of_smaller = parted(smaller, 0.5)
     progress(1.0)
-    of_step = reached([finer])
+    times = np.array([*of_smaller, of_largest])
     growth = [Growth.fit(sizes, t) for t in times.T]
     return Horizons(
         relatives=sizes,
         shares=np.asarray(shares, dtype=float),
         times=times,
-        of_step=np.array(of_step),
+        of_step=of_step,
         growth=growth,
         step_change=growth[0].change(float(np.nan_to_num(of_step[0], nan=np.inf))),
     )

@@ -12,8 +12,9 @@ import pytest
 
 from dynamics.integrators import Events, Integrator, Splitting
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability.ensemble import changed, integrate_ensemble
 from dynamics.predictability.horizon import (
+    EARLY,
     Growth,
     Horizons,
     horizon,
@@ -61,20 +62,38 @@ class Counted:
         return replace(self, way=self.way.finer())
 
 
-def test_stops_when_it_is_known_that_there_is_no_horizon() -> None:
+def test_stops_when_it_is_known() -> None:
     """Reference: by hand. Of the linear system the finer step and three runs of the largest change,
-    besides the motion itself; of the chaotic one three of each change."""
+    besides the motion itself; of the chaotic one three of each change. Within a quarter the finer
+    step alone has parted, and is not run to the end."""
     sizes = [1e-12, 1e-10, 1e-8, 1e-6]
-    for system, num_runs in ((LINEAR, 1 + 3), (CHAOTIC, 1 + 4 * 3)):
+    for system, begun, ended in ((LINEAR, 1 + 3, 1 + 3), (CHAOTIC, 1 + 4 * 3, 4 * 3)):
         motion = Motion(system, 20.0, 1e-2)
         counted = Counted(Splitting(1e-3), [])
         unchanged = counted.way(motion)
         found = measure_horizons(motion, sizes, "load", integrator=counted, unchanged=unchanged)
-        assert len(counted.runs) == num_runs
+        durations = [run.duration for run in counted.runs]
+        assert (durations.count(5.0), durations.count(20.0)) == (begun, ended)
+        assert (found.of_step <= 5.0).all() == (system is CHAOTIC)
         again = measure_horizons(motion, sizes, "load", integrator=counted)
-        assert len(counted.runs) == 2 * num_runs + 1
+        assert len(counted.runs) == 2 * (begun + ended) + 1
         np.testing.assert_array_equal(found.times, again.times)
         np.testing.assert_array_equal(found.of_step, again.of_step)
+
+
+def test_what_parts_early_is_not_run_to_the_end() -> None:
+    """Reference: other code, all members over the whole duration."""
+    motion, sizes = Motion(CHAOTIC, 20.0, 1e-2), [1e-8, 1e-6]
+    way = Splitting(1e-3)
+    found = measure_horizons(motion, sizes, "load", 1, way)
+    tips = [way(changed(motion, "load", 1.0 + size)).data["tip"].values for size in (0.0, *sizes)]
+    time = 1e-2 * np.arange(tips[0].size)
+    expected = [
+        [horizon(np.array([tips[0], tip]), time, share) for share in (EARLY, 0.01)]
+        for tip in tips[1:]
+    ]
+    assert np.max(expected) < 20.0
+    np.testing.assert_array_equal(found.times, expected)
 
 
 def test_horizon_of_a_known_growth() -> None:
@@ -176,12 +195,13 @@ def test_tells_its_progress() -> None:
     measure_horizons(
         Motion(LINEAR, 1.0, 1e-2), [1e-9, 1e-6], "load", partners=1, progress=parts.append
     )
-    assert parts == [0.25, 0.5, 0.75, 1.0]
+    assert parts == [0.125, 0.25, 0.375, 0.5, 1.0]
     parts.clear()
     measure_horizons(
         Motion(CHAOTIC, 20.0, 1e-2), [1e-9, 1e-6], "load", partners=1, progress=parts.append
     )
-    assert parts == [0.25, 0.5, 0.75, 1.0, 1.0]
+    assert np.all(np.diff(parts) >= 0.0)
+    assert parts[-1] == 1.0
 
 
 def test_refuses_what_no_change_moves() -> None:
