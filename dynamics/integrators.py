@@ -56,6 +56,10 @@ class Splitting:
         """Half the step, a quarter of the error."""
         return Splitting(0.5 * self.step)
 
+    def coarser(self) -> Splitting:
+        """Twice the step."""
+        return Splitting(2.0 * self.step)
+
 
 @dataclass(frozen=True, slots=True)
 class Events:
@@ -79,6 +83,10 @@ class Events:
     def finer(self) -> Events:
         """A hundredth of the tolerance."""
         return Events(0.01 * self.tolerance)
+
+    def coarser(self) -> Events:
+        """A hundred times the tolerance."""
+        return Events(100.0 * self.tolerance)
 
 
 def by_splitting(motion: Motion) -> Splitting:

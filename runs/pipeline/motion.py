@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError
+from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.step import contact_step
@@ -67,10 +67,13 @@ class Plan:
         """The motion itself."""
         return self.integrator(self.motion, progress)
 
-    def change_by_finer_steps(self, trajectory: Trajectory, progress: Progress) -> float:
-        """What half the step changes at the tip, as a part of its range."""
-        finer = self.finer().trajectory(progress)
-        tips = [np.asarray(run.data["tip"].values) for run in (trajectory, finer)]
+    def change_by_longer_steps(self, trajectory: Trajectory, progress: Progress) -> float | None:
+        """What twice the step changes at the tip, as a part of its range; None if too long."""
+        try:
+            longer = replace(self, integrator=self.integrator.coarser()).trajectory(progress)
+        except StepTooLong:
+            return None
+        tips = [np.asarray(run.data["tip"].values) for run in (trajectory, longer)]
         span = float(np.ptp(tips[0]))
         return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0
 

@@ -321,8 +321,8 @@ def _move_at(
     summary = _summary(model, system, trajectory, num_dofs)
     # Under prescribed forces friction makes the motion regular; what contacts press does not.
     if system.frictions and not any(friction.pressed_by for friction in system.frictions):
-        with stages.stage("half the step") as told:
-            summary.step_halving = plan.change_by_finer_steps(trajectory, told)
+        with stages.stage("twice the step") as told:
+            summary.step_doubling = plan.change_by_longer_steps(trajectory, told)
     if case.ensemble is None or not system.laws:
         return Finished(trajectory, summary, None)
     with stages.stage("ensemble") as told:

@@ -160,8 +160,9 @@ class ModelSummary(Entry):
 
     ``wall_time`` in s is what has passed, be it for compiling loops, while a stage whose results
     earlier runs have kept has the seconds that it took then.
-    ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_halving`` is what half the step
-    changes at the tip, as a part of its range; ``refused_steps`` says why steps were halved;
+    ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_doubling`` is what twice
+    the step changes at the tip, as a part of its range; ``refused_steps`` says why steps were
+    halved;
     ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
     of the axial forces at which the boom with its joints pressed buckles. The last four are a
     shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N, ``mesh_error`` as a
@@ -181,7 +182,7 @@ class ModelSummary(Entry):
     first_peak: dict[str, Peak]
     peak_contact_force: Known
     wall_time: float | None = None
-    step_halving: float | None = None
+    step_doubling: float | None = None
     ensemble: EnsembleSummary | None = None
     horizons: Growth | None = None
     steps_for_peaks: StepsForPeaks | None = None

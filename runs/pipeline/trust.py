@@ -92,9 +92,9 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
 
 
 def _step(summary: Summary) -> Iterator[str]:
-    halved = [model.step_halving for model in summary.models.values() if model.step_halving]
-    if halved:
-        yield f"Half the step changes the tip by {percent(max(halved))} of its range at most."
+    doubled = [model.step_doubling for model in summary.models.values() if model.step_doubling]
+    if doubled:
+        yield f"Twice the step changes the tip by {percent(max(doubled))} of its range at most."
 
 
 def _reduction(summary: Summary) -> Iterator[str]:

@@ -100,10 +100,10 @@ def step_table(results: Results) -> Table:
             f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
             f"of them within {PERCENT * within.within:g} %, beyond the ensemble's spread."
         )
-    halved = [model.step_halving for model in models]
-    if any(change is not None for change in halved):
-        heading = "change by half the step\n% of the tip's range"
-        columns.append(Column(heading, halved, ".2g", PERCENT))
+    doubled = [model.step_doubling for model in models]
+    if any(change is not None for change in doubled):
+        heading = "change by twice the step\n% of the tip's range"
+        columns.append(Column(heading, doubled, ".2g", PERCENT))
     if results.case.statements:
         notes.append(
             "The paper names at most 2000 steps for the series and more than 4000 for beam "

@@ -41,11 +41,12 @@ def test_values_move_as_their_functions(integrator: Integrator) -> None:
 
 
 @pytest.mark.parametrize("integrator", [Splitting(2e-3), Events(1e-4)])
-def test_finer_ones_lose_less(integrator: Integrator) -> None:
+def test_finer_ones_lose_less(integrator: Splitting | Events) -> None:
     """Reference: the coarser one's energy residual; half a step of order two leaves a quarter."""
     motion = Motion(CHAOTIC, 5.0, 1e-2)
     coarse = integrator(motion).energy_residual
     assert integrator.finer()(motion).energy_residual < 0.6 * coarse
+    assert integrator.coarser()(motion).energy_residual > coarse / 0.6
 
 
 def test_few_modes_go_from_contact_to_contact() -> None:
