@@ -11,6 +11,7 @@ SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 READINGS := runs/out/readings/readings.json
+SWINGS := runs/out/drawn-out-sweep/sweep.csv
 
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
 export OMP_NUM_THREADS ?= 1
@@ -45,7 +46,7 @@ verify: $(READY) ## run the cases where they are not up to date, print the verdi
 snapshots: $(REPORTS) ## pictures of the verify cases
 	@set -e; for case in $(VERIFY_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
-gallery: $(REPORTS) ## the pictures of docs/gallery.md, from the verify cases
+gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verify cases
 	$(BIN)/python -m runs.report.gallery
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
@@ -104,6 +105,11 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 $(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
 	@echo "surveying readings of $< ..."
 	@$(BIN)/python -m runs.paper.readings >/dev/null
+
+# How fast the boom may be drawn out.
+$(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
+	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko \
+	    --vary joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -36,6 +36,7 @@ from runs.pipeline.play import added
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.summary import Summary
+from runs.pipeline.swing import swing
 from runs.pipeline.trust import known
 
 
@@ -74,7 +75,11 @@ def of_model(
     moved, lives = _moving(played, resting, trajectory, model, case)
     walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
     answers = ModelAnswers(
-        rests=resting.rests, modes=resting.modes, moved=replace(moved, walls=walls), life=lives
+        rests=resting.rests,
+        modes=resting.modes,
+        moved=replace(moved, walls=walls),
+        life=lives,
+        swing=swing(played.system, trajectory, case, model),
     )
     if model.play_free or not boom.joints:
         return answers

@@ -315,6 +315,28 @@ class Life:
 
 
 @dataclass(frozen=True, slots=True)
+class Swing:
+    """How far the tip swings while the boom is drawn out, and afterwards.
+
+    A swing is the largest distance of the tip from where it would rest, drawn out as far as it is
+    and under the loads of that moment.
+
+    Args:
+        tip: the swing in m.
+        time: when it is, in s.
+        speed: the mean speed of the fastest drive while it moves, in m/s.
+        where_begun, where_ended: those of the same boom that stands where drives begin and end,
+            under the same loads, in m; None where that cannot be computed.
+    """
+
+    tip: float
+    time: float
+    speed: float
+    where_begun: float | None
+    where_ended: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class ModelAnswers:
     """Of one model.
 
@@ -329,6 +351,7 @@ class ModelAnswers:
             cannot be computed. Walls of shells are left out.
         life: of each segment whose section is known, where cycles can be counted.
         tied_life: likewise without play.
+        swing: while it is drawn out; None where it is not, before drives end, and without a rest.
     """
 
     rests: list[AtRest] = field(default_factory=list)
@@ -339,6 +362,7 @@ class ModelAnswers:
     tied_moved: Moved | None = None
     life: list[Life] = field(default_factory=list)
     tied_life: list[Life] = field(default_factory=list)
+    swing: Swing | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Moved, Peak, PlayAdds
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.results import Results
-from runs.report.drive_tables import drive_table
+from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import leading
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
@@ -218,6 +218,7 @@ def answer_tables(results: Results) -> list[Table]:
         mode_table(results),
         peak_table(results),
         drive_table(results),
+        swing_table(results),
         *pad_tables(results),
         stress_table(results),
         life_table(results),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What drives take, as a table: forces, power and work."""
+"""What drives take and do, as tables: forces, power and work, and how the tip swings."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from runs.report.drive_figures import driven
 from runs.report.tables import Column, Table
 
 PER_KILO = 1.0e-3
+MILLI = 1.0e3
 
 
 def drive_table(results: Results) -> Table | None:
@@ -42,6 +43,28 @@ def drive_table(results: Results) -> Table | None:
         "contact forces do on their slope.",
     )
     return Table("Drives", columns, notes, "drives")
+
+
+def swing_table(results: Results) -> Table | None:
+    """Of every model that is drawn out, beside the same boom that stands; None of none."""
+    answers = results.summary.answers
+    models = {} if answers is None else answers.models
+    rows = {name: own.swing for name, own in models.items() if own.swing is not None}
+    if not rows:
+        return None
+    swings = list(rows.values())
+    columns = (
+        Column("model", list(rows)),
+        Column("tip swings\nmm", [one.tip for one in swings], ".4g", MILLI),
+        Column("at\ns", [one.time for one in swings], ".3f"),
+        Column("at rest where\nit begins, mm", [one.where_begun for one in swings], ".4g", MILLI),
+        Column("at rest where\nit ends, mm", [one.where_ended for one in swings], ".4g", MILLI),
+    )
+    notes = (
+        "The largest distance of the tip from where it would rest, drawn out as far as it is and "
+        "under the loads of that moment; beside it that of the same boom that is not drawn.",
+    )
+    return Table("Swing while it is drawn", columns, notes, "swing")
 
 
 _READ = ("drawn_out", "drive_friction", "drive_power")

@@ -3,7 +3,7 @@
 
 ``python -m runs.report.gallery`` takes them from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` leaves, and
-writes the pictures in docs/gallery.
+``drawn-out-sweep``, which ``make gallery`` makes, and writes the pictures in docs/gallery.
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ COPIED = {
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
     "three-segments-overlap": ("three-segments", "snapshots/overlap-2-first-peak.png"),
     "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
+    "drawn-out-swing": ("drawn-out-sweep", "figures/sweep-swing.png"),
     "benchmarks": ("convergence", "figures/benchmarks.png"),
     "meshes": ("convergence", "figures/mesh.png"),
     "solid": ("convergence", "figures/solid-frequencies.png"),

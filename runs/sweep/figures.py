@@ -3,7 +3,8 @@
 
 One varied key: a panel for each quantity, a line for each model. Two keys: a map of each model for
 each quantity. More: lines over the first key for each combination of the ends of the others. What
-does not change, and what is noise, is left out.
+does not change, and what is noise, is left out. Where the one key is how fast a boom is drawn out,
+its swing over the speed has a chart of its own.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.theme import number
 from runs.sweep.quantities import QUANTITIES, Quantity
+from runs.sweep.swings import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 # Numbers along axes are whole: none is to be added to another one at their end.
@@ -71,6 +73,8 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
                 title = f"Sweep over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
                 name = f"sweep-lines-{count}.png" if ends else "sweep-lines.png"
                 _lines(part, strokes, title, folder / name)
+        if len(keys) == 1:
+            draw_swings(data, strokes, folder / "sweep-swing.png")
 
 
 def _changing(data: xr.Dataset) -> list[Quantity]:

@@ -19,6 +19,7 @@ from runs.sweep.figures import draw
 from runs.sweep.points import Plan
 from runs.sweep.quantities import QUANTITIES, Quantity
 from runs.sweep.run import Outcome
+from runs.sweep.swings import said, swings
 
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
@@ -85,7 +86,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 def show(data: xr.Dataset, console: Console) -> None:
     """Print from where to where each model goes, and where its tip goes farthest.
 
-    The energy residual is the largest of all points.
+    The energy residual is the largest of all points. How fast it may be drawn out is said below.
     """
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
@@ -107,6 +108,8 @@ def show(data: xr.Dataset, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
+    for line in (line for name, one in swings(data).items() for line in said(name, one)):
+        console.print(line, markup=False, highlight=False)
 
 
 def _range(values: xr.DataArray, quantity: Quantity) -> str:

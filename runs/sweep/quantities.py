@@ -60,6 +60,10 @@ QUANTITIES = (
     Quantity("mass", "kg", "mass", 1.0, "kg"),
     Quantity("settling_time", "s", "settling time", 1.0, "s"),
     Quantity("first_contact", "s", "first contact", 1.0, "s"),
+    Quantity("swing", "m", "swing while drawn out", 1.0e3, "mm"),
+    Quantity("swing_where_begun", "m", "swing at rest where it begins", 1.0e3, "mm", charted=False),
+    Quantity("swing_where_ended", "m", "swing at rest where it ends", 1.0e3, "mm", charted=False),
+    Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
     Quantity("peak_contact_force", "N", "peak of a blow", 1.0e-3, "kN", charted=False),
     Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
 )
@@ -73,7 +77,8 @@ def measure(results: Results, model: str) -> Measured:
     dynamic factor is the largest deflection over the largest at rest. The contact force is the
     largest mean of an output interval at any station, the peak of a blow what no pad feels as long;
     the stress that of an outer fibre, of section forces, the wall stress a shell's own over a
-    patch, the damage that of a life at the worst place.
+    patch, the damage that of a life at the worst place. Swings are those of
+    :class:`runs.pipeline.answers.Swing`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
@@ -104,6 +109,10 @@ def _answered(own: ModelAnswers) -> Measured:
         "wall_stress": max((wall.patch for wall in walls), default=None),
         "damage": max(damages, default=None),
         "first_frequency": own.modes[0].frequency if own.modes else None,
+        "swing": None if own.swing is None else own.swing.tip,
+        "swing_where_begun": None if own.swing is None else own.swing.where_begun,
+        "swing_where_ended": None if own.swing is None else own.swing.where_ended,
+        "drive_speed": None if own.swing is None else own.swing.speed,
     }
 
 

@@ -16,7 +16,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.pipeline.results import Results
-from runs.report.drive_tables import drive_table
+from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
 from runs.sweep.points import plan
@@ -172,6 +172,7 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     assert float(data["drive_friction"].max()) > 100.0
     assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4
     _check_table(results, data)
+    _check_swings(results)
     _check_figures(draw(results, tmp_path))
 
 
@@ -187,6 +188,18 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
     assert cells["at most\nkN"] == [pytest.approx(force.max())]
     assert cells["power, at most\nkW"] == [pytest.approx(power.max())]
     assert cells["work\nkJ"] == [pytest.approx(1.0e-3 * power.sum())]
+
+
+def _check_swings(results: Results) -> None:
+    """Reference: what the summary holds."""
+    answers, table = results.summary.answers, swing_table(results)
+    assert answers is not None
+    swing = answers.models["kantorovich-5"].swing
+    assert swing is not None
+    assert table is not None
+    cells = [column.cells for column in table.columns]
+    own = swing.tip, swing.time, swing.where_begun, swing.where_ended
+    assert cells == [["kantorovich-5"], *([value] for value in own)]
 
 
 def _check_figures(figures: Sequence[Figure]) -> None:

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How fast a boom may be drawn out: its swing over the speed, beside that of the boom at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from geometry.arrays import Array
+from runs.report import theme
+from runs.report.figure_context import MILLI, new_sheet
+
+# A swing that exceeds the level by no more than this part is no larger: steps and blows move it so.
+_SAME = 1.0e-2
+
+# The ends of the way at which the same boom stands: what they are called, and how they are drawn.
+_ENDS = {
+    "swing_where_begun": ("where it begins", ":"),
+    "swing_where_ended": ("where it ends", "--"),
+}
+
+
+class Swings(NamedTuple):
+    """Of one model over rising mean speeds in m/s: swings in m, and the level at each end."""
+
+    speed: Array
+    swing: Array
+    levels: dict[str, float]
+
+
+def swings(data: xr.Dataset) -> dict[str, Swings]:
+    """Of each model whose speed a sweep over one key varies.
+
+    Args:
+        data: of :func:`runs.sweep.output.gather`.
+    """
+    found = {}
+    for name in data["model"].values:
+        one = data.sel(model=name)
+        known = np.isfinite(one["swing"].values) & np.isfinite(one["drive_speed"].values)
+        speed = one["drive_speed"].values[known]
+        if one["swing"].ndim > 1 or np.unique(speed).size < 2:
+            continue
+        order = np.argsort(speed)
+        # Runs that last alike have one level; of others each has its own, and the largest counts.
+        levels = {end: float(np.nanmax(one[end].values[known])) for end in _ENDS}
+        found[str(name)] = Swings(speed[order], one["swing"].values[known][order], levels)
+    return found
+
+
+def fastest_within(swings: Swings, level: float) -> float | None:
+    """Up to which speed in m/s no swing exceeds a level in m, linear between speeds; None at none.
+
+    >>> one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {})
+    >>> fastest_within(one, 4.0), fastest_within(one, 6.0), fastest_within(one, 1.0)
+    (2.5, 3.0, None)
+    """
+    over = np.flatnonzero(swings.swing > level * (1.0 + _SAME))
+    if not over.size:
+        return float(swings.speed[-1])
+    first = int(over[0])
+    if first == 0:
+        return None
+    near = slice(first - 1, first + 1)
+    return float(np.interp(level, swings.swing[near], swings.speed[near]))
+
+
+def said(name: str, swings: Swings) -> Iterator[str]:
+    """What a designer asks, a sentence for each end of the way."""
+    for end, (where, _) in _ENDS.items():
+        level = swings.levels[end]
+        if not np.isfinite(level):
+            continue
+        fastest = fastest_within(swings, level)
+        rest = f"at rest {where}, {theme.number(MILLI * level)} mm"
+        if fastest is None:
+            slow, least = swings.speed[0], theme.number(MILLI * float(swings.swing[0]))
+            yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
+        elif fastest == swings.speed[-1]:
+            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, the fastest here"
+        else:
+            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s"
+
+
+def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
+    """Draw the swing over the mean speed of the drive, where a sweep varies that.
+
+    Args:
+        data: of a sweep over one key.
+        strokes: of its models.
+        path: of the PNG file.
+    """
+    found = swings(data)
+    if not found:
+        return
+    sheet, (axes,) = new_sheet(1, 4.6)
+    for name, one in found.items():
+        color = strokes[name].color
+        label = f"{name}, drawn out"
+        axes.plot(
+            one.speed, MILLI * one.swing, color=color, marker="o", markersize=4.0, label=label
+        )
+        for end, (where, dashes) in _ENDS.items():
+            if np.isfinite(one.levels[end]):
+                level = MILLI * one.levels[end]
+                label = f"{name}, at rest {where}"
+                axes.axhline(level, color=color, linestyle=dashes, linewidth=1.0, label=label)
+    axes.set(xlabel="mean speed of the drive (m/s)", ylabel="swing of the tip (mm)")
+    axes.set_ylim(bottom=0.0)
+    handles, labels = axes.get_legend_handles_labels()
+    sheet.legend(handles, labels, loc="outside lower left", ncols=1)
+    lines = [line for name, one in found.items() for line in said(name, one)]
+    sheet.suptitle("How fast it may be drawn out", x=0.02, ha="left", fontsize=12.0,
+                   fontweight="bold")  # fmt: skip
+    axes.set_title("\n".join(lines), fontsize=8.5, fontweight="normal", wrap=True)
+    sheet.savefig(path)

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far the tip swings while a boom is drawn out, and how fast it may be drawn out therefore."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure as Sheet
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators import simulate
+from dynamics.row_table import RowTable
+from dynamics.travel import SCurve, Travel
+from protractile.cases import run_case
+from runs import CASES
+from runs.case.reading import load
+from runs.case.schema import Case
+from runs.pipeline.answers import Swing
+from runs.pipeline.swing import farthest_from_rest
+from runs.report import theme
+from runs.sweep.swings import Swings, draw_swings, fastest_within, said, swings
+
+# No play and a load that ramps: no chaos, and swings that are no mere distance of the start.
+PLAYLESS = "play = 0.0"
+LOAD = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 1000.0\nramp = 0.2\n\n[[model]]'
+
+
+def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
+    text = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
+    for before, after in {
+        "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }": drive,
+        "extension = 5.0": f"extension = {extension}",
+        "play = 0.014": PLAYLESS,
+        "stiffness = 1e9": "stiffness = 1e7",
+        "duration = 7.0": "duration = 0.6",
+        "[[model]]": LOAD,
+    }.items():
+        assert before in text
+        text = text.replace(before, after, 1)
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return load(str(path))
+
+
+def swing_of(case: Case) -> Swing | None:
+    answers = run_case(case, models=["kantorovich-5"]).summary.answers
+    assert answers is not None
+    return answers.models["kantorovich-5"].swing
+
+
+def lifted(travel: float, time: float) -> GapSystem:
+    """A mass on a spring of 1 N/m, and one of 3 N/m that a drive moves to where it reads half."""
+    one = np.ones(1)
+    table = RowTable.of(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
+    spring = PowerContact(3.0, exponent=1.0, clearance=0.0)
+    system = GapSystem(one, one, one[None], [spring], np.array([0]), [0.0], {"tip": Observer(one)})
+    return replace(system, travels=[Travel(SCurve(travel, time), table, (("rows", 0),), "")])
+
+
+def test_a_tip_that_stands_swings_by_its_start() -> None:
+    """Reference (analytic): 1 N on springs of 1 + 3 N/m, from 0, swings by 1/4 m about 1/4 m."""
+    system = replace(lifted(0.0, 1.0), travels=())
+    swing, _ = farthest_from_rest(system, simulate(system, 4.0))
+    assert swing == pytest.approx(0.25, rel=1e-4)
+
+
+def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
+    """Reference (analytic): from rest at 1/4 m the tip goes to 1 / (1 + 3/4) m, within 1 % of that
+    way where the drive takes 60 s; at once, it swings by all of it."""
+    way = 1.0 / 1.75 - 0.25
+    slow, fast = (
+        farthest_from_rest(system, simulate(system, duration, position=[0.25]))[0]
+        for system, duration in ((lifted(1.0, 60.0), 60.0), (lifted(1.0, 1e-3), 4.0))
+    )
+    assert slow < 0.01 * way
+    assert fast == pytest.approx(way, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
+    """Reference: the same boom built where the drive begins, and where it ends."""
+    drawn = swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.4 }"))
+    assert drawn is not None
+    assert drawn.speed == pytest.approx(10.0)
+    for extension, level in (("5.0", drawn.where_begun), ("9.0", drawn.where_ended)):
+        standing = run_case(case(tmp_path, "", extension), models=["kantorovich-5"])
+        data = standing.trajectories.sel(model="kantorovich-5")
+        ramp = np.minimum(data["time"].values / 0.2, 1.0)
+        answers = standing.summary.answers
+        assert answers is not None
+        first, last = (rest.tip for rest in answers.models["kantorovich-5"].rests)
+        rest = first + ramp * (last - first)
+        assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
+
+
+def test_a_drive_that_the_run_does_not_see_the_end_of_has_no_swing(tmp_path: Path) -> None:
+    assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
+    assert swing_of(case(tmp_path, "")) is None
+
+
+@pytest.mark.parametrize(
+    ("level", "fastest"), [(4.0, 2.5), (6.0, 3.0), (1.0, None), (2.99, 2.0), (1.99, 1.0)]
+)
+def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -> None:
+    """Reference: by hand; what exceeds the level by less than a hundredth does not."""
+    one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {})
+    assert fastest_within(one, level) == pytest.approx(fastest)
+
+
+def swept() -> xr.Dataset:
+    """Invented numbers of three points, the last of which was drawn slowest, the second failed."""
+    known = {
+        "swing": [0.05, np.nan, 0.02],
+        "drive_speed": [2.0, np.nan, 1.0],
+        "swing_where_begun": [0.03, np.nan, 0.03],
+        "swing_where_ended": [0.06, np.nan, 0.06],
+    }
+    variables = {name: (("key", "model"), np.array([v]).T) for name, v in known.items()}
+    return xr.Dataset(variables, coords={"key": [1.0, 1.5, 2.0], "model": ["beam"]})
+
+
+def test_a_chart_says_how_fast_it_may_be_drawn_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: by hand."""
+    data = swept()
+    assert list(said("beam", swings(data)["beam"])) == [
+        "beam: swings no more than at rest where it begins, 30 mm, up to 1.33 m/s",
+        "beam: swings no more than at rest where it ends, 60 mm, up to 2 m/s, the fastest here",
+    ]
+    tight = data.assign(swing_where_begun=0.1 * data["swing_where_begun"])
+    assert next(said("beam", swings(tight)["beam"])) == (
+        "beam: swings more than at rest where it begins, 3 mm, at 1 m/s already: 20 mm"
+    )
+    saved: list[Sheet] = []
+    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))
+    draw_swings(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    curve, *levels = saved[0].axes[0].get_lines()
+    np.testing.assert_allclose(curve.get_xydata(), [[1.0, 20.0], [2.0, 50.0]])
+    assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
+
+
+def test_what_varies_no_speed_has_no_such_chart(tmp_path: Path) -> None:
+    data = swept().isel(key=[0])
+    draw_swings(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    assert not list(tmp_path.iterdir())
