@@ -60,10 +60,10 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
         NumericsError: it has no rest.
     """
     time = trajectory.time
-    changes = [*system.excitations, *system.travels]
-    kinks = [kink for change in changes for kink in change.history.kinks if 0.0 < kink < time[-1]]
+    changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
+    kinks = [kink for change in changes for kink in change.kinks if 0.0 < kink < time[-1]]
     times = np.unique([*np.linspace(0.0, time[-1], _TIMES), *kinks])
-    values = np.array([change.history(times) for change in changes])
+    values = np.array([change(times) for change in changes])
     passed = _passed(values.reshape(len(changes), times.size))
     steps = np.searchsorted(passed, np.linspace(0.0, passed[-1], _RESTS))
     steps = np.unique(np.minimum(steps, times.size - 1))
