@@ -11,10 +11,19 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it;
-# moments pull at larger z, lateral ones at larger y. So the slope of a moment is its shear force.
+# In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it, which
+# pull where they are normal; moments pull at larger z, lateral ones at larger y. So the slope of a
+# moment is its shear force.
 Quantity = Literal[
-    "deflection", "shear", "moment", "lateral", "lateral_shear", "lateral_moment", "twist", "torque"
+    "deflection",
+    "normal",
+    "shear",
+    "moment",
+    "lateral",
+    "lateral_shear",
+    "lateral_moment",
+    "twist",
+    "torque",
 ]
 
 

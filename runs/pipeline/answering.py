@@ -33,6 +33,7 @@ from runs.pipeline.modes import matched, modes
 from runs.pipeline.motion import asked
 from runs.pipeline.moved import Motions, gone_through, wall_stresses
 from runs.pipeline.play import added
+from runs.pipeline.section_forces import with_cylinders
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.summary import Summary
@@ -66,11 +67,8 @@ def of_model(
         trajectory: its motion.
         shell: what it leaves besides.
     """
-    played = Shown(
-        boom.play_free if model.play_free else boom,
-        built.system.gathered(),
-        model.lines(boom, built),
-    )
+    shown = boom.play_free if model.play_free else boom
+    played = Shown.of(shown, built.system.gathered(), model.lines(boom, built))
     resting = _resting(played, case.time.duration)
     moved, lives = _moving(played, resting, trajectory, model, case)
     walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
@@ -96,6 +94,11 @@ class Shown(NamedTuple):
     boom: Boom
     system: GapSystem
     lines: Sequence[Line]
+
+    @classmethod
+    def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Shown:
+        """With what cylinders push along it."""
+        return cls(boom, system, with_cylinders(boom, system, lines))
 
 
 def _resting(shown: Shown, duration: float) -> Resting:
@@ -128,7 +131,7 @@ def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:
     """The same without play."""
     own = model.without_play(boom)
     if own is not None:
-        return Shown(boom.play_free, own[0].gathered(), own[1])
+        return Shown.of(boom.play_free, own[0].gathered(), own[1])
     system, basis = tied_system(played.system, list(resting.positions))
     return Shown(boom.play_free, system, [line.on(basis) for line in played.lines])
 

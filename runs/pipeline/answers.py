@@ -87,6 +87,7 @@ class Reaction:
         force: along z in N.
         moment: towards a larger slope in N·m.
         depth: how far a stop is pressed in, in m; None of what does not give way so.
+        along: along the boom, towards its tip, in N.
     """
 
     segment: str
@@ -94,6 +95,7 @@ class Reaction:
     force: float
     moment: float
     depth: float | None
+    along: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,8 +246,9 @@ class Peak:
     """The largest of a motion beside the largest at rest, by their absolute values.
 
     Args:
-        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, ``moment at the
-            support`` or ``bending moment``.
+        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, where something
+            acts along the boom also ``reaction along the boom`` and ``reaction, across and along``,
+            ``moment at the support`` or ``bending moment``.
         where: the place, as the results or the case name it.
         unit: of the SI.
         largest: of the motion; of contacts the mean over an output interval, which is what a pad

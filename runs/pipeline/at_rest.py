@@ -14,21 +14,18 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
-from geometry.boom import Boom, Joint
-from geometry.compression import Compression
+from geometry.boom import Boom, Joint, Segment
 from geometry.cylinder import forces
 from runs.case.contact import PADS_OF_SIDE
 from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
 from runs.pipeline.place_names import place_names
+from runs.pipeline.section_forces import section_forces
 
 # Among so many times between kinks the largest value of a load is looked for.
 _TIMES = 2001
 
 # What numbers out of proportion lead to.
 NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
-
-# Part of a place's distance from the start by which a jump's two sides are told apart.
-_ASIDE = 1.0e-9
 
 
 def load_at(system: GapSystem, time: float) -> Array:
@@ -94,12 +91,7 @@ def at_rest(
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
         diagrams=[
-            Diagram(
-                segment.name,
-                rounded(line.x),
-                rounded(normal_force(segment.compression, line.x)),
-                {name: rounded(values) for name, values in line.read(position).items()},
-            )
+            _diagram(segment, line, position)
             for segment, line in zip(boom.segments, lines, strict=True)
         ],
         tilts=list(tilts(boom, system, position)),
@@ -108,12 +100,10 @@ def at_rest(
     )
 
 
-def normal_force(compression: Compression, x: Array) -> Array:
-    """(num_places,) N in N along a segment; of a place that stands twice from both its sides."""
-    jump = np.diff(x) == 0.0
-    before, behind = np.append(jump, False), np.append(False, jump)
-    aside = _ASIDE * max(1.0, float(np.ptp(x)))
-    return np.asarray(-compression(x + aside * (behind.astype(float) - before)))
+def _diagram(segment: Segment, line: Line, position: Array) -> Diagram:
+    carried = section_forces(segment, line, position)
+    curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}
+    return Diagram(segment.name, rounded(line.x), curves.pop("normal"), curves)
 
 
 def _stations(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:

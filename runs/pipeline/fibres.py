@@ -17,7 +17,6 @@ from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Segment
 from geometry.section import Section
-from runs.pipeline.at_rest import normal_force
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +28,7 @@ class Fibres:
         y, z: (num_fibres, num_places) in m.
         of_moment, of_lateral: (num_fibres, num_places) the stress of a moment of 1 N·m, along z and
             along y, in Pa.
-        axial: (num_places,) what the normal force adds in Pa.
+        of_normal: (num_places,) of a normal force of 1 N, in Pa.
     """
 
     x: Array
@@ -37,7 +36,7 @@ class Fibres:
     z: Array
     of_moment: Array
     of_lateral: Array
-    axial: Array
+    of_normal: Array
 
     @classmethod
     def of(cls, segment: Segment, line: Line) -> Fibres | None:
@@ -49,12 +48,11 @@ class Fibres:
         y, z = _corners(segment, line.x, spatial)
         of_moment = z / _each(there, "second_moment_of_area")
         of_lateral = y / _each(there, "lateral.second_moment_of_area") if spatial else y
-        axial = normal_force(segment.compression, line.x) / _each(there, "section.area")
-        return cls(line.x, y, z, of_moment, of_lateral, axial)
+        return cls(line.x, y, z, of_moment, of_lateral, 1.0 / _each(there, "section.area"))
 
     def stress(self, fibre: int, curves: Mapping[Quantity, Array]) -> Array:
         """(..., num_places) in Pa of section forces (..., num_places)."""
-        stress = self.of_moment[fibre] * curves["moment"] + self.axial
+        stress = self.of_moment[fibre] * curves["moment"] + self.of_normal * curves["normal"]
         if "lateral_moment" in curves:
             stress += self.of_lateral[fibre] * curves["lateral_moment"]
         return np.asarray(stress)

@@ -26,6 +26,7 @@ from runs.pipeline.answers import (
 )
 from runs.pipeline.fibres import Fibres
 from runs.pipeline.place_names import place_names
+from runs.pipeline.section_forces import borne_along, section_forces
 
 
 class Varying(NamedTuple):
@@ -71,8 +72,11 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
     envelopes, peaks = [], list(_observed(motions))
     fibres, varying = [], []
     for segment, line in zip(motions.boom.segments, motions.lines, strict=True):
-        curves = line.read(motions.trajectory.states)
-        gone = _Gone(segment, line, curves, line.read(motions.positions))
+        curves, still = (
+            section_forces(segment, line, states)
+            for states in (motions.trajectory.states, motions.positions)
+        )
+        gone = _Gone(segment, line, curves, still)
         envelopes.append(_envelope(gone))
         if "moment" in curves:
             peaks += _section_peaks(motions, gone)
@@ -132,12 +136,12 @@ class _Measured(NamedTuple):
     where: str
     unit: str
     values: Array
-    still: Sequence[float]
+    still: Sequence[float] | Array
 
 
 def _peak(one: _Measured, time: Array) -> Peak:
     step = int(np.abs(one.values).argmax())
-    still = max((abs(value) for value in one.still), default=None)
+    still = max((float(abs(value)) for value in one.still), default=None)
     return Peak(
         one.what, one.where, one.unit, float(abs(one.values[step])), float(time[step]), still
     )
@@ -168,9 +172,7 @@ def _section_peaks(motions: Motions, gone: _Gone) -> Iterator[Peak]:
     bent = _Measured("bending moment", gone.segment.name, "N m", most, still)
     yield _peak(bent, motions.trajectory.time)
     for support in gone.segment.supports if motions.jumps else ():
-        for named, row in _support_rows(gone.segment, support, gone.line).items():
-            still = (motions.positions @ row).tolist()
-            borne = _Measured(*named, motions.trajectory.states @ row, still)
+        for borne in _borne(motions, gone, support):
             yield _peak(borne, motions.trajectory.time)
 
 
@@ -201,14 +203,27 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
     return found
 
 
-def _support_rows(
-    segment: Segment, support: Support, line: Line
-) -> Mapping[tuple[str, str, str], Array]:
-    """(num_modes,) what a support bears: the jump of the shear force, and of the moment."""
+def _borne(motions: Motions, gone: _Gone, support: Support) -> Iterator[_Measured]:
+    """What a support bears: the jumps of the shear force, the normal force and the moment."""
+    segment, line = gone.segment, gone.line
     where = f"{segment.name} at {support.x:g} m"
-    before, behind = (line.beside("shear", support.x, side) for side in (-1, 1))
-    rows = {("reaction", where, "N"): before - behind}
+    across = _jump(motions, line, "shear", support.x)
+    yield _Measured("reaction", where, "N", *across)
+    if support is segment.foot and (segment.compression or "normal" in line.rows):
+        given = borne_along(segment, support)
+        along = [given + each for each in _jump(motions, line, "normal", support.x)]
+        yield _Measured("reaction along the boom", where, "N", *along)
+        both = [np.hypot(*parts) for parts in zip(across, along, strict=True)]
+        yield _Measured("reaction, across and along", where, "N", *both)
     if support.kind == "clamped" or support.rotation_stiffness:
-        before, behind = (line.beside("moment", support.x, side) for side in (-1, 1))
-        rows["moment at the support", where, "N m"] = behind - before
-    return rows
+        turned, still = _jump(motions, line, "moment", support.x)
+        yield _Measured("moment at the support", where, "N m", -turned, -still)
+
+
+def _jump(motions: Motions, line: Line, name: Quantity, x: float) -> tuple[Array, Array]:
+    """(num_times,) and (num_rests,) what a line reads less behind x than before it."""
+    states = motions.trajectory.states, motions.positions
+    row = np.zeros(states[0].shape[1])
+    if name in line.rows:
+        row = line.beside(name, x, -1) - line.beside(name, x, 1)
+    return states[0] @ row, states[1] @ row

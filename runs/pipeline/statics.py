@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from runs.case.units import System
 from runs.pipeline.answers import Reaction
 from runs.pipeline.at_rest import tilts
 from runs.pipeline.cautions import of_tip
+from runs.pipeline.section_forces import borne_along
 
 KILO, MILLI = 1.0e3, 1.0e-3
 
@@ -52,7 +54,7 @@ def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
         for x in joint.stations
     }
     stopped = {(stop.segment, stop.x) for stop in boom.stops}
-    deep = _depths(boom, rest)
+    deep, along = _depths(boom, rest), _along(boom, rest)
     return [
         Reaction(
             boom.segments[number].name,
@@ -60,6 +62,7 @@ def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
             force,
             moment,
             deep[x] if (number, x) in stopped else None,
+            along[number, x],
         )
         for number, x, force, moment in rest.holds
         if (number, x) not in joined_at
@@ -86,6 +89,21 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
         )
     for caution in of_tip("as beam elements", found.played.tip, boom):
         console.print(caution, markup=False, highlight=False)
+
+
+def _along(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
+    """What feet and cylinders push along the boom in N, by the segment and x in m; else 0."""
+    found: dict[tuple[int, float], float] = defaultdict(float)
+    for number, segment in enumerate(boom.segments):
+        if segment.foot is not None:
+            found[number, segment.foot.x] = borne_along(segment, segment.foot)
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        push = cylinder.direction[0] * cylinder_force(rest, number)
+        foot = boom.segments[cylinder.segment].foot
+        found[cylinder.segment, cylinder.x] += push
+        if foot is not None:
+            found[cylinder.segment, foot.x] -= push
+    return found
 
 
 def _depths(boom: Boom, rest: Rest) -> dict[float, float]:
@@ -124,19 +142,22 @@ def _masses(boom: Boom, system: System) -> Table:
 def _holds(boom: Boom, rest: Rest, system: System) -> Table:
     """Forces on the segments where something holds them, and how deep contacts are pressed."""
     x = f"x ({system.label('m')})"
-    table = Table("holds at rest", x, "force (kN)", "moment (kN m)", "pressed in (mm)")
+    headings = ["force (kN)", "moment (kN m)", "pressed in (mm)"]
+    along = _along(boom, rest)
+    if any(along.values()):
+        headings.insert(1, "along (kN)")
+    table = Table("holds at rest", x, *headings)
     reacting = {(joint.outer, x) for joint in boom.joints for x in joint.stations}
     deep = _depths(boom, rest)
     for hold in (hold for hold in rest.holds if hold[:2] not in reacting):
         moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
         depth = f"{deep[hold.x] / MILLI:.3g}" if hold.x in deep else ""
-        table.add_row(
-            boom.segments[hold.segment].name,
-            f"{system.of(hold.x, 'm'):g}",
-            f"{hold.force / KILO:.4g}",
-            moment,
-            depth,
-        )
+        cells = [f"{hold.force / KILO:.4g}", moment, depth]
+        if any(along.values()):
+            here = along.get(hold[:2])
+            cells.insert(1, f"{here / KILO:.4g}" if here else "")
+        where = f"{system.of(hold.x, 'm'):g}"
+        table.add_row(boom.segments[hold.segment].name, where, *cells)
     return table
 
 
@@ -146,7 +167,7 @@ def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
     table = Table("cylinder of", *lengths, "force (kN)")
     for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
-        force = float(rest.system.observers[force_name(number)].row @ rest.position)
+        force = cylinder_force(rest, number)
         arm = None if segment.foot is None else cylinder.arm(segment.foot)
         table.add_row(
             segment.name,
@@ -156,6 +177,11 @@ def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
             f"{force / KILO:.4g}",
         )
     return table
+
+
+def cylinder_force(rest: Rest, number: int) -> float:
+    """Of a cylinder's spring in N, from 1 on."""
+    return float(rest.system.observers[force_name(number)].row @ rest.position)
 
 
 def _line(found: Statics) -> str:

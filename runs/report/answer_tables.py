@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Moved, Peak, PlayAdds
 from runs.pipeline.comparisons import reference_of
@@ -54,11 +54,16 @@ def rest_tables(results: Results) -> list[Table]:
         columns = (
             Column("model", [name for name, _ in tilts]),
             Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
-            Column("rotation by play\nmrad", [tilt.rotation for _, tilt in tilts], ".3g", MILLI),
+            Column("rotation\nmrad", [tilt.rotation for _, tilt in tilts], ".3g", MILLI),
             Column("moves the tip\nmm", [tilt.tip for _, tilt in tilts], ".1f", MILLI),
         )
         tables.append(
-            Table("At rest under the largest loads: what joints give way", columns, (), "tilts")
+            Table(
+                "At rest under the largest loads: what joints give way",
+                columns,
+                ("By play and by what is pressed in: of a shell, also by its walls beside them.",),
+                "tilts",
+            )
         )
     places = {pressed.place: pressed for rest in rests.values() for pressed in rest.stations}
     if places:
@@ -66,25 +71,29 @@ def rest_tables(results: Results) -> list[Table]:
     if answers.reactions:
         tied = {(one.segment, one.x): one for one in answers.tied_reactions}
         beside = [tied.get((one.segment, one.x)) for one in answers.reactions]
-        columns = (
+        held = (
             Column("holds", [f"{one.segment} at {one.x:g} m" for one in answers.reactions]),
             Column("force\nkN", [one.force for one in answers.reactions], ".4g", PER_KILO),
-            Column(
-                "moment\nkN m", _told([one.moment for one in answers.reactions]), ".3g", PER_KILO
-            ),
+            *_unless_none("along the boom\nkN", [one.along for one in answers.reactions], ".4g"),
+            *_unless_none("moment\nkN m", [one.moment for one in answers.reactions], ".3g"),
             Column(
                 "tied: force\nkN", [one.force if one else None for one in beside], ".4g", PER_KILO
             ),
         )
-        notes = ("Of beam elements, under the loads of t = 0; positive upwards.",)
-        tables.append(Table("At rest at t = 0: what holds the boom", columns, notes, "reactions"))
+        notes = (
+            "Of beam elements, under the loads of t = 0; positive upwards, along the boom towards "
+            "its tip.",
+        )
+        tables.append(Table("At rest at t = 0: what holds the boom", held, notes, "reactions"))
     return tables
 
 
-def _told(moments: Sequence[float]) -> list[float]:
-    """Without the round-off of what bears none."""
-    most = max(map(abs, moments), default=0.0)
-    return [moment if abs(moment) > ROUND_OFF * most else 0.0 for moment in moments]
+def _unless_none(heading: str, borne: Sequence[float], form: str) -> Iterator[Column]:
+    """What is borne, in kilo, without the round-off of what bears none; no column of zeros."""
+    most = max(map(abs, borne), default=0.0)
+    if most > 0.0:
+        told = [each if abs(each) > ROUND_OFF * most else 0.0 for each in borne]
+        yield Column(heading, told, form, PER_KILO)
 
 
 def _pressed_table(rests: dict[str, AtRest], places: Sequence[str]) -> Table:

@@ -60,6 +60,9 @@ def first_table(results: Results) -> Table | None:
         "Pad that presses most": lambda name: _pad(pads[name]) if name in pads else NONE,
         "Station pressed most, kN": lambda name: NONE if pads else _station(own[name]),
         "Cylinder, at most, kN": lambda name: _largest_of(own[name], "cylinder force"),
+        "Pin of the foot, at most, kN": lambda name: _largest_of(
+            own[name], "reaction, across and along"
+        ),
         "Outer fibre, MPa": lambda name: _stress(fibres[name]),
         "Walls over a patch, MPa": lambda name: _stress(walls[name]),
         "Damage of its life": lambda name: _damage(own[name]),

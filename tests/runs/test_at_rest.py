@@ -12,11 +12,10 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine
 from dynamics.gap_system import GapSystem
-from geometry.compression import Compression
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
-from runs.pipeline.at_rest import instants, normal_force, positions
+from runs.pipeline.at_rest import instants, positions
 from runs.pipeline.run import run_case, silent
 from runs.pipeline.summary import Summary
 
@@ -67,12 +66,6 @@ def test_supports_bear_what_the_lever_rule_says(answers: Answers) -> None:
     at_start, at_two = answers.reactions
     assert at_two.force == pytest.approx(-(831.6 * 5.0 + 550.7 * 14.0) / 2.0)
     assert at_start.force == pytest.approx(-831.6 - 550.7 - at_two.force)
-
-
-def test_a_normal_force_has_both_sides_of_a_jump() -> None:
-    pressed = Compression((0.0, 4.0, 10.0), ((9e3, 7e3), (2e3, 2e3)))
-    x = np.array([0.0, 4.0, 4.0, 10.0])
-    np.testing.assert_allclose(normal_force(pressed, x), [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
 
 
 def ball(*histories: History) -> GapSystem:

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What sections of a segment carry: what its line reads, and the normal force.
+
+N is that of the axial forces, which are given, and of what luffing cylinders push along the boom
+between their lugs and the foot that holds it there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line, Quantity
+from geometry.arrays import Array
+from geometry.boom import Boom, Segment
+from geometry.compression import Compression
+from geometry.cylinder import force_name
+from geometry.support import Support
+
+# Part of a place's distance from the start by which a jump's two sides are told apart.
+_ASIDE = 1.0e-9
+
+
+def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
+    """Lines that read what cylinders push along the boom, too, as normal forces.
+
+    Args:
+        boom: of the system.
+        system: whose observers read the cylinders' forces.
+        lines: along its segments.
+    """
+    found = list(lines)
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        foot = boom.segments[cylinder.segment].foot
+        if foot is None:
+            continue
+        line = found[cylinder.segment]
+        x = _on_their_sides(line.x)
+        # What is beyond a section is pushed away from the part before it, or with that towards it.
+        pulled = np.where((foot.x < x) & (x < cylinder.x), 1.0, 0.0)
+        pulled -= np.where((cylinder.x < x) & (x < foot.x), 1.0, 0.0)
+        push = cylinder.direction[0] * system.observers[force_name(number)].row
+        normal = line.rows.get("normal", 0.0) + np.outer(pulled, push)
+        found[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
+    return found
+
+
+def section_forces(segment: Segment, line: Line, states: Array) -> dict[Quantity, Array]:
+    """(..., num_places) of what a line reads of (..., num_modes), and N in N."""
+    read = line.read(states)
+    given = normal_force(segment.compression, line.x)
+    return {**read, "normal": given + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
+
+
+def normal_force(compression: Compression, x: Array) -> Array:
+    """(num_places,) N in N along a segment; of a place that stands twice from both its sides."""
+    return np.asarray(-compression(_on_their_sides(x)))
+
+
+def borne_along(segment: Segment, foot: Support) -> float:
+    """What a foot pushes along the boom in N to bear the axial forces."""
+    ends = np.array([foot.x, foot.x])
+    before, behind = normal_force(segment.compression, ends)
+    return float((before if foot.x > segment.start else 0.0) - behind)
+
+
+def _on_their_sides(x: Array) -> Array:
+    """(num_places,) places, a little before or behind themselves where they stand twice."""
+    jump = np.diff(x) == 0.0
+    before, behind = np.append(jump, False), np.append(False, jump)
+    aside = _ASIDE * max(1.0, float(np.ptp(x)))
+    return np.asarray(x + aside * (behind.astype(float) - before))

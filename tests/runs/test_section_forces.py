@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What sections carry along the boom: given axial forces, and what luffing cylinders push."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geometry.compression import Compression
+from geometry.section import BoxSection
+from runs.case import reading as case_file
+from runs.pipeline.answers import Answers
+from runs.pipeline.run import run_case, silent
+from runs.pipeline.section_forces import normal_force
+
+# A pin at 1 m, 100 kg/m under 30 degrees, and a cylinder of the triangle 3, 4, 5 at 4 m.
+CASE = """
+title = "An arm on its cylinder"
+time = { duration = 0.1, output_step = 1e-2 }
+start = { state = "equilibrium" }
+gravity = { acceleration = 10.0, angle = 30.0 }
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+
+[[segment]]
+name = "arm"
+span = [0.0, 10.0]
+supports = [{ x = 1.0 }]
+mass_per_length = 100.0
+section = { height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }
+
+[[cylinder]]
+segment = "arm"
+x = 4.0
+depth = 0.0
+ground = [0.0, -3.0]
+stiffness = 1e8
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+theory = "timoshenko"
+element_length = 0.5
+"""
+
+
+def test_a_normal_force_has_both_sides_of_a_jump() -> None:
+    pressed = Compression((0.0, 4.0, 10.0), ((9e3, 7e3), (2e3, 2e3)))
+    x = np.array([0.0, 4.0, 4.0, 10.0])
+    np.testing.assert_allclose(normal_force(pressed, x), [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
+
+
+@pytest.fixture(scope="module")
+def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+    folder = tmp_path_factory.mktemp("arm")
+    file = folder / "case.toml"
+    file.write_text(CASE, encoding="utf-8")
+    run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
+    assert run is not None
+    assert run.results.summary.answers is not None
+    return run.results.summary.answers
+
+
+ALONG, ACROSS = 500.0, 1000.0 * np.cos(np.pi / 6.0)  # N/m
+# Of the cylinder, about the pin: F 3/5 on an arm of 3 m holds 10 m whose middle is at 4 m.
+FORCE = ACROSS * 10.0 * 4.0 / (0.6 * 3.0)
+
+
+def test_a_cylinder_pulls_the_boom_off_its_pin(answers: Answers) -> None:
+    """Reference: by hand. Its push along the boom, 4/5 of it, goes through the part between."""
+    (rest,) = answers.models["beam"].rests
+    assert rest.cylinders["cylinder_force"] == pytest.approx(FORCE, rel=1e-3)
+    (arm,) = rest.diagrams
+    for x, normal in (
+        (0.5, 0.5 * ALONG),
+        (2.0, -8.0 * ALONG + 0.8 * FORCE),
+        (6.0, -4.0 * ALONG),
+    ):
+        assert np.interp(x, arm.x, arm.normal) == pytest.approx(normal, rel=2e-3)
+
+
+def test_the_pin_bears_what_goes_along(answers: Answers) -> None:
+    """Reference: by hand, both parts and together, at rest and as the beam stays there."""
+    along, across = 10.0 * ALONG - 0.8 * FORCE, 10.0 * ACROSS - 0.6 * FORCE
+    pin, lug = answers.reactions
+    assert pin.along == pytest.approx(along, rel=1e-3)
+    assert lug.along == pytest.approx(0.8 * FORCE, rel=1e-3)
+    moved = answers.models["beam"].moved
+    assert moved is not None
+    borne = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
+    for what, force in (
+        ("reaction", across),
+        ("reaction along the boom", along),
+        ("reaction, across and along", np.hypot(along, across)),
+    ):
+        assert borne[what].largest == pytest.approx(abs(force), rel=2e-3)
+        assert borne[what].at_rest == pytest.approx(abs(force), rel=2e-3)
+
+
+def test_the_fibre_feels_the_normal_force(answers: Answers) -> None:
+    """Reference: by hand, M z/J + N/A before the lug, where M is q 6²/2."""
+    moved = answers.models["beam"].moved
+    assert moved is not None
+    (fibre,) = moved.fibres
+    box = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+    bent = 0.5 * ACROSS * 6.0**2 * 0.204 / box.second_moment_of_area
+    pulled = (0.8 * FORCE - 6.0 * ALONG) / box.area
+    assert fibre.x == pytest.approx(4.0)
+    assert fibre.stress == pytest.approx(bent + pulled, rel=2e-3)
+    assert pulled > 0.05 * bent
