@@ -14,7 +14,14 @@ from runs.report.answer_tables import answer_tables
 from runs.report.calibration_tables import calibration_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
-from runs.report.first_look import first_table, play_note, play_sentence, trust_line, trust_lines
+from runs.report.first_look import (
+    first_table,
+    play_note,
+    play_sentence,
+    strength_sentence,
+    trust_line,
+    trust_lines,
+)
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
 from runs.report.pages import MARKS, page
@@ -81,6 +88,7 @@ def render(
         colors={name: strokes[name].color for name in names},
         case=case,
         adds=play_sentence(results),
+        strength=strength_sentence(results),
         of=play_note(results),
         first=first,
         nearness=trust_line(results),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from geometry.arrays import Array
 from geometry.typography import signed
 from runs.case.build import build_boom
-from runs.case.schema import Case
+from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.results import Results
@@ -127,6 +127,27 @@ def play_sentence(results: Results) -> str:
     return " ".join(said)
 
 
+def strength_sentence(results: Results) -> str:
+    """What part of what they bear steel and pads reach, in the model that is read first; or empty.
+
+    Where neither strengths nor allowable pressures are known there is nothing to be said.
+    """
+    answers, first = results.summary.answers, read_first(results)[0]
+    own = answers.models[first] if answers else ModelAnswers()
+    pad = _hardest_pads(results).get(first)
+    used: list[tuple[float, str]] = []
+    for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
+        if most is not None and most.part is not None:
+            used.append((most.part, f"{what} of their yield strength ({_place(most)})"))
+    if pad is not None and pad.utilisation is not None:
+        used.append((pad.utilisation, "pads of their allowable pressure"))
+    if not used:
+        return ""
+    verdict = "Not strong enough" if max(used)[0] > 1.0 else "Strong enough without a safety factor"
+    told = [f"{number(PERCENT * part)} % in {what}" for part, what in sorted(used, reverse=True)]
+    return f"{verdict}: used are {_listed(told)}."
+
+
 _SAID = {
     "deflection at rest": "the tip at rest under the largest loads",
     "deflection": "its farthest in motion",
@@ -208,14 +229,20 @@ _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
 def _stress(largest: _Largest | None) -> str:
     if largest is None:
         return NONE
-    stress, segment, x, part = largest
+    stress, _, _, part = largest
     of = "" if part is None else f", {number(PERCENT * part)} %"
     beyond = "\nbeyond yield" if part and part > 1.0 else ""
-    return f"{number(PER_MEGA * stress)}{of}{beyond}\n{segment}, {x:.1f} m"
+    return f"{number(PER_MEGA * stress)}{of}{beyond}\n{_place(largest)}"
+
+
+def _place(largest: _Largest) -> str:
+    return f"{largest.segment}, {largest.x:.1f} m"
 
 
 def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """What the table's numbers are."""
+    models = [model for model in results.ran if model.name in read_first(results)]
+    yield f"{'; '.join(map(_model, models))}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
     if "Tip travels, mm" in told:
         yield "It travels: the farthest from where it is at t = 0."
@@ -238,6 +265,12 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
             f"Single triangles beside lines of contact have more ({_listed(most)}), the more the "
             "finer the mesh; the table of what the walls carry tells where."
         )
+
+
+def _model(model: Model) -> str:
+    """What it is."""
+    tied = ", without play" if model.play_free else ""
+    return f"{model.name}: {model.kind}, {model.describe()}{tied}"
 
 
 def _span(values: Iterable[float | None]) -> str:

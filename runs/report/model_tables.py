@@ -45,7 +45,7 @@ def model_table(results: Results) -> Table:
             [*(str(model.degrees_of_freedom) for model in models), *("failed" for _ in failed)],
         ),
         Column("modes", [str(model.modes) for model in models]),
-        Column("step\nµs", [model.step for model in models], ".3g", MICRO),
+        Column("shortest step\nµs", [model.step for model in models], ".3g", MICRO),
         *([Column("first contact\ns", contacts, ".4f")] if not touching else []),
         Column("first tip peak\ns", [time for time, _ in peaks], ".3f"),
         Column("\nmm", [height for _, height in peaks], ".1f", MILLI),
@@ -86,11 +86,14 @@ def step_table(results: Results) -> Table:
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
-        Column("step\nµs", [model.step for model in models], ".3g", MICRO),
+        Column("shortest step\nµs", [model.step for model in models], ".3g", MICRO),
         Column("steps", [model.steps for model in models]),
         Column("openings and closings", [model.contact_changes for model in models]),
     ]
-    notes = ["Each opening or closing of a contact takes a step of its own, whatever the solver."]
+    notes = [
+        "While nothing can open or close many steps are made at once, and count as one; each "
+        "opening or closing takes one of its own, whatever the solver."
+    ]
     tried = [model.steps_for_peaks for model in models]
     within = next((found for found in tried if found), None)
     if within is not None:

@@ -112,7 +112,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         coloured = "amount of deflection" + (" sideways" if above else "")
         supports = "" if above else "; black: supports"
         caption = (
-            f"The boom of {model!r}{above}: {state}. Colour: {coloured}; grey: at rest{supports}. "
+            f"The boom of {model!r}{above}: {state}. Colour: {coloured}; grey: unloaded{supports}. "
             "Displacements and play are magnified by the factor above the picture."
         )
         return Figure(path, f"Boom{above}: {when}", caption)

@@ -25,6 +25,7 @@ from runs.report.first_look import (
     first_table,
     play_note,
     play_sentence,
+    strength_sentence,
     trust_line,
     trust_lines,
 )
@@ -140,6 +141,17 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
     assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, 10.0 m"
     assert beyond is not None
     assert set(beyond.text.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
+
+
+def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
+    """Reference: by hand, as above; without a yield strength nothing is told."""
+    assert strength_sentence(results) == ""
+    assert strength_sentence(with_stress(results, 300e6)) == (
+        "Strong enough without a safety factor: used are 93 % in walls beside what presses of "
+        "their yield strength (outer, 10.0 m) and 84.5 % in outer fibres of their yield strength "
+        "(outer, 2.0 m)."
+    )
+    assert strength_sentence(with_stress(results, 340e6)).startswith("Not strong enough: ")
 
 
 def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:

@@ -59,7 +59,7 @@ def results(*shells: str) -> Results:
             "+50.0 mm to the side",
         ),
         ("overlap-above-1s.png", "Overlap, seen from above: 1.000 s", "Blue: outer"),
-        ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: at rest"),
+        ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: unloaded"),
         ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),
     ],
 )
