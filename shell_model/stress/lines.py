@@ -17,13 +17,10 @@ from scipy.sparse import csr_matrix
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom
-from shell_model.stress.stresses import ShellStress
+from shell_model.stress.stresses import SAME_LINE, ShellStress, lines_around
 
 # Bands of a segment, at most.
 _BANDS = 60
-
-# Lengths in m that are the same.
-_SAME_PLACE = 1.0e-6
 
 # In m².
 _NOTHING = 1.0e-300
@@ -74,12 +71,8 @@ def cuts_around(spans: Array, places: Sequence[float]) -> Array:
         spans: (num_triangles, 2) the smallest and the largest x of each in m.
         places: x in m of such lines as have to be cuts, rising.
     """
-    first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
-    lines = np.unique(spans.round(6))
-    begun = np.searchsorted(first, lines - _SAME_PLACE)
-    ended = np.searchsorted(last, lines + _SAME_PLACE)
-    free = lines[begun == ended]
-    near = np.abs(np.subtract.outer(free, places)).min(axis=1, initial=np.inf) < _SAME_PLACE
+    free = lines_around(spans)
+    near = np.abs(np.subtract.outer(free, places)).min(axis=1, initial=np.inf) < SAME_LINE
     needed = [free[0], *free[near], free[-1]]
     shortest = (free[-1] - free[0]) / _BANDS
     cuts = [free[0]]
@@ -180,6 +173,6 @@ def _within(part: Indices, reach: Array, strength: Array, place: Array) -> Array
     whole = np.bincount(part, strength)
     about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
     second = np.bincount(part, strength * about**2)[part]
-    flat = reach[part] < _SAME_PLACE
+    flat = reach[part] < SAME_LINE
     missing = whole[part] * reach[part] ** 2 / 12.0 - second
     return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))

@@ -36,7 +36,7 @@ COMPONENTS = (
 FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
 
 # Lengths in m that are the same.
-_SAME_PLACE = 1.0e-6
+SAME_LINE = 1.0e-6
 
 # Numbers that are in memory at once when a history is computed: what a processor keeps at hand.
 _AT_ONCE = 1_000_000
@@ -181,7 +181,7 @@ class ShellStress:
     def holds(self, segment: int, x: float) -> bool:
         """Whether a segment comes to x (m)."""
         spans = self.spans[self.segment == segment]
-        return bool(spans[:, 0].min() - _SAME_PLACE <= x <= spans[:, 1].max() + _SAME_PLACE)
+        return bool(spans[:, 0].min() - SAME_LINE <= x <= spans[:, 1].max() + SAME_LINE)
 
     def near(self, segment: int, x: float, reach: float) -> Indices:
         """Numbers of a segment's triangles whose centroids are no farther from x than this (m)."""
@@ -189,25 +189,33 @@ class ShellStress:
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Numbers of the triangles of the row of elements, all around a segment, that holds x (m).
+        """Numbers of the triangles around a segment between the lines of its mesh next to x (m).
 
-        At a mesh line, of the row towards the tip. Where edges are finer on some walls than on
-        others, so many rows of the fine ones as hold some of every wall.
+        These lines go all around. At one of them, of the row towards the tip.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
-        lines = np.unique(self.spans[mine].round(6))
-        after = int(np.clip(np.searchsorted(lines, x, side="right"), 1, lines.size - 1))
-        first, last, along = after - 1, after, self.centroids[:, 0]
-        while True:
-            row = np.flatnonzero(mine & (along > lines[first]) & (along < lines[last]))
-            if np.unique(self.wall[row]).size == len(self.plates[segment]):
-                return row
-            first, last = max(first - 1, 0), min(last + 1, lines.size - 1)
+        lines = lines_around(self.spans[mine])
+        after = int(np.clip(np.searchsorted(lines, x + SAME_LINE, side="right"), 1, lines.size - 1))
+        along = self.centroids[:, 0]
+        return np.flatnonzero(mine & (along > lines[after - 1]) & (along < lines[after]))
 
     def wall_name(self, triangle: int) -> str:
         """What people call the wall or diaphragm of a triangle."""
         names, number = self.plates[self.segment[triangle]], int(self.wall[triangle])
         return names[number] if number < len(names) else f"diaphragm {number - len(names) + 1}"
+
+
+def lines_around(spans: Array) -> Array:
+    """x in m, rising, of mesh lines that no triangle crosses.
+
+    Args:
+        spans: (num_triangles, 2) the smallest and the largest x of each in m.
+    """
+    first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
+    lines = np.unique(spans.round(6))
+    begun = np.searchsorted(first, lines - SAME_LINE)
+    ended = np.searchsorted(last, lines + SAME_LINE)
+    return np.asarray(lines[begun == ended])
 
 
 def _geometry(points: Array, triangles: Indices) -> dict[str, Array]:

@@ -12,14 +12,14 @@ import xarray as xr
 from mpi4py import MPI
 
 from geometry.arrays import Array
-from geometry.boom import Boom, Diaphragm, Support
+from geometry.boom import Boom, Diaphragm, PadSize, Support
 from geometry.mesh import SegmentMesh, diaphragm_breaks, mesh_segment
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.segment_shell import SegmentShell, assemble_segment
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
-from tests.shell_model.booms import LAW, STEEL, box_segment, three_segments
+from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
 
 E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
@@ -126,9 +126,12 @@ def test_the_faces_differ_by_twice_the_bending() -> None:
     assert stress.largest() == pytest.approx(7.0)
 
 
-def at_rest(boom: Boom, size: float) -> tuple[xr.Dataset, ShellStress]:
+def at_rest(
+    boom: Boom, size: float, tolerance: float | None = None
+) -> tuple[xr.Dataset, ShellStress]:
     """The boom under its constant load; nothing touches."""
-    shell = reduce_boom(boom, [LAW] * len(boom.joints), ShellOptions(size), MPI.COMM_SELF)
+    options = ShellOptions(size, contact_tolerance=tolerance)
+    shell = reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_SELF)
     omega2 = shell.system.omega2
     state = np.divide(shell.system.load, omega2, out=np.zeros_like(omega2), where=omega2 > 0.0)
     assert shell.fields is not None
@@ -181,6 +184,24 @@ def test_walls_carry_what_equilibrium_asks(cantilever: ShellStress) -> None:
     assert sum(f.axial for f in forces.values()) == pytest.approx(0.0, abs=1e-3 * abs(top))
     assert top == pytest.approx(-forces["bottom"].axial, rel=1e-3)
     assert abs(forces["top"].shear) < 1e-2 * shear
+
+
+@pytest.mark.slow
+def test_a_row_goes_all_around_where_pads_refine_some_walls() -> None:
+    """Reference: by hand, the area of each wall is its height or width times the row's length."""
+    boom = flat_boom()
+    outer, inner = boom.segments
+    short = replace(outer, end=2.0), replace(inner, start=1.0, end=3.0)
+    joint = replace(boom.joints[0], stations=(1.0, 2.0), pad=PadSize(0.1, 0.06))
+    _, shell = at_rest(replace(boom, segments=short, joints=(joint,)), 0.25, tolerance=0.1)
+    assert outer.section is not None
+    for x in (0.5, 0.99, 1.0, 1.04, 1.5):
+        row = shell.row(0, x)
+        first, last = shell.spans[row, 0].min(), shell.spans[row, 1].max()
+        assert first - 1e-6 <= x <= last + 1e-6
+        for number, plate in enumerate(outer.section.plates):
+            area = shell.areas[row[shell.wall[row] == number]].sum()
+            assert area == pytest.approx(plate.length * (last - first), rel=1e-6)
 
 
 @pytest.mark.slow
