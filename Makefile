@@ -62,7 +62,7 @@ validity: $(READY) ## where a beam may stand for the shell, over play and load, 
 	$(BIN)/python -m runs.studies.validity
 
 test: $(READY) ## all tests
-	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 fuzz: $(READY) ## a thousand slips in cases, loads' files and command lines; fails if one is not told in a line
 	$(BIN)/python -m tests.fuzz

@@ -36,6 +36,27 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _loops() -> None:
+    """The first of several workers compiles what most tests of motions would wait for."""
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
+        from tests.loops import compile_loops
+
+        compile_loops()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:
+    """Shells that stay in place come first, for the other workers to test while the first one
+    compiles; files without a slow test come last, and keep all workers busy to the end.
+    """
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: (item.path not in slow, _moves(item)))
+
+
+def _moves(item: pytest.Function) -> bool:
+    return item.path.parent.name != "shell_model" or hasattr(item.module, "Motion")
+
+
 @pytest.fixture(autouse=True)
 def _no_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a command says depends not on how slow the machine is."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -40,14 +41,16 @@ def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
     return saved
 
 
-def charts(sweeping: Plan) -> list[str]:
+def charts(
+    sweeping: Plan, quantities: Sequence[str] = tuple(one.name for one in QUANTITIES)
+) -> list[str]:
     """Draw invented numbers, with a gap; what has been drawn."""
     outcomes = [
         Outcome(
             {
                 name: {
-                    quantity.name: 1.0 + 0.1 * i if quantity.name not in UNKNOWN else None
-                    for quantity in QUANTITIES
+                    quantity: 1.0 + 0.1 * i if quantity not in UNKNOWN else None
+                    for quantity in quantities
                 }
                 for name in FAST[: 1 if i == 2 else 2]
             },
@@ -90,7 +93,7 @@ def test_charts_fit_the_number_of_keys(
 
 def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: list[Sheet]) -> None:
     """Where many values are, or values here and there, others are labelled."""
-    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"))
+    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
     axes = sheets[0].axes[0]
     assert axes.get_xlabel() == ""
     assert sheets[0].axes[1].get_xlabel() == "joint.play (mm)"
@@ -100,8 +103,9 @@ def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: li
 
 def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet]) -> None:
     """Reference: the invented numbers, in kN; the fourth of one model is missing."""
-    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40"))
-    sheet = next(one for one in sheets if one.axes[-1].get_ylabel() == "contact force (kN)")
+    charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40"), ["contact_force"])
+    (sheet,) = sheets
+    assert sheet.axes[-1].get_ylabel() == "contact force (kN)"
     shown = [sorted(text.get_text() for text in axes.texts) for axes in sheet.axes[:2]]
     forces = [1e-3 * (1.0 + 0.1 * i) for i in range(6)]
     assert shown[0] == sorted(number(force) for force in forces)

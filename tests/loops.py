@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The compiled loops over time, for which most tests of motions would wait each by itself."""
+
+from __future__ import annotations
+
+from runs import CASES
+from runs.case import reading
+from runs.case.build import build_boom
+from runs.pipeline.models import build
+from runs.pipeline.motion import Plan
+
+
+def compile_loops() -> None:
+    """One output each of what rubs, of few modes that jump, and of what is drawn out."""
+    for name in ("paper-friction", "coarse", "drawn-out"):
+        case = reading.load(str(CASES / f"{name}.toml"))
+        model = case.models[0]
+        Plan.of(build(case, build_boom(case), model).system, case, model).warm()
