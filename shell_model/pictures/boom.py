@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,7 +27,7 @@ from shell_model.pictures.deformation import (
     Stop,
     round_scale,
 )
-from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
+from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles, sharp_edges
 
 # The whole boom: displacements are drawn up to this part of its length, sections so many times
 # larger, of which the play takes up to this part.
@@ -70,7 +70,7 @@ class BoomView:
     def of(
         cls,
         shell: MovingShell,
-        instants: Iterable[Instant],
+        instants: Sequence[Instant],
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
@@ -83,9 +83,8 @@ class BoomView:
             displacement: up to which part of the boom's length displacements are drawn.
         """
         low, high = 0.0, 0.0
-        for instant in instants:
-            deflection = shell.displacement(instant.time)[:, 2]
-            low, high = min(low, deflection.min()), max(high, deflection.max())
+        for moved in shell.displacements([instant.time for instant in instants]):
+            low, high = min(low, moved[:, 2].min()), max(high, moved[:, 2].max())
         # A scale has two ends, even at rest.
         largest = 1.0e3 * max(high, -low, SAME_PLACE)
         begin, end = shell.points[:, 0].min(), shell.points[:, 0].max()
@@ -108,11 +107,11 @@ class BoomView:
 
 def draw_boom(
     shell: MovingShell,
-    instants: Iterable[Instant],
+    instants: Sequence[Instant],
     view: BoomView,
     until: float,
     pace: str = "",
-    finer: int = theme.FINER,
+    part: float = 1.0,
 ) -> Iterator[Image.Image]:
     """The deformed boom, above the deflection of its tip in time.
 
@@ -122,11 +121,11 @@ def draw_boom(
         view: scale, colours, camera.
         until: last time in s of the tip's curve.
         pace: how fast a film shows it.
-        finer: see :class:`shell_model.pictures.theme.Scene`.
+        part: see :class:`shell_model.pictures.theme.Sheet`.
     """
     camera = view.camera
     time, tip = shell.motion["time"].values, shell.motion["tip"].values
-    sheet = Sheet(camera.pixels, floor=325)
+    sheet = Sheet(camera.pixels, 325, part)
     sheet.mark_x(camera, shell.points[:, 0].min(), shell.points[:, 0].max())
     bar = sheet.figure.colorbar(
         ScalarMappable(Normalize(0.0, view.largest), theme.DEFLECTION),
@@ -149,11 +148,12 @@ def draw_boom(
     black += f"; grey blocks: {' and '.join(grey)}" if grey else ""
     black += "; balls: masses" if any(sign.kind == MASS for sign in shell.signs) else ""
     black += "; arrows: loads" if any(sign.kind in (UP, DOWN) for sign in shell.signs) else ""
-    with Scene(camera.pixels, finer) as scene:
+    with Scene(camera.pixels, part) as scene:
         # A little behind the boom, or it would shine through where that hardly moves.
         rest = shell.drawn(np.zeros_like(shell.points), view.scale, SECTION_DRAWN)
         rest[:, 1] += 0.02
-        scene.outline("rest", rest, shell.triangles, theme.FAINT, 1.5)
+        edges = sharp_edges(rest, shell.triangles)
+        scene.outline("rest", rest, edges, theme.FAINT, 1.5)
         larger = np.array([1.0, SECTION_DRAWN, SECTION_DRAWN])
         for number, held in enumerate([] if shell.from_above else shell.supports()):
             scene.surface(f"support {number}", *_wedge(larger * held), color=theme.INK)
@@ -165,8 +165,8 @@ def draw_boom(
             scene.surface(f"spring {number}", *block, color=theme.FAINT)
         for number, lug in enumerate(shell.lugs):
             scene.surface(f"cylinder {number}", *_rod(_met(shell, rest, lug), lug), color=theme.INK)
-        for instant in instants:
-            moved = shell.displacement(instant.time)
+        all_moved = shell.displacements([instant.time for instant in instants])
+        for instant, moved in zip(instants, all_moved, strict=True):
             places = shell.drawn(moved, view.scale, SECTION_DRAWN)
             scene.surface(
                 "boom",
@@ -176,7 +176,7 @@ def draw_boom(
                 cmap=theme.DEFLECTION,
                 clim=(0.0, view.largest),
             )
-            scene.outline("edges", places, shell.triangles, theme.INK, 1.2)
+            scene.outline("edges", places, edges, theme.INK, 1.2)
             sheet.show(scene.seen_by(camera))
             _draw_signs(shell, sheet, camera, places)
             last = int(np.abs(time - instant.time).argmin())

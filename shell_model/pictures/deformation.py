@@ -9,7 +9,7 @@ picture when they touch in the run.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeVar
 
@@ -29,6 +29,9 @@ WALL_DRAWN = 0.03
 # Lengths in m that are the same; a displacement, as a part of the largest one, that is none in
 # single precision.
 SAME_PLACE, AT_REST = 1.0e-6, 1.0e-6
+
+# Times for which displacements are computed together.
+AT_ONCE = 10
 
 # x stays, y comes up, z comes towards the eye.
 _FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -188,8 +191,15 @@ class MovingShell:
 
     def displacement(self, t: float) -> Array:
         """(num_points, 3) in m, at the output time next to ``t`` (s)."""
-        state = self.state.sel(time=t, method="nearest").values
-        return np.asarray(np.tensordot(state, self.modes, axes=1), dtype=np.float64)
+        return next(self.displacements([t]))
+
+    def displacements(self, times: Sequence[float]) -> Iterator[Array]:
+        """(num_points, 3) each in m, at the output times next to ``times`` (s)."""
+        states = self.state.sel(time=list(times), method="nearest").values
+        # The modes, which do not fit into a processor's memory, are read once for several times.
+        for begin in range(0, len(states), AT_ONCE):
+            moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
+            yield from moved.astype(np.float64)
 
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
         """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.

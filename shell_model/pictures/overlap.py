@@ -152,7 +152,8 @@ class OverlapView:
                 line = flanges[number, side] = places[shell.flange_in_plane(number, side)]
                 cut = _band(line, wall)
                 scene.surface(f"cut {number} {side}", *cut, color=look.cut, lighting=False)
-                scene.outline(f"rim {number} {side}", *cut, theme.INK, 2.0)
+                rim = theme.sharp_edges(*cut)
+                scene.outline(f"rim {number} {side}", cut[0], rim, theme.INK, 2.0)
         outer = {side: flanges[self.overlap.outer, side] for side in (-1, 1)}
         camera = self.camera(places)
         sheet.show(scene.seen_by(camera))

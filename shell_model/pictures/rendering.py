@@ -21,9 +21,9 @@ from shell_model.pictures.overlap import draw_overlap
 from shell_model.pictures.stress import StressScale, draw_stress
 from shell_model.pictures.theme import LETTERS
 
-# The animation: seconds of the run, number of pictures, seconds on the screen, size in pixels.
+# The animation: seconds of the run, number of pictures, seconds on the screen, part of a sheet.
 ANIMATION = "motion.gif"
-ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, (960, 540)
+ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
 TITLES = {
     "first-peak": "first peak of the tip",
@@ -113,8 +113,7 @@ def render_snapshots(
                 last = film[-1].time
                 slow = SHOWN / (last - begin) if last > begin else 1.0
                 pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
-                frames = draw_boom(seen, film, view, last, pace, finer=1)
-                moving = [frame.resize(SMALL) for frame in frames]
+                moving = list(draw_boom(seen, film, view, last, pace, SMALL))
     for name, picture in drawn.items():
         picture.save(folder / name)
     _save_animation(moving, folder / ANIMATION)
@@ -203,7 +202,7 @@ def require_opengl() -> None:
 
 def _save_animation(pictures: Sequence[Image.Image], path: Path) -> None:
     # All in one, hence of one palette: colours would flicker otherwise.
-    width, height = SMALL
+    width, height = pictures[0].size
     column = Image.new("RGB", (width, height * len(pictures)))
     for row, picture in enumerate(pictures):
         column.paste(picture, (0, row * height))

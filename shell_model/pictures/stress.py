@@ -20,7 +20,7 @@ from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell, Overlap
 from shell_model.pictures.overlap import Look, OverlapView
-from shell_model.pictures.theme import Scene, Sheet, Triangles
+from shell_model.pictures.theme import Scene, Sheet, Triangles, sharp_edges
 from shell_model.stress.stresses import Face
 
 # Of the overlap and of the whole boom, whose displacements are drawn up to this part of its length.
@@ -118,11 +118,13 @@ def draw_stress(
     scale.add_bar(sheet)
     where = "from above; " if shell.from_above else ""
     with Scene(OVERLAP_PIXELS) as scene, Scene(BOOM_PIXELS) as small:
+        rest = shell.drawn(np.zeros_like(shell.points), view.scale, SECTION_DRAWN)
+        edges = sharp_edges(rest, shell.triangles)
         for instant in instants:
             values = smoothed(shell, shell.stress.at(instant.time).largest())
             places = shell.drawn(shell.displacement(instant.time), view.scale, SECTION_DRAWN)
             small.surface("boom", *apart(places, shell.triangles), **scale.look(values))
-            small.outline("edges", places, shell.triangles, theme.INK, 1.2)
+            small.outline("edges", places, edges, theme.INK, 1.2)
             sheet.inset(small.seen_by(view.camera), 20, 550)
             looks = {
                 number: Look(

@@ -25,6 +25,7 @@ from geometry.arrays import Array
 
 Pixels = npt.NDArray[np.uint8]
 Triangles = npt.NDArray[np.int32]
+Edges = npt.NDArray[np.int64]
 
 # Told apart by the colour-blind too (Okabe and Ito 2008).
 OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
@@ -52,10 +53,13 @@ LETTERS: dict[Any, Any] = {
 }
 
 # Width and height of a sheet in pixels, and pixels per inch. VTK draws each pixel as a square of
-# four, for smooth edges; a film is made smaller anyway.
+# four, for smooth edges.
 SHEET = (1600, 900)
 DPI = 100
 FINER = 2
+
+# Walls that meet at a larger angle, in degrees, have an edge between them.
+SHARP = 30.0
 
 # Degrees over which the picture's height is seen: perspective enough for a box to look like one.
 VIEW_ANGLE = 12.0
@@ -108,11 +112,11 @@ class Scene:
     """Surfaces before a camera, drawn off-screen on white. A thing drawn again replaces itself.
 
     Args:
-        pixels: width and height.
-        finer: VTK draws each pixel as a square of so many each way.
+        pixels: width and height on a whole sheet.
+        part: of a whole sheet's size, each way.
     """
 
-    def __init__(self, pixels: tuple[int, int], finer: int = FINER) -> None:
+    def __init__(self, pixels: tuple[int, int], part: float = 1.0) -> None:
         # VTK's libraries may be missing on a machine that is asked for no picture.
         import pyvista
         from vtkmodules.vtkCommonCore import vtkLogger
@@ -120,12 +124,12 @@ class Scene:
         # VTK warns that it found no display before it takes EGL, which needs none.
         self._logger, self._verbosity = vtkLogger, vtkLogger.GetCurrentVerbosityCutoff()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-        self._surface: Any = pyvista.PolyData.from_regular_faces
-        self._finer = finer
+        self._kinds: Any = pyvista.PolyData
+        self._finer = FINER * part
         look = pyvista.themes.DocumentTheme()
         look.multi_samples = 1
         self._plotter = pyvista.Plotter(
-            off_screen=True, window_size=[finer * n for n in pixels], theme=look
+            off_screen=True, window_size=[FINER * round(part * n) for n in pixels], theme=look
         )
 
     def __enter__(self) -> Self:
@@ -149,18 +153,16 @@ class Scene:
             triangles: (num_triangles, 3) point numbers.
             look: as pyvista has it, on matte ground.
         """
-        surface = self._surface(points, triangles)
+        surface = self._kinds.from_regular_faces(points, triangles)
         self._plotter.add_mesh(
             surface, name=name, show_scalar_bar=False, render=False, **(MATTE | look)
         )
 
-    def outline(
-        self, name: str, points: Array, triangles: Triangles, color: str, width: float
-    ) -> None:
-        """Draw the free and the sharp edges of a surface; the lines' width is in pixels."""
-        edges = self._surface(points, triangles).extract_feature_edges(feature_angle=30.0)
+    def outline(self, name: str, points: Array, edges: Edges, color: str, width: float) -> None:
+        """Draw edges (num_edges, 2) of a surface; the lines' width is in pixels."""
+        ends = np.insert(edges, 0, 2, axis=1)
         self._plotter.add_mesh(
-            edges,
+            self._kinds(points, lines=ends.ravel()),
             name=name,
             color=color,
             line_width=self._finer * width,
@@ -176,7 +178,22 @@ class Scene:
         self._plotter.renderer.ResetCameraClippingRange()
         self._plotter.render()
         fine = Image.fromarray(np.asarray(self._plotter.screenshot(return_img=True)))
-        return np.asarray(fine.reduce(self._finer))
+        return np.asarray(fine.reduce(FINER))
+
+
+def sharp_edges(points: Array, triangles: Triangles) -> Edges:
+    """(num_edges, 2) point numbers of the free and the sharp edges of a surface.
+
+    Args:
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3) point numbers.
+    """
+    import pyvista
+
+    surface: Any = pyvista.PolyData.from_regular_faces(points, triangles)
+    surface["number"] = np.arange(len(points))
+    found = surface.extract_feature_edges(feature_angle=SHARP)
+    return np.asarray(found["number"][found.lines.reshape(-1, 3)[:, 1:]], dtype=np.int64)
 
 
 class Sheet:
@@ -189,10 +206,12 @@ class Sheet:
     Args:
         pixels: width and height of the picture.
         floor: height of the picture's lower edge in pixels.
+        part: of the size that these pixels are of; the page is so much smaller, each way.
     """
 
-    def __init__(self, pixels: tuple[int, int], floor: int) -> None:
-        self.figure = Figure(figsize=(SHEET[0] / DPI, SHEET[1] / DPI), dpi=DPI)
+    def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:
+        self.figure = Figure(figsize=(SHEET[0] / DPI, SHEET[1] / DPI), dpi=part * DPI)
+        self._part = part
         self._canvas: Any = FigureCanvasAgg(self.figure)
         self.picture = self.axes(0, floor, *pixels)
         self.picture.spines["left"].set_visible(False)
@@ -245,7 +264,7 @@ class Sheet:
 
     def inset(self, pixels: Pixels, left: int, bottom: int) -> None:
         """Put what a camera saw at a place on the sheet, in pixels."""
-        self._seen[left, bottom] = pixels
+        self._seen[round(self._part * left), round(self._part * bottom)] = pixels
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow and write beside it.
@@ -305,7 +324,7 @@ class Sheet:
         page = np.asarray(self._canvas.buffer_rgba())
         for (left, bottom), pixels in self._seen.items():
             height, width = pixels.shape[:2]
-            top = SHEET[1] - bottom - height
+            top = len(page) - bottom - height
             place = page[top : top + height, left : left + width, :3]
             # Letters that come down into the picture stay.
             np.minimum(place, pixels, out=place)
