@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -146,7 +145,7 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
         rows.append(["sections", "sections"])
         heights.append(SECTIONS)
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
-    FigureCanvasAgg(sheet)
+    theme.Canvas(sheet)
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
     acts = list(acting(case, boom))
     _draw_whole(

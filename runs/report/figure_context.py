@@ -11,7 +11,6 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
@@ -201,7 +200,7 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
         share_y: whether they have one scale.
     """
     sheet = Sheet(figsize=(theme.WIDTH, height))
-    FigureCanvasAgg(sheet)
+    theme.Canvas(sheet)
     column = sheet.subplots(panels, 1, sharex=True, sharey=share_y, squeeze=False)
     return sheet, list(column[:, 0])
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 
 from geometry.typography import signed
@@ -45,7 +46,6 @@ RC: dict[Any, Any] = {
     "axes.titlelocation": "left",
     "axes.titlesize": 11.0,
     "axes.titleweight": "bold",
-    "axes.formatter.use_mathtext": True,
     "grid.color": RULE,
     "grid.linewidth": 0.6,
     "xtick.color": INK,
@@ -58,6 +58,15 @@ RC: dict[Any, Any] = {
     # two of these a bit is missing, which is to be too short to be seen.
     "agg.path.chunksize": 1_000_000,
 }
+
+
+class Canvas(FigureCanvasAgg):
+    """Saves a sheet by the one drawing that lays it out, where others draw it for that before."""
+
+    def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
+        """Write a PNG file, whatever its name ends with."""
+        canvas: Any = self
+        canvas.print_png(filename)
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:

@@ -190,7 +190,8 @@ def sharp_edges(points: Array, triangles: Triangles) -> Edges:
     """
     import pyvista
 
-    surface: Any = pyvista.PolyData.from_regular_faces(points, triangles)
+    kinds: Any = pyvista.PolyData
+    surface = kinds.from_regular_faces(points, triangles)
     surface["number"] = np.arange(len(points))
     found = surface.extract_feature_edges(feature_angle=SHARP)
     return np.asarray(found["number"][found.lines.reshape(-1, 3)[:, 1:]], dtype=np.int64)
