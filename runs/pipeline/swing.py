@@ -101,6 +101,9 @@ def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
 
     try:
         motion, _ = asked(system, case, model)
+        changes = system.excitations or system.released.any() or motion.velocity.any()
+        if case.start.state == "equilibrium" and not changes:
+            return 0.0
         return farthest_from_rest(system, by_splitting(motion)(motion))[0]
     except NUMERICS:
         return None

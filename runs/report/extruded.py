@@ -68,6 +68,9 @@ def of_beam(boom: Boom, model: str, output: BeamOutput) -> MovingSurface:
         triangles=np.concatenate(
             [tube.triangles + begin for tube, begin in zip(tubes, first, strict=False)]
         ).astype(np.int32),
+        segment=np.repeat(np.arange(len(tubes)), [len(tube.points) for tube in tubes]).astype(
+            np.int32
+        ),
         shapes=shapes.reshape(len(shapes), -1, 3),
         parts=parts,
         colors=stress,

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.drawing import drives_below
 from runs.pipeline.beam_output import frames
 from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell
@@ -33,6 +36,7 @@ class MovingSurface:
         time: (num_frames,) in s.
         points: (num_points, 3) where they are drawn at rest, in m.
         triangles: (num_triangles, 3) point numbers.
+        segment: (num_points,) of each point, its position in the boom.
         shapes: (num_shapes, num_points, 3), how they are drawn to move.
         parts: (num_frames, num_shapes) of each shape.
         colors: (num_frames, num_points) what is coloured.
@@ -40,12 +44,15 @@ class MovingSurface:
         magnified: by how much displacements are drawn larger.
         enlarged: by how much sections are.
         end: of the colours; what is above has the last one.
+        drawn: (num_frames,) in m by which each segment that a drive moves is drawn out of its outer
+            one, by its name.
     """
 
     model: str
     time: Array
     points: Array
     triangles: npt.NDArray[np.int32]
+    segment: npt.NDArray[np.int32]
     shapes: Array
     parts: Array
     colors: Array
@@ -53,6 +60,7 @@ class MovingSurface:
     magnified: float
     enlarged: float
     end: float
+    drawn: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of_shell(cls, fields: xr.Dataset, motion: xr.Dataset) -> MovingSurface:
@@ -74,12 +82,16 @@ class MovingSurface:
             for moved in map(shell.displacement, time.tolist())
         ]
         parts, shapes = few_shapes(np.array(drawn).reshape(time.size, -1))
+        segment = np.zeros(len(rest), dtype=np.int32)
+        for number, members in enumerate(shell.members):
+            segment[members] = number
         stresses = [smooth(shell, shell.stress.at(t).largest()) for t in time.tolist()]
         return cls(
             model=str(fields.attrs["model"]),
             time=time,
             points=rest,
             triangles=shell.triangles,
+            segment=segment,
             shapes=shapes.reshape(len(shapes), *rest.shape),
             parts=parts,
             colors=np.array(stresses) / MEGA,
@@ -87,6 +99,25 @@ class MovingSurface:
             magnified=scale,
             end=StressScale.of(shell, instants).end / MEGA,
             enlarged=SECTION_DRAWN,
+        )
+
+    def drawn_out(self, boom: Boom) -> MovingSurface:
+        """The same, its segments moved along x as the boom's drives move them, not magnified."""
+        names, shapes, ways = [], [], []
+        for number, joint in enumerate(boom.joints):
+            if joint.drive is None:
+                continue
+            moves = [number in drives_below(boom.joints, n) for n in range(len(boom.segments))]
+            names.append(boom.segments[joint.inner].name)
+            shapes.append(np.array(moves)[self.segment, None] * np.array([1.0, 0.0, 0.0]))
+            ways.append(joint.drive.history(self.time))
+        if not names:
+            return self
+        return replace(
+            self,
+            shapes=np.concatenate([self.shapes, shapes]),
+            parts=np.column_stack([self.parts, *ways]),
+            drawn=dict(zip(names, ways, strict=True)),
         )
 
     def turned(self, angle: float) -> MovingSurface:
@@ -137,6 +168,7 @@ def packed(surface: MovingSurface) -> dict[str, Any]:
         "enlarged": surface.enlarged,
         "end": end,
         "time": surface.time.tolist(),
+        "drawn": {name: ways.tolist() for name, ways in surface.drawn.items()},
         "parts": (surface.parts * size / np.iinfo(np.int16).max).tolist(),
         "points": surface.points.astype("<f4"),
         "triangles": surface.triangles.astype(wide),

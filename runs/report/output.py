@@ -130,6 +130,7 @@ def write(
             shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
     surface = _surface(run, fields) if find_spec("plotly") else None
     if surface is not None:
+        surface = surface.drawn_out(build_boom(results.case))
         _write_text(folder / VIEWER, viewer(results.case, surface))
     try:
         if snapshots_now:

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
+from dynamics.travel import SCurve
 from geometry.boom import Boom
+from geometry.drive import Drive
 from runs.pipeline.beam_output import BeamOutput, MovedSegment
 from runs.report.extruded import of_beam
 from runs.report.moving_surface import LEFT, few_shapes, packed
@@ -57,6 +61,24 @@ def test_play_stays_visible(paper_boom: Boom) -> None:
     x, _, z = surface.points.T
     outer, inner = z[x < 9.0].max(), z[x > 10.0].max()
     assert outer - inner > surface.magnified * paper_boom.joints[0].clearance
+
+
+def test_segments_move_along_as_they_are_drawn_out(paper_boom: Boom) -> None:
+    """Reference (analytic): the inner segment moves 2 m back along x as half of the drive's time is
+    over, the outer one not; both bend as they do without a drive."""
+    out = Drive(SCurve(travel=-4.0, duration=1.0), carriers=("inner", "outer"))
+    boom = replace(paper_boom, joints=(replace(paper_boom.joints[0], drive=out),))
+    still = of_beam(paper_boom, "beam", bent(paper_boom))
+    drawn = still.drawn_out(boom)
+    assert still.drawn_out(paper_boom) is still
+    assert drawn.drawn["inner"].tolist() == pytest.approx([0.0, -2.0, -4.0])
+    moved, before = (np.tensordot(one.parts, one.shapes, axes=1) for one in (drawn, still))
+    inner = drawn.segment == 1
+    assert still.points[inner, 0].min() == paper_boom.segments[1].start
+    shift = moved - before
+    np.testing.assert_allclose(shift[1, inner], [[-2.0, 0.0, 0.0]] * inner.sum(), atol=1e-9)
+    np.testing.assert_allclose(shift[:, ~inner], 0.0, atol=1e-9)
+    assert packed(drawn)["drawn"] == {"inner": pytest.approx([0.0, -2.0, -4.0])}
 
 
 def test_few_shapes_leave_little() -> None:

@@ -98,6 +98,16 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
 
 
+def test_what_rests_swings_by_nothing(tmp_path: Path) -> None:
+    """Reference: the boom that starts at rest under loads that stay; drawn out fast it swings."""
+    drawn = case(tmp_path, "drive = { travel = 4.0, time = 0.4 }")
+    start = drawn.start.model_copy(update={"state": "equilibrium"})
+    swing = swing_of(drawn.model_copy(update={"start": start, "loads": ()}))
+    assert swing is not None
+    assert (swing.where_begun, swing.where_ended) == (0.0, 0.0)
+    assert swing.tip > 1.0e-3
+
+
 def test_a_drive_that_the_run_does_not_see_the_end_of_has_no_swing(tmp_path: Path) -> None:
     assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
     assert swing_of(case(tmp_path, "")) is None
