@@ -33,7 +33,7 @@ def between(tail: Section, head: Section, part: float) -> Section:
 def _mixed(tail: Any, head: Any, part: float) -> Any:
     if isinstance(tail, tuple):
         return tuple(_mixed(one, other, part) for one, other in zip(tail, head, strict=True))
-    return tail + part * (head - tail)
+    return head if part == 1.0 else tail + part * (head - tail)
 
 
 def check_alike(tail: Section, head: Section) -> None:

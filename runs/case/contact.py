@@ -303,11 +303,17 @@ class JointTable(Table):
         # To the sides a stiffness of their own makes a power law beside any table.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
+        if self.pads and self.lateral_stiffness:
+            what = {"what": "pads is given; leave one of them out"}
+            fault = PydanticCustomError("unsuitable", "{what}", what)
+            raise fault_at(self, fault, "lateral_stiffness")
+        if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
+            raise fault_at(self, "missing", "lateral_stiffness")
         return self
 
-    def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
-        own = self.lateral_exponent if key == "lateral_stiffness" else None
-        return super().units_of(key, own or self.exponent or exponent)
+    def exponent_of(self, key: str) -> float | None:
+        along_z = 1.0 if self.thick_pads and not self.stiffness else self.exponent
+        return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
         """Above and below in m, along y left and right; negative where shims press."""
@@ -379,6 +385,9 @@ class ContactTable(Table):
     def _one_law(self) -> Self:
         _check_law(self, _OF_POWER)
         return self
+
+    def exponent_of(self, key: str) -> float:
+        return self.exponent or 2.0
 
     def law(self, joint: JointTable, direction: Direction) -> ContactLaw:
         """As that of a joint, with its play."""

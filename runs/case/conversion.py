@@ -31,9 +31,8 @@ def in_si(case: Case) -> Case:
     laws = [joint.exponent for joint in case.joints]
     models = []
     for model in case.models:
-        of_contact = None if model.contact is None else model.contact.exponent
-        exponent = of_contact or next(iter(laws), None) or 2.0
-        models.append(_converted(model, system, exponent))
+        own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
+        models.append(_converted(model, system, next(iter([*own, *laws]), None) or 2.0))
     shown = {"units": "SI", "shown_units": case.shown_units or case.units, "models": tuple(models)}
     return _converted(case, system).model_copy(update=shown)
 

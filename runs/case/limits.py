@@ -45,6 +45,10 @@ class Table(BaseModel):
     # The key that a number alone stands for, where one may stand in place of the table.
     bare: ClassVar[str] = ""
 
+    def exponent_of(self, key: str) -> float | None:
+        """Of the contact law that a key is a number of; None where the table gives none."""
+        return getattr(self, "exponent", None)
+
     def units_of(self, key: str, exponent: float = 2.0) -> tuple[str, ...]:
         """What the numbers of a key are in, as of :class:`In`; empty where they are none.
 
@@ -53,7 +57,7 @@ class Table(BaseModel):
             exponent: of the contact law that a table without one belongs to.
         """
         declared = declared_units(type(self).model_fields[key])
-        n = getattr(self, "exponent", None) or exponent
+        n = self.exponent_of(key) or exponent
         powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
         return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
 

@@ -49,7 +49,7 @@ _TABLES: Mapping[str, type[BaseModel]] = {
 }
 
 # Keys of the case that are arrays of tables.
-_ARRAYS = ("segment", "joint", "stop", "load", "axial", "base", "observe", "model")
+_ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
 
 # Names that a message lists of those that would be right.
 MOST_CHOICES = 12
@@ -141,6 +141,8 @@ def _explain(
         what = f"must be {limits['expected']}"
     elif fault == "unsuitable":
         return key, str(limits["what"])
+    elif fault == "too_short" and limits["min_length"] > 1:
+        return key, f"too short; give {limits['min_length']} at least"
     elif fault == "too_short":
         return key, "empty; give at least one"
     elif fault == "too_long" and limits["max_length"] == 2:

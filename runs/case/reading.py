@@ -223,13 +223,16 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
         return table
+    _check_file_alone(path, key, table.table)
     (unit,) = table.units_of(table.amount)
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
     if not read.measured and table.amount not in table.model_fields_set:
         what = type(table).model_fields[table.amount].description
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    return table.model_copy(update={"file": None, "columns": None, "table": read.values})
+    # What is left out counts as given, in the units of the case as the file is.
+    amount = {table.amount: getattr(table, table.amount)}
+    return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
 
 
 def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTable:
@@ -240,12 +243,16 @@ def _driven(path: str, key: str, joint: JointTable, system: System) -> JointTabl
     _check_columns(path, f"{key}.columns", drive.columns, drive.file)
     if drive.file is None:
         return joint
-    if drive.table is not None:
-        raise BadInput(path, f"{key}.file", "table is given; leave one of them out")
+    _check_file_alone(path, key, drive.table)
     wanted = Column("time", system.unit("s")), Column("length", system.unit("m"))
     read = read_pairs(path, f"{key}.file", drive.file, drive.columns, wanted).values
     update = {"file": None, "columns": None, "table": read}
     return joint.model_copy(update={"drive": drive.model_copy(update=update)})
+
+
+def _check_file_alone(path: str, key: str, table: object) -> None:
+    if table is not None:
+        raise BadInput(path, f"{key}.file", "table is given; leave one of them out")
 
 
 def _check_columns(path: str, key: str, names: object, file: str | None) -> None:

@@ -19,6 +19,12 @@ CONTACTS = {
         "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0]\n",
         "joint[1].normal_forces: must have one number for each of the 2 stations, got 1",
     ),
+    "an exponent to the sides of a stiffness of another": (
+        "exponent = 2.0\n",
+        "exponent = 2.0\nlateral_play = 0.01\nlateral_exponent = 1.5\n",
+        "joint[1].lateral_stiffness: missing; it is the contact stiffness to the sides in N/m^n; "
+        "the same unless given",
+    ),
     "negative friction": (
         "exponent = 2.0\n",
         "exponent = 2.0\nfriction = -0.2\n",
@@ -191,7 +197,9 @@ CONTACTS = {
     "one stiffness for surfaces of two laws": (
         FROM_EXPONENT,
         FROM_EXPONENT.replace(
-            "exponent", "lateral_play = 0.01\nlateral_exponent = 1.5\nexponent", 1
+            "exponent",
+            "lateral_play = 0.01\nlateral_stiffness = 1e11\nlateral_exponent = 1.5\nexponent",
+            1,
         )
         .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
         .replace(CONTACT, "", 3),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args, get_origin
@@ -17,6 +18,8 @@ from rich.console import Console
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom, contact_laws
+from runs.case.contact import ContactTable, JointTable
+from runs.case.conversion import in_si
 from runs.case.limits import declared_units
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
@@ -201,6 +204,57 @@ def test_files_are_in_the_units_of_the_case_unless_they_say_others() -> None:
         gust = in_mm().loads[2]
         assert gust.table is not None
         assert gust.magnitude * gust.table[1][1] == pytest.approx(-12.0, rel=1e-15)
+
+
+def test_files_that_say_their_units_need_no_magnitude() -> None:
+    """Reference: analytic. -50 N/m is that whatever the units of the case."""
+    in_mm()
+    text = Path("crane.toml").read_text(encoding="utf-8")
+    Path("gust.csv").write_text("t [s],F [N/m]\n0,0\n3,-50\n", encoding="utf-8")
+    Path("crane.toml").write_text(text.replace("magnitude = -0.012\n", ""), encoding="utf-8")
+    gust = reading.load("crane.toml").loads[2]
+    assert gust.table is not None
+    assert gust.magnitude * gust.table[1][1] == pytest.approx(-50.0, rel=1e-15)
+
+
+SIDES = "lateral_stiffness = 1e3"
+
+
+@pytest.mark.parametrize(
+    ("own", "sides", "power"),
+    [
+        ("stiffness = 1e3", "", 2.0),
+        ("stiffness = 1e3\nexponent = 1.5", "lateral_stiffness = 1e3\nlateral_exponent = 1.0", 1.0),
+        ("stiffness = 1e3\nexponent = 1.5", "lateral_stiffness = 1e3", 1.5),
+        (
+            "pad = { length = 100.0, width = 50.0, thickness = 20.0 }",
+            "lateral_stiffness = 1e3",
+            1.0,
+        ),
+    ],
+)
+def test_a_stiffness_has_the_unit_of_its_own_law(own: str, sides: str, power: float) -> None:
+    """Reference: analytic, N/mmⁿ times 1000ⁿ, with the exponent that the law presses by."""
+    joint = JointTable.model_validate(
+        tomllib.loads(
+            "outer = 'base'\ninner = 'fly'\nstations = [1.0]\nplay = 1.0\nlateral_play = 1.0\n"
+            f"{own}\n{sides}"
+        )
+    )
+    (found,) = in_si(in_mm().model_copy(update={"units": "mm-t-s", "joints": (joint,)})).joints
+    stiffness = found.lateral_stiffness if sides else found.stiffness
+    assert stiffness == pytest.approx(1e3 * 1000.0**power, rel=1e-15)
+
+
+def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
+    """Reference: analytic, N/mm² where no exponent is given, beside joints of another."""
+    case = in_mm()
+    joint = case.joints[0].model_copy(update={"exponent": 1.0})
+    model = case.models[0].model_copy(update={"contact": ContactTable(stiffness=1e3)})
+    update = {"units": "mm-t-s", "joints": (joint,), "models": (model,)}
+    contact = in_si(case.model_copy(update=update)).models[0].contact
+    assert contact is not None
+    assert contact.stiffness == pytest.approx(1e9, rel=1e-15)
 
 
 def test_check_shows_the_units_of_the_case() -> None:
