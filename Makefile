@@ -59,7 +59,8 @@ convergence: $(READY) ## what proves the models: benchmarks, refinements, other 
 	$(BIN)/python -m runs.studies.convergence
 
 validity: $(READY) ## where a beam may stand for the shell, over play and load, into runs/out/validity
-	$(BIN)/python -m runs.studies.validity
+	$(BIN)/protractile sweep runs/cases/beam-or-shell.toml --against shell --large \
+	    --vary joint.play=0:0.02:5 --vary gravity.acceleration=1,2,5,10 --out runs/out/validity
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder

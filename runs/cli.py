@@ -217,6 +217,10 @@ def sweep(
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
     large: Large = False,
+    against: Annotated[
+        str | None,
+        typer.Option(metavar="MODEL", help="Tell how far the other models are from this one."),
+    ] = None,
 ) -> int:
     """Run a case over values of its numbers, and chart its models.
 
@@ -231,7 +235,7 @@ def sweep(
     from runs.sweep import points
     from runs.sweep import run as sweep_runs
 
-    plan = points.plan(case, vary, _names(models), mesh_size)
+    plan = points.plan(case, vary, _names(models), mesh_size, against)
     if not large:
         estimates.refuse_large(estimates.of_sweep([point.case for point in plan.points]), case)
     comm = _enter_mpi(plan.points[0].case, case) or sweep_runs.launched_world(case)
@@ -244,10 +248,10 @@ def sweep(
                 return 0
             with beside(folder) as scratch, progress.told() as tell:
                 cache = None if no_cache else Cache.of_user()
-                outcomes = sweep_runs.run_points(plan.points, folder, pool, scratch, tell, cache)
+                outcomes = sweep_runs.run_points(plan, folder, pool, scratch, tell, cache)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
-        charts.show(data, Terminal())
+        charts.show(data, against, Terminal())
         return _show_failures(plan, outcomes)
 
 

@@ -9,7 +9,7 @@ its swing over the speed has a chart of its own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Literal
@@ -64,17 +64,23 @@ def draw(data: xr.Dataset, play_free: Sequence[str], folder: Path) -> None:
             for quantity in _changing(data):
                 _map(data, quantity, keys, folder)
             return
-        ends = [(data[key].values[0], data[key].values[-1]) for key in keys[1:]]
-        for count, others in enumerate(product(*ends), start=1):
-            there = dict(zip(keys[1:], others, strict=True))
-            part = data.sel(there)
+        for part, where, number in over_first_key(data, keys):
             # Where everything failed there is nothing to draw.
             if _changing(part):
-                title = f"Sweep over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
-                name = f"sweep-lines-{count}.png" if ends else "sweep-lines.png"
-                _lines(part, strokes, title, folder / name)
+                _lines(part, strokes, f"Sweep {where}", folder / f"sweep-lines{number}.png")
         if len(keys) == 1:
             draw_swings(data, strokes, folder / "sweep-swing.png")
+
+
+def over_first_key(data: xr.Dataset, keys: Sequence[str]) -> Iterator[tuple[xr.Dataset, str, str]]:
+    """The data at each combination of the ends of all keys but the first, where that is, in words,
+    and the number behind the name of its file.
+    """
+    ends = [(data[key].values[0], data[key].values[-1]) for key in keys[1:]]
+    for count, others in enumerate(product(*ends), start=1):
+        there = dict(zip(keys[1:], others, strict=True))
+        where = f"over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
+        yield data.sel(there), where, f"-{count}" if ends else ""
 
 
 def _changing(data: xr.Dataset) -> list[Quantity]:
@@ -132,10 +138,10 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
                     )
             axes.set_title(f"mode {mode} (Hz)")
             axes.set_ylim(bottom=0.0)
-        _scale(panels[-1], "x", data[key])
+        scale_axis(panels[-1], "x", data[key])
         handles, labels = panels[0].get_legend_handles_labels()
         sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-        _finish(sheet, f"First frequencies over {key}", path)
+        finish(sheet, f"First frequencies over {key}", path)
 
 
 def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, path: Path) -> None:
@@ -157,10 +163,10 @@ def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, pa
         axes.set_title(f"{quantity.title} ({quantity.shown_unit})")
         if quantity.logarithmic:
             axes.set_yscale("log")
-    _scale(panels[-1], "x", data[key])
+    scale_axis(panels[-1], "x", data[key])
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-    _finish(sheet, title, path)
+    finish(sheet, title, path)
 
 
 def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path) -> None:
@@ -175,8 +181,8 @@ def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
         # Labels of contours stand where they belong if the scales are known before them.
-        _scale(axes, "x", data[keys[0]])
-        _scale(axes, "y", data[keys[1]])
+        scale_axis(axes, "x", data[keys[0]])
+        scale_axis(axes, "y", data[keys[1]])
         of_model = values.sel(model=name).values
         mesh = axes.pcolormesh(*edges, of_model, vmin=low, vmax=high, cmap="viridis")
         if max(of_model.shape) <= MOST_CELLS:
@@ -201,7 +207,7 @@ def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
     path = folder / f"sweep-{quantity.name.replace('_', '-')}.png"
-    _finish(sheet, title + quantity.shown_unit, path)
+    finish(sheet, title + quantity.shown_unit, path)
 
 
 def _label_cells(axes: Axes, places: tuple[Array, Array], values: Array, middle: float) -> None:
@@ -233,7 +239,7 @@ def _edges(values: Array) -> Array:
     return np.asarray(np.exp(bounds)) if _spans_decades(values) else bounds
 
 
-def _scale(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
+def scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
     """Label an axis with its key and unit; logarithmic where values span decades."""
     unit, places = values.attrs["units"], values.values
     label = str(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
@@ -247,6 +253,7 @@ def _scale(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
         axes.locator_params(axis=which, nbins=MOST_TICKS)
 
 
-def _finish(sheet: Sheet, title: str, path: Path) -> None:
+def finish(sheet: Sheet, title: str, path: Path) -> None:
+    """Give a sheet its title, and write it."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)

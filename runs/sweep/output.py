@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +15,11 @@ from runs.folder.files import alone, changed_folder, whole, whole_folder
 from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, number
+from runs.sweep.distance_figures import draw_distances
+from runs.sweep.distances import DISTANCES
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import QUANTITIES, Quantity
+from runs.sweep.quantities import QUANTITIES, Measured, Quantity
 from runs.sweep.run import Outcome
 from runs.sweep.swings import said, swings
 
@@ -33,17 +35,18 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
     Returns:
         dims: the varied keys, in the unit of the case, and ``model``; the quantities of
-        :mod:`runs.sweep.quantities`, NaN where a model has none; ``failed``, 1 where the numerics
-        did.
+        :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference those of
+        :mod:`runs.sweep.distances`; ``failed``, 1 where the numerics did.
     """
     keys = [variation.key for variation in plan.variations]
     models = [model.name for model in plan.points[0].case.models]
     shape = [len(variation.values) for variation in plan.variations]
     numbers = {
         quantity: np.array(
-            [[_number(outcome, name, quantity) for name in models] for outcome in outcomes]
+            [[_number(table(outcome), name, quantity) for name in models] for outcome in outcomes]
         ).reshape(*shape, len(models))
-        for quantity in QUANTITIES
+        for quantities, table in _TABLES[: 1 if plan.reference is None else 2]
+        for quantity in quantities
     }
     failed = np.array(
         [[name in outcome.failures for name in models] for outcome in outcomes], dtype=np.int8
@@ -80,11 +83,14 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         data.to_netcdf(netcdf, engine="scipy")
         _write_csv(data, outcomes, table)
         draw(data, plan.play_free, figures)
+        if plan.reference is not None:
+            draw_distances(data.drop_sel(model=plan.reference), plan.reference, figures)
     return data
 
 
-def show(data: xr.Dataset, console: Console) -> None:
-    """Print from where to where each model goes, and where its tip goes farthest.
+def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
+    """Print from where to where each model goes, where its tip goes farthest, and how far it is
+    off the reference.
 
     The energy residual is the largest of all points. How fast it may be drawn out is said below.
     """
@@ -110,6 +116,18 @@ def show(data: xr.Dataset, console: Console) -> None:
     ).show(console)
     for line in (line for name, one in swings(data).items() for line in said(name, one)):
         console.print(line, markup=False, highlight=False)
+    if reference is not None:
+        _show_distances(data, reference, console)
+
+
+def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
+    others = [str(name) for name in data["model"].values if name != reference]
+    rows = [
+        (name, *(_range(data[one.name].sel(model=name), one) for one in DISTANCES))
+        for name in others
+    ]
+    headings = (f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES)
+    TextTable(f"Distances from {reference}", ("model", *headings), rows).show(console)
 
 
 def _range(values: xr.DataArray, quantity: Quantity) -> str:
@@ -127,9 +145,16 @@ def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
     return "\n".join(f"{values[key].values[i]:g}" for key, i in zip(keys, place, strict=True))
 
 
-def _number(outcome: Outcome, model: str, quantity: Quantity) -> float:
-    value = outcome.models.get(model, {}).get(quantity.name)
+def _number(table: Mapping[str, Measured], model: str, quantity: Quantity) -> float:
+    value = table.get(model, {}).get(quantity.name)
     return math.nan if value is None else value
+
+
+# What is measured of each model, and what of each but the reference.
+_TABLES: Sequence[tuple[Sequence[Quantity], Callable[[Outcome], Mapping[str, Measured]]]] = (
+    (QUANTITIES, lambda outcome: outcome.models),
+    (DISTANCES, lambda outcome: outcome.off),
+)
 
 
 def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:

@@ -21,7 +21,7 @@ from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, choices
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.case.units import System
@@ -61,6 +61,7 @@ class Plan:
         units: of each variation, '' for none.
         play_free: names of the models without play.
         points: all combinations, the last variation changing fastest.
+        reference: the model that the others are held against, if any.
     """
 
     file: str
@@ -69,10 +70,15 @@ class Plan:
     units: Sequence[str]
     play_free: Sequence[str]
     points: Sequence[Point]
+    reference: str | None = None
 
 
 def plan(
-    file: str, texts: Sequence[str], models: Sequence[str] | None, mesh_size: float | None
+    file: str,
+    texts: Sequence[str],
+    models: Sequence[str] | None,
+    mesh_size: float | None,
+    reference: str | None = None,
 ) -> Plan:
     """Check a case and every point of a sweep of it.
 
@@ -81,9 +87,10 @@ def plan(
         texts: KEY=VALUES each, see :mod:`runs.sweep.variation`.
         models: names; all unless given.
         mesh_size: of all shells in m, the case's unless given.
+        reference: name of the model that the others are held against.
 
     Raises:
-        BadInput: the case, a key, a value, or a point that cannot be.
+        BadInput: the case, a key, a value, or a point that cannot be; no such reference.
     """
     whole = case_file.load(file)
     case_file.select(whole, file, models, mesh_size, 0)
@@ -109,8 +116,23 @@ def plan(
         checked = _checked(file, label, held, any(plates[shaping]))
         points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
     _check_influence(file, variations, points)
-    play_free = [model.name for model in points[0].case.models if model.play_free]
-    return Plan(file, whole.title, variations, units, play_free, points)
+    run = points[0].case.models
+    _check_reference(file, reference, [model.name for model in run])
+    play_free = [model.name for model in run if model.play_free]
+    return Plan(file, whole.title, variations, units, play_free, points, reference)
+
+
+def _check_reference(file: str, reference: str | None, models: Sequence[str]) -> None:
+    if reference is None:
+        return
+    if reference not in models:
+        raise BadInput(
+            file, "--against", f"{reference!r} is not a model that is run; give {choices(models)}"
+        )
+    if len(models) == 1:
+        raise BadInput(
+            file, "--against", f"nothing is run beside {reference!r}; run another model, too"
+        )
 
 
 def _in_units_of(system: System, variation: Variation, case: Case) -> Variation:

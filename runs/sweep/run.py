@@ -11,11 +11,11 @@ from __future__ import annotations
 import json
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
@@ -36,11 +36,14 @@ from runs.pipeline import members
 from runs.pipeline.run import Progress, run_case, silent
 from runs.process import notices, ranks
 from runs.process.interruption import undone
-from runs.sweep.points import Point
+from runs.sweep.distances import DISTANCES, Seen, comparable_until
+from runs.sweep.points import Plan, Point
 from runs.sweep.quantities import QUANTITIES, Measured, measure
 
 if TYPE_CHECKING:
     from mpi4py import MPI
+
+    from runs.pipeline.results import Results
 
 POINTS = "points"
 _POINT = "point.json"
@@ -61,10 +64,12 @@ class Outcome:
     Args:
         models: the quantities of those that ran.
         failures: why the others could not be computed, a sentence each.
+        off: how far they are from the reference, where there is one.
     """
 
     models: dict[str, Measured]
     failures: dict[str, str]
+    off: dict[str, Measured] = field(default_factory=dict)
 
 
 def prepare(folder: Path, file: str) -> None:
@@ -138,7 +143,7 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 
 
 def run_points(
-    points: Sequence[Point],
+    plan: Plan,
     folder: Path,
     pool: Executor,
     scratch: Path,
@@ -148,7 +153,7 @@ def run_points(
     """Run the points that are not done yet, write each when it is, and give those of all.
 
     Args:
-        points: of a sweep.
+        plan: of the sweep.
         folder: made by :func:`prepare`.
         pool: of :func:`workers`.
         scratch: for what is in the making, on the disk of the folder.
@@ -158,17 +163,19 @@ def run_points(
     Raises:
         MemoryError: the system has killed a process.
     """
+    points, reference = plan.points, plan.reference
     kept = Cache(folder / POINTS)
     computed_by = program()
-    names = [key(toml.digest(point.case), computed_by) for point in points]
+    asked = [] if reference is None else [reference]
+    names = [key(toml.digest(point.case), computed_by, *asked) for point in points]
     outcomes = [
-        kept.load(name, partial(_read, point.case))
+        kept.load(name, partial(_read, point.case, reference))
         for name, point in zip(names, points, strict=True)
     ]
     stage = f"{len(points)} points"
     with _deaf_children():
         futures = {
-            pool.submit(run_point, point.case, scratch, cache): i
+            pool.submit(run_point, point.case, scratch, cache, reference): i
             for i, point in enumerate(points)
             if outcomes[i] is None
         }
@@ -189,15 +196,18 @@ def run_points(
     return [outcome for outcome in outcomes if outcome is not None]
 
 
-def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
+def run_point(
+    case: Case, scratch: Path, cache: Cache | None = None, reference: str | None = None
+) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
     outcome = Outcome({}, {})
-    for model in case.models:
-        comm = None
-        if model.needs_shell:
-            from mpi4py import MPI
+    runs: dict[str, Results] = {}
+    comm = None
+    if any(model.needs_shell for model in case.models):
+        from mpi4py import MPI
 
-            comm = MPI.COMM_SELF
+        comm = MPI.COMM_SELF
+    for model in case.models:
         alone = case.model_copy(update={"models": (model,)})
         with TemporaryDirectory(dir=scratch) as meshes:
             try:
@@ -208,6 +218,19 @@ def run_point(case: Case, scratch: Path, cache: Cache | None = None) -> Outcome:
                 continue
         assert finished is not None
         outcome.models[model.name] = measure(finished.results, model.name)
+        if reference is not None:
+            runs[model.name] = finished.results
+    if reference in runs:
+        (against,) = (model for model in case.models if model.name == reference)
+        with TemporaryDirectory(dir=scratch) as meshes:
+            until = comparable_until(case, against, runs[reference], comm, Path(meshes), cache)
+        seen = {
+            name: Seen.of(results, name, outcome.models[name]["stress"], until)
+            for name, results in runs.items()
+        }
+        outcome.off.update(
+            {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
+        )
     return outcome
 
 
@@ -249,7 +272,7 @@ def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:
     return {_POINT: [f"{text}\n".encode()]}
 
 
-def _read(case: Case, files: Files) -> Outcome:
+def _read(case: Case, reference: str | None, files: Files) -> Outcome:
     """What :func:`_written` has written of a case.
 
     Raises:
@@ -259,6 +282,10 @@ def _read(case: Case, files: Files) -> Outcome:
     models = {model.name for model in case.models}
     quantities = {quantity.name for quantity in QUANTITIES}
     measured = all(numbers.keys() == quantities for numbers in outcome.models.values())
+    compared = outcome.models.keys() - {reference} if reference in outcome.models else set()
+    distances = {distance.name for distance in DISTANCES}
+    measured &= all(parts.keys() == distances for parts in outcome.off.values())
+    measured &= outcome.off.keys() == compared
     if not measured or outcome.models.keys() | outcome.failures.keys() != models:
         raise ValueError(f"{_POINT} is not of the case's models")
     return outcome

@@ -23,4 +23,4 @@ def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
     """All outcomes of a sweep, run in this process."""
     sweep.prepare(folder, planned.file)
     with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
-        return sweep.run_points(planned.points, folder, pool, scratch, lambda *_: None)
+        return sweep.run_points(planned, folder, pool, scratch, lambda *_: None)

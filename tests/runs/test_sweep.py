@@ -33,9 +33,9 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
     cases: list[Case] = []
     run_point = sweep.run_point
 
-    def count(case: Case, scratch: Path, cache: object) -> Outcome:
+    def count(case: Case, scratch: Path, cache: object, reference: str | None) -> Outcome:
         cases.append(case)
-        return run_point(case, scratch)
+        return run_point(case, scratch, None, reference)
 
     monkeypatch.setattr(sweep, "run_point", count)
     return cases
@@ -352,7 +352,7 @@ def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> N
 def test_what_is_no_failure_of_the_numerics_ends_the_sweep(
     planned: Planned, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def break_down(case: Case, scratch: Path, cache: object) -> Outcome:
+    def break_down(case: Case, *others: object) -> Outcome:
         if case.joints[0].play == 0.0:
             return Outcome({}, {"kantorovich-4": "no number is finite"})
         raise RuntimeError("broken")

@@ -89,6 +89,6 @@ def _shell(cache: Cache) -> bytes:
 
 def _points(folder: Path) -> bytes:
     """Three points of the fastest model."""
-    points = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-tied"], None).points
+    planned = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-tied"], None)
     with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
-        return repr(sweep.run_points(points, folder, pool, scratch, lambda *_: None)).encode()
+        return repr(sweep.run_points(planned, folder, pool, scratch, lambda *_: None)).encode()

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Where a beam may stand for the shell, as a sweep over play and load tells it."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs import CASES
+from runs.folder.cache import Cache
+from runs.folder.files import beside
+from runs.sweep import output
+from runs.sweep import run as sweep
+from runs.sweep.points import plan
+
+pytestmark = pytest.mark.slow
+
+CASE = CASES / "beam-or-shell.toml"
+
+
+def test_better_beams_are_nearer_to_the_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: other code, the shell; each beam has what the one before it lacks."""
+    monkeypatch.chdir(tmp_path)
+    text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.5")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    keys = ["joint.play=0.004,0.014", "gravity.acceleration=5,10"]
+    sweeping = plan("case.toml", keys, None, 0.4, "shell")
+    cache, out = Cache(tmp_path / "cache"), tmp_path / "out"
+    sweep.prepare(out, "case.toml")
+    with ThreadPoolExecutor(2) as pool, beside(out) as scratch:
+        outcomes = sweep.run_points(sweeping, out, pool, scratch, lambda *_: None, cache)
+    # One shell for all points, and for the beams that it calibrates.
+    assert len(list(cache.folder.iterdir())) == 1
+    data = output.gather(sweeping, outcomes)
+    for distance in ("tip_off", "first_peak_off"):
+        worst = data[distance].max(["joint.play", "gravity.acceleration"])
+        euler, plain, sprung, fielded, _ = worst.values
+        assert euler > 1.5 * plain > 3.0 * sprung > 3.0 * fielded, worst
+        assert fielded < 0.002

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far models of a sweep are from its reference, as numbers, tables and charts."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure as Sheet
+from rich.console import Console
+
+from dynamics.predictability.horizon import measure_horizons
+from protractile.cases import run_case
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.pipeline.models import build
+from runs.pipeline.motion import Plan as Moving
+from runs.sweep import output
+from runs.sweep.distances import (
+    CHANGE,
+    DISTANCES,
+    HELD,
+    Seen,
+    comparable_until,
+    held_force,
+    slow_period,
+)
+from runs.sweep.points import Plan, plan
+from runs.sweep.run import Outcome
+from tests.runs.sweeping import COARSE, run
+
+TIME = np.arange(2001) / 1000
+MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
+RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
+
+
+def seen(height: float, period: float) -> Seen:
+    """A swing of so many m, from rest, in so many s."""
+    tip = 0.5 * height * (1.0 - np.cos(2.0 * np.pi * TIME / period))
+    return Seen(tip, height, slow_period(TIME, tip), 2e3 * height, 1e8 * height)
+
+
+def test_distances_are_parts_of_the_reference() -> None:
+    """Reference: analytic; at 1 s swings of 0.5 and 0.4 s are in a valley and on a peak."""
+    off = seen(0.11, 0.4).off(seen(0.10, 0.4))
+    heights = "first_peak_off", "pad_force_off", "stress_off", "tip_off"
+    assert [off[name] for name in heights] == pytest.approx(4 * [0.1])
+    assert off["slow_period_off"] == 0.0
+    slower = seen(0.10, 0.5).off(seen(0.10, 0.4))
+    assert slower["slow_period_off"] == pytest.approx(0.25)
+    assert slower["tip_off"] == pytest.approx(1.0)
+    still = replace(seen(0.1, 0.4), tip=np.zeros(TIME.size), slow_period=np.nan, stress=0.0)
+    assert seen(0.1, 0.4).off(still) == {
+        "first_peak_off": 0.0,
+        "slow_period_off": None,
+        "pad_force_off": 0.0,
+        "stress_off": None,
+        "tip_off": None,
+    }
+
+
+def test_a_pad_force_is_held() -> None:
+    """Reference: analytic; a blow of 1 ms in a window of 20 ms counts a twentieth."""
+    forces = np.zeros((TIME.size, 2))
+    forces[700, 0] = -4000.0
+    forces[1000:, 1] = 150.0
+    assert held_force(TIME, forces) == pytest.approx(4000.0 * 1e-3 / HELD)
+    forces[1000:, 1] = np.nan
+    assert held_force(TIME, np.full((TIME.size, 2), np.nan)) is not None
+    assert np.isnan(held_force(TIME, np.full((TIME.size, 2), np.nan)))
+
+
+@pytest.fixture
+def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
+    """A sweep of the coarse case with friction, until after its first peak."""
+    monkeypatch.chdir(tmp_path)
+    text = COARSE.read_text(encoding="utf-8")
+    rubbing = text.replace("exponent = 2.0\n", f"exponent = 2.0\n{RUBBING}", 1)
+    rubbing = rubbing.replace("duration = 0.6", "duration = 0.9")
+    Path("case.toml").write_text(rubbing, encoding="utf-8")
+    return plan("case.toml", ["joint.play=0.008,0.014"], MODELS, None, "kantorovich-5")
+
+
+def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
+    """Reference: other code, both models in one run, their tips held against one another here."""
+    data = output.write(against, run(against), Path("out"))
+    case = case_file.select(case_file.load("case.toml"), "", MODELS)
+    results = run_case(case)
+    one, other = (results.trajectories["tip"].sel(model=name).values for name in MODELS[:2])
+    there = data.sel({"joint.play": 0.014, "model": "kantorovich-4"})
+    assert float(there["tip_off"]) == pytest.approx(np.abs(one - other).max() / np.ptp(other))
+    heights = [results.summary.models[name].first_peak["tip"].height for name in MODELS[:2]]
+    assert None not in heights
+    assert float(there["first_peak_off"]) == pytest.approx(abs(heights[0] / heights[1] - 1.0))
+    tied = data.sel(model="beam-fe-tied")
+    # Nothing touches where segments are tied, and both are far off.
+    assert np.isnan(tied["pad_force_off"]).all()
+    assert float(tied["first_peak_off"].min()) > 0.5
+    assert np.isnan(data["tip_off"].sel(model="kantorovich-5")).all()
+    with open("out/sweep.csv", newline="", encoding="utf-8") as file:
+        rows = {(row["joint.play"], row["model"]): row for row in csv.DictReader(file)}
+    assert float(rows["0.014", "kantorovich-4"]["tip_off"]) == pytest.approx(
+        float(there["tip_off"])
+    )
+    assert sorted(path.name for path in Path("out/figures").glob("*.png")) == [
+        "sweep-distances.png",
+        "sweep-lines.png",
+    ]
+    assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-tied"}
+    console = Console(file=io.StringIO(), width=80, legacy_windows=False)
+    output.show(data, "kantorovich-5", console)
+    printed = console.file
+    assert isinstance(printed, io.StringIO)
+    table = printed.getvalue().partition("Distances from kantorovich-5")[2]
+    assert [line.split()[0] for line in table.splitlines() if "beam" in line or "kan" in line] == [
+        "kantorovich-4",
+        "beam-fe-tied",
+    ]
+
+
+def test_maps_have_levels(against: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: invented numbers on both sides of the levels; what no model has, has no map."""
+    sheets: list[Sheet] = []
+    save = Sheet.savefig
+    monkeypatch.setattr(
+        Sheet, "savefig", lambda sheet, path: (sheets.append(sheet), save(sheet, path))
+    )
+    keys = ["joint.play=0.008,0.014", "segment.load=20,40"]
+    sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
+    parts = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
+    outcomes = [
+        Outcome(
+            {},
+            {},
+            {name: {**parts, "tip_off": part * factor} for name, factor in
+             (("kantorovich-4", 1.0), ("beam-fe-tied", 0.1))},
+        )
+        for part in (0.005, 0.03, 0.1, 0.5)
+    ]  # fmt: skip
+    (tmp_path / "out").mkdir()
+    output.write(sweeping, outcomes, Path("out"))
+    assert sorted(path.name for path in Path("out/figures").glob("*off.png")) == [
+        "sweep-first-peak-off.png",
+        "sweep-tip-off.png",
+    ]
+    titles = [axes.get_title(loc="left") for axes in sheets[-1].axes[:2]]
+    assert titles == ["kantorovich-4: 0.5 to 50 %", "beam-fe-tied: 0.05 to 5 %"]
+    labels = {text.get_text() for text in sheets[-1].axes[0].texts}
+    assert labels <= {"1 %", "5 %", "20 %"}
+    assert labels
+
+
+@pytest.mark.parametrize(
+    ("models", "reference", "line"),
+    [
+        (MODELS, "shel", "'shel' is not a model that is run; give {}"),
+        (MODELS[:1], MODELS[0], "nothing is run beside 'kantorovich-4'; run another model, too"),
+    ],
+)
+def test_a_reference_must_be_one_of_several_models(
+    against: Plan, models: list[str], reference: str, line: str
+) -> None:
+    with pytest.raises(BadInput) as refused:
+        plan("case.toml", ["joint.play=0.008,0.014"], models, None, reference)
+    known = "'kantorovich-4', 'kantorovich-5' or 'beam-fe-tied'"
+    assert str(refused.value) == f"case.toml: --against: {line.format(known)}"
+
+
+def test_chaos_is_compared_until_its_horizon(tmp_path: Path) -> None:
+    """Reference: other code, the horizon that ensembles measure with the same change."""
+    case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"])
+    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 3.0})})
+    (model,) = case.models
+    until = comparable_until(case, model, run_case(case), None, tmp_path, None)
+    moving = Moving.of(build(case, build_boom(case), model).system, case, model)
+    found = measure_horizons(
+        moving.motion, [CHANGE], "load", partners=1, integrator=moving.integrator
+    )
+    assert until == found.times[0, 1]
+    assert 0.12 < until < 3.0
+    joint = case.joints[0].model_copy(update={"friction": 0.2, "normal_forces": (4500.0, 5000.0)})
+    rubbing = case.model_copy(update={"joints": (joint,)})
+    assert comparable_until(rubbing, model, run_case(rubbing), None, tmp_path, None) == 3.0
