@@ -251,6 +251,10 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
         "mass": "kg",
         "settling_time": "s",
         "first_contact": "s",
+        "swing": "m",
+        "swing_where_begun": "m",
+        "swing_where_ended": "m",
+        "drive_speed": "m/s",
         "peak_contact_force": "N",
         "energy_residual": "1",
     }
