@@ -84,6 +84,26 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
     return Rest(system, position, holds)
 
 
+def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
+    """What holds a boom, each force once: without what segments hand on where they stand in others.
+
+    So where a segment stands in another one, its hold is what that does to it, and elsewhere what
+    the ground does.
+
+    Args:
+        boom: at rest.
+        holds: of all its segments, of which those of an outer one lack what the inner one hands on.
+    """
+    whole = {hold[:2]: hold for hold in holds}
+    for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
+        for x in joint.stations:
+            inner, outer = whole[joint.inner, x], whole[joint.outer, x]
+            whole[joint.outer, x] = outer._replace(
+                force=outer.force + inner.force, moment=outer.moment + inner.moment
+            )
+    return [whole[hold[:2]] for hold in holds]
+
+
 def _size(boom: Boom) -> float:
     """Of elements in m: the longest are exact in statics but for axial forces and tapers."""
     longest = max(segment.length for segment in boom.segments)

@@ -125,6 +125,10 @@ class ContactLaw(ABC):
         """dF/dy in N/m. Shape of ``y``."""
         return self._sum(slope_of, y)
 
+    def depth(self, y: float) -> float:
+        """How far in m it is pressed in at a gap in m, 0 where it is open."""
+        return max(0.0, *(term.side * y - term.onset for term in self.terms))
+
     def slope_where(self, measure: Callable[[ContactLaw, Array], Array], value: float) -> float:
         """dF/dy in N/m where a measure of the law has come to a value, on its stiffer side.
 

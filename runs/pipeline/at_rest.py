@@ -85,7 +85,7 @@ def at_rest(
         position: (num_modes,) of the rest.
     """
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
-    stations = list(_stations(boom, system, position))
+    stations = list(pressed(boom, system, position))
     return AtRest(
         time=time,
         tip=seen["tip"],
@@ -106,7 +106,8 @@ def _diagram(segment: Segment, line: Line, position: Array) -> Diagram:
     return Diagram(segment.name, rounded(line.x), curves.pop("normal"), curves)
 
 
-def _stations(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
+def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
+    """Of the stations of joints with play, in z and in y, and of stops, at (num_modes,)."""
     gaps = system.rows @ position
     padded = [
         joint.pad is not None
@@ -123,14 +124,13 @@ def _stations(boom: Boom, system: GapSystem, position: Array) -> Iterator[Presse
         sides = [
             sum(_one_sided(system.laws[row], side, gaps[row]) for row in here) for side in (1, -1)
         ]
-        beyond = [abs(gaps[row]) - system.laws[row].clearance for row in here]
         yield Pressed(
             place=name,
             x=x,
             direction=direction,
             force=sides[0] - sides[1],
             pad=max(sides) / PADS_OF_SIDE if pads else None,
-            depth=float(max([0.0, *beyond])),
+            depth=max(system.laws[row].depth(float(gaps[row])) for row in here),
         )
 
 

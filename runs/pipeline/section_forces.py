@@ -62,9 +62,10 @@ def normal_force(compression: Compression, x: Array) -> Array:
 
 def borne_along(segment: Segment, foot: Support) -> float:
     """What a foot pushes along the boom in N to bear the axial forces."""
-    ends = np.array([foot.x, foot.x])
-    before, behind = normal_force(segment.compression, ends)
-    return float((before if foot.x > segment.start else 0.0) - behind)
+    before, behind = normal_force(segment.compression, np.array([foot.x, foot.x]))
+    before *= foot.x > segment.start
+    behind *= foot.x < segment.end
+    return float(before - behind)
 
 
 def _on_their_sides(x: Array) -> Array:

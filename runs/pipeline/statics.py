@@ -10,7 +10,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from beam_model.statics import Rest, at_rest
+from beam_model.statics import Hold, Rest, at_rest, handed_on
 from dynamics.damping import pressed_modes
 from dynamics.failure import NumericsError
 from geometry.boom import Boom
@@ -19,11 +19,13 @@ from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.answers import Reaction
-from runs.pipeline.at_rest import tilts
+from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.cautions import of_tip
 from runs.pipeline.section_forces import borne_along
 
 KILO, MILLI = 1.0e3, 1.0e-3
+# A part of what others bear that is none.
+ROUND_OFF = 1.0e-9
 
 
 class Statics(NamedTuple):
@@ -46,14 +48,7 @@ def statics(case: Case, boom: Boom) -> Statics | None:
 
 
 def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
-    """What holds the boom, joints left out."""
-    joined_at = {
-        (number, x)
-        for joint in boom.joints
-        for number in (joint.outer, joint.inner)
-        for x in joint.stations
-    }
-    stopped = {(stop.segment, stop.x) for stop in boom.stops}
+    """What holds the boom to the ground."""
     deep, along = _depths(boom, rest), _along(boom, rest)
     return [
         Reaction(
@@ -61,12 +56,27 @@ def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
             x,
             force,
             moment,
-            deep[x] if (number, x) in stopped else None,
+            deep.get((number, x)),
             along[number, x],
         )
-        for number, x, force, moment in rest.holds
-        if (number, x) not in joined_at
+        for number, x, force, moment in _told(boom, rest)
+        if (number, x) not in _stands(boom)
     ]
+
+
+def _stands(boom: Boom) -> set[tuple[int, float]]:
+    """Where segments stand in others."""
+    return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
+
+
+def _told(boom: Boom, rest: Rest) -> list[Hold]:
+    """Holds of the ground and of joints, each once and without round-off."""
+    grounded = {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
+    grounded |= {(stop.segment, stop.x) for stop in boom.stops}
+    grounded |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
+    holds = [hold for hold in handed_on(boom, rest.holds) if hold[:2] in grounded | _stands(boom)]
+    least = ROUND_OFF * max((abs(hold.force) for hold in holds), default=0.0)
+    return [hold._replace(force=hold.force if abs(hold.force) > least else 0.0) for hold in holds]
 
 
 def print_statics(case: Case, boom: Boom, console: Console) -> None:
@@ -106,14 +116,22 @@ def _along(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
     return found
 
 
-def _depths(boom: Boom, rest: Rest) -> dict[float, float]:
-    """How far in m each station along z is pressed in, by its x in m."""
-    gaps = rest.system.rows @ rest.position
-    pressed = dict.fromkeys(range(len(boom.stations)), 0.0)
-    for station, law, gap in zip(rest.system.station_of_row, rest.system.laws, gaps, strict=True):
-        beyond = max(0.0, float(abs(gap)) - law.clearance)
-        pressed[int(station)] = max(pressed[int(station)], beyond)
-    return {x: pressed[k] for k, (x, way) in enumerate(boom.stations) if way == "z"}
+def _depths(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
+    """How far in m stations along z are pressed in, by the inner segment and x in m."""
+    inner = [
+        joint.inner
+        for _ in boom.directions
+        for joint in boom.joints
+        if not joint.tied
+        for _ in joint.stations
+    ]
+    owners = [*inner, *(stop.segment for stop in boom.stops)]
+    found = pressed(boom, rest.system, rest.position)
+    return {
+        (number, one.x): one.depth
+        for number, one in zip(owners, found, strict=True)
+        if one.direction == "z"
+    }
 
 
 def _masses(boom: Boom, system: System) -> Table:
@@ -147,11 +165,10 @@ def _holds(boom: Boom, rest: Rest, system: System) -> Table:
     if any(along.values()):
         headings.insert(1, "along (kN)")
     table = Table("holds at rest", x, *headings)
-    reacting = {(joint.outer, x) for joint in boom.joints for x in joint.stations}
     deep = _depths(boom, rest)
-    for hold in (hold for hold in rest.holds if hold[:2] not in reacting):
+    for hold in _told(boom, rest):
         moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
-        depth = f"{deep[hold.x] / MILLI:.3g}" if hold.x in deep else ""
+        depth = f"{deep[hold[:2]] / MILLI:.3g}" if hold[:2] in deep else ""
         cells = [f"{hold.force / KILO:.4g}", moment, depth]
         if any(along.values()):
             here = along.get(hold[:2])

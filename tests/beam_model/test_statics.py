@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.statics import Hold, at_rest
+from beam_model.statics import Hold, at_rest, handed_on
 from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from geometry.boom import Boom, Cylinder, Load, PointMass, Segment, Support
@@ -34,6 +34,25 @@ def test_supports_and_stations_bear_what_the_lever_rule_says(paper_boom: Boom) -
     assert [(hold.segment, hold.x) for hold in found.holds] == [h[:2] for h in expected]
     np.testing.assert_allclose([h.force for h in found.holds], [h[2] for h in expected], rtol=1e-5)
     assert np.abs([h.moment for h in found.holds]).max() < 1e-3
+
+
+def test_what_is_handed_on_is_counted_once(paper_boom: Boom) -> None:
+    """Reference: by hand, as above with the support at the inner segment's tail, 9 m: the ground
+    bears what is left there, and nothing where the outer segment's head holds the inner one.
+    """
+    outer, inner = paper_boom.segments
+    moved = replace(outer, supports=(Support(0.0), Support(9.0)))
+    boom = replace(paper_boom, segments=(moved, inner))
+    head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
+    far = -(831.6 * 5.0 + 550.7 * 14.0) / 9.0
+    found = {hold[:2]: hold.force for hold in handed_on(boom, at_rest(boom, [LAW], []).holds)}
+    assert found == {
+        (0, 0.0): pytest.approx(-831.6 - 550.7 - far),
+        (0, 9.0): pytest.approx(far),
+        (0, 10.0): pytest.approx(0.0, abs=0.1),
+        (1, 9.0): pytest.approx(head - 550.7, rel=1e-5),
+        (1, 10.0): pytest.approx(-head, rel=1e-5),
+    }
 
 
 def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:

@@ -44,6 +44,21 @@ def test_masses_forces_and_tips_are_those_of_hand(capsys: pytest.CaptureFixture[
     assert "Play turns 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm." in lines
 
 
+def test_unequal_plays_are_not_pressed_in(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: by hand, √(F/k) of 2.2 and 2.8 kN on 1e13 N/m², whatever the play above."""
+    case = case_file.load(str(CASES / "coarse.toml"))
+    (joint,) = case.joints
+    joint = joint.model_copy(update={"play_above": 0.001})
+    lines = told(case.model_copy(update={"joints": (joint,)}), capsys)
+    rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
+    assert [float(value) for value in rows["inner", "9"]] == pytest.approx(
+        [2.203, 0.0148], rel=2e-3
+    )
+    assert [float(value) for value in rows["inner", "10"]] == pytest.approx(
+        [-2.7535, 0.0166], rel=2e-3
+    )
+
+
 def test_a_boom_without_rest_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     case = case_file.load(str(CASES / "coarse.toml"))
     segments = tuple(s.model_copy(update={"load": 1.0e30}) for s in case.segments)
