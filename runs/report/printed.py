@@ -53,5 +53,23 @@ def print_models(results: Results, console: Console) -> None:
                 f"{number(100.0 * error, 2)} % more or less than on an infinitely fine mesh",
                 markup=False,
             )
+    _print_swings(results, console)
     for caution in results.cautions():
         console.print(caution, markup=False)
+
+
+def _print_swings(results: Results, console: Console) -> None:
+    """Print how far the tip swings in each model that is drawn out."""
+    answers = results.summary.answers
+    for name, own in ({} if answers is None else answers.models).items():
+        if (swing := own.swing) is None:
+            continue
+        levels = swing.where_begun, swing.where_ended
+        ends = (number(None if level is None else 1.0e3 * level) for level in levels)
+        console.print(
+            f"{name}: drawn out at {number(swing.speed)} m/s in the mean the tip swings by "
+            f"{number(1.0e3 * swing.tip)} mm, at rest by {' and '.join(ends)} mm where that "
+            "begins and ends",
+            markup=False,
+            highlight=False,
+        )

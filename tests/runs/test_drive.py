@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from protractile.cases import run_case
+from dynamics.equilibrium import equilibrium
+from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
@@ -211,6 +213,20 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     residual = drawn["energy-residual"].title
     assert residual.startswith("Unaccounted energy: up to ")
     assert "10⁻⁵" in residual or "10⁻⁶" in residual
+
+
+@pytest.mark.parametrize(("time", "extension"), [(0.0, 5.4), (8.0, 9.4)])
+def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: float) -> None:
+    """Reference: the same boom built as far drawn out, without drives, at rest under its load."""
+    drawn = load(str(CASES / "crane-telescopes.toml"))
+    still = change(drawn, **{"joint.drive.travel": 0.0, "joint.extension": extension})
+    tips = []
+    for case in (drawn, still):
+        system = build(case, build_boom(case), case.models[0]).system.gathered()
+        position = equilibrium(system.standing(time), system.load)
+        tips.append(float(system.observers["tip"].row @ position))
+    assert tips[0] == pytest.approx(tips[1], rel=1e-6)
+    assert abs(tips[0]) > 0.3
 
 
 def test_a_sweep_varies_how_fast_it_is_drawn() -> None:

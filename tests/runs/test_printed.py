@@ -13,6 +13,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdict_table import decisive, print_verdicts
+from runs.pipeline.answers import Answers, ModelAnswers, Swing
 from runs.pipeline.results import Results
 from runs.report.printed import print_models
 from runs.report.verdict import Judgement, Verdict
@@ -85,3 +86,19 @@ def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPat
         "shell: where the segments touch, the walls give way by 0.83 % more or less than on an "
         "infinitely fine mesh",
     ]
+
+
+def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: the summary's numbers in mm."""
+    case = case_file.load(str(CASES / "drawn-out.toml"))
+    swing = Swing(0.0182, 1.0, 0.8, 0.0181, None)
+    summary = summary_of({"beam": model_summary()})
+    summary.answers = Answers({"beam": ModelAnswers(swing=swing)})
+    monkeypatch.setattr(Results, "cautions", lambda self: [])
+    console = Console(file=StringIO(), width=160)
+    print_models(Results(case, xr.Dataset(), summary), console)
+    assert isinstance(console.file, StringIO)
+    assert console.file.getvalue().splitlines()[-1] == (
+        "beam: drawn out at 0.8 m/s in the mean the tip swings by 18.2 mm, at rest by 18.1 and – "
+        "mm where that begins and ends"
+    )
