@@ -37,6 +37,7 @@ STUDIES = (
     "contact_size",
     "working_load",
     "calibrated_beams",
+    "rule_of_thumb",
     "direct",
     "solid",
     "stress",

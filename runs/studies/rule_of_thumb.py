@@ -1,0 +1,414 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far a beam will be off the shell, told before there is a shell: a rule, and its scatter.
+
+The beam lacks a part δ of the tip's static deflection: what shear gives, and what the walls give
+where the segments press. A mass that falls through the play and is caught by the boom as by a
+spring tells what becomes of it in motion: with γ the free way of the tip over its static deflection
+and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
+
+    δ (1/√(1 + s²) + n μ ψ)
+    ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))
+
+where χ = π − arctan s, ψ is the part of δ by which the period is off, and μ the way that the tip
+makes at its highest speed in a period, over its range. Booms of other proportions than the paper's,
+with its friction, tell what that is worth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from geometry.arrays import Array
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.case.sections import SectionTable
+from runs.folder.cache import Cache
+from runs.pipeline.cautions import static_tip
+from runs.pipeline.models import build, workshop
+from runs.report.tables import Cell, Table
+from runs.studies.calibrated_beams import EULER, PLAIN, SHELL, SPRUNG, Moved, calibrated
+from runs.studies.motions import friction_case, model_of, shell_of
+from runs.studies.pads import with_pads
+from runs.studies.study import Proof, Study
+from runs.studies.working_load import Point
+
+# What a wall gives near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed length.
+NEAR_WEBS = 0.20, 0.70
+# Under a pad, in d²/(E t³), d from the middle of the pad to the web.
+PADS = 1.8
+# What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
+UNEVEN = 0.09
+_DENSITY = 7850.0
+# What is allowed of the geometric mean of measured errors over those of the rule, and of springs.
+MEAN_OFF, PEAK = 0.25, 0.005
+# Rules of more than this say no more than that the tip is lost.
+LOST = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Proportions:
+    """Of a boom of two boxes, the paper's unless given.
+
+    Args:
+        length: of each segment in m.
+        overlap: in m.
+        aspect: height over width of the outer box.
+        walls: thickness over the paper's.
+        pad: length and width of pads beside the webs in m; pressed near the webs without.
+    """
+
+    length: float = 10.0
+    overlap: float = 1.0
+    aspect: float = 1.634
+    walls: float = 1.0
+    pad: tuple[float, float] | None = None
+
+
+# The paper's boxes, mid-lines and walls in m, and the room of the inner one in them.
+_HEIGHT, _OUTER_WALL, _INNER_WALL = 0.4945, 6.64e-3, 4.87e-3
+_ROOM, _BESIDE = 0.0141, 0.17
+
+BOOMS: Mapping[str, Proportions] = {
+    "the paper's": Proportions(),
+    "half as long": Proportions(length=5.0, overlap=0.7),
+    "a third as long": Proportions(length=3.5, overlap=0.5),
+    "longer": Proportions(length=13.0),
+    "long overlap": Proportions(overlap=3.0),
+    "short overlap": Proportions(overlap=0.6),
+    "thin walls": Proportions(walls=0.6),
+    "thick walls": Proportions(walls=2.0),
+    "narrow": Proportions(aspect=2.5),
+    "wide": Proportions(aspect=1.0),
+    "pads": Proportions(pad=(0.1, 0.06)),
+    "pads, thick walls": Proportions(walls=2.0, pad=(0.1, 0.06)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured.
+
+    Args:
+        booms: by their names.
+        mesh_size: of the shells in m.
+        contact_tolerance: of the same.
+        plays: 2Δ in m.
+        loads: over the weight at 1 m/s²; under less of them friction stops the boom early.
+        periods: of the boom without play that the motions last.
+    """
+
+    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)
+    mesh_size: float = 0.2
+    contact_tolerance: float = 0.04
+    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)
+    loads: Sequence[float] = (10.0,)
+    periods: float = 8.0
+
+
+def boom_case(given: Proportions) -> Case:
+    """The paper's case with friction, of these proportions, under its weight at 1 m/s²."""
+    case = friction_case()
+    walls = given.walls * _OUTER_WALL, given.walls * _INNER_WALL
+    width = _HEIGHT / given.aspect
+    heights = _HEIGHT, _HEIGHT - sum(walls) - _ROOM
+    boxes = [
+        SectionTable.model_validate({"height": height, "width": wide, "flange": wall, "web": wall})
+        for height, wide, wall in zip(heights, (width, (1.0 - _BESIDE) * width), walls, strict=True)
+    ]
+    head = given.length
+    spans = (0.0, head), (head - given.overlap, 2.0 * head - given.overlap)
+    segments = []
+    for table, box, span in zip(case.segments, boxes, spans, strict=True):
+        supports = tuple(
+            support.model_copy(update={"x": 0.2 * head if number else 0.0})
+            for number, support in enumerate(table.supports)
+        )
+        # The box tells its own numbers.
+        of_box = "height_to_width", "mass_per_length", "second_moment_of_area", "rotary_inertia"
+        own = {"section": box, "span": span, "supports": supports}
+        own["load"] = _DENSITY * box.section().area
+        segments.append(table.model_copy(update=dict.fromkeys(of_box) | own))
+    # Friction as large a part of the weight as the paper's.
+    lighter = sum(table.load for table in segments) / sum(table.load for table in case.segments)
+    forces = tuple(
+        0.1 * head * lighter * force for joint in case.joints for force in joint.normal_forces
+    )
+    joint = case.joints[0].model_copy(
+        update={"stations": (head - given.overlap, head), "normal_forces": forces}
+    )
+    found = case.model_copy(update={"segments": tuple(segments), "joints": (joint,)})
+    return found if given.pad is None else with_pads(found, *given.pad)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What is known of a boom before there is a shell.
+
+    Args:
+        bending, shear, pressed: parts of the tip's static deflection under its weight at 1 m/s²
+            in m, the second one Timoshenko's.
+        frequency: the first one without play in Hz.
+        lever: free way of the tip over half the play.
+    """
+
+    bending: float
+    shear: float
+    pressed: float
+    frequency: float
+    lever: float
+
+    @classmethod
+    def of(cls, given: Proportions, case: Case) -> Rule:
+        """From the boom's beams without play, and statics."""
+        boom = build_boom(case)
+        tied = [
+            model_of(case, name).without_play(boom) for name in ("beam-fe-rotary", "timoshenko")
+        ]
+        tips = [static_tip(system) for system, _ in filter(None, tied)]
+        inner, overlap = boom.segments[1], given.overlap
+        # Of the weight, and of 1 N at the tip: down at the tail, up at the head.
+        over = inner.length / overlap
+        weight = inner.load * inner.length
+        at_head, at_tail = 0.5 * weight * over, weight * (0.5 * over - 1.0)
+        pressed = at_head * over + at_tail * (over - 1.0)
+        assert tied[1] is not None
+        return cls(
+            bending=tips[0],
+            shear=tips[1] - tips[0],
+            pressed=giving_way(given, case) * pressed,
+            frequency=float(tied[1][0].frequencies[0]),
+            lever=2.0 * over - 1.0,
+        )
+
+    @property
+    def deflection(self) -> float:
+        """All of it in m."""
+        return self.bending + (1.0 + UNEVEN) * self.shear + self.pressed
+
+    def lacking(self, name: str) -> float:
+        """δ of a kind of beam."""
+        known = self.bending + (0.0 if name == EULER else self.shear)
+        return 1.0 - known / self.deflection
+
+    def swing(self, point: Point) -> float:
+        """s = √(2γ)."""
+        return float(np.sqrt(self.lever * point.play / (point.load * self.deflection)))
+
+    def peak_off(self, name: str, point: Point) -> float:
+        """Of the first peak, as a part of it."""
+        return self.lacking(name) / float(np.hypot(1.0, self.swing(point)))
+
+    def tip_off(self, name: str, point: Point, duration: float) -> float:
+        """Of the tip within so many s, as a part of its range."""
+        s = self.swing(point)
+        root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
+        periods = duration * np.pi * self.frequency / (s + chi)
+        psi = 0.5 * (chi + s / root**2) / (s + chi)
+        mu = 2.0 * (s + chi) * root / (0.5 * s**2 + 1.0 + root)
+        return min(1.0, self.lacking(name) * (1.0 / root + periods * mu * psi))
+
+
+def giving_way(given: Proportions, case: Case) -> float:
+    """What a station gives way for each N, of both walls, in m/N."""
+    material = case.material
+    assert material is not None
+    e = material.youngs_modulus
+    walls = given.walls * _OUTER_WALL, given.walls * _INNER_WALL
+    width = _HEIGHT / given.aspect
+    if given.pad is None:
+        # A corner is pressed over a tenth of the overlap.
+        spread = NEAR_WEBS[0] + NEAR_WEBS[1] * np.log(width / (0.1 * given.overlap))
+        return float(spread / e * sum(1.0 / wall for wall in walls))
+    # From the middle of the pad, which lies beside the inner web, to each web.
+    to_webs = 0.5 * (given.pad[1] + _BESIDE * width), 0.5 * given.pad[1]
+    return PADS / e * sum(d**2 / wall**3 for d, wall in zip(to_webs, walls, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A boom's beams against its shell at all points.
+
+    Args:
+        rule: of it.
+        points: play and load.
+        duration: of the motions in s.
+        peaks, tips: (num_points,) errors by the name of the beam.
+    """
+
+    rule: Rule
+    points: Sequence[Point]
+    duration: float
+    peaks: Mapping[str, Array]
+    tips: Mapping[str, Array]
+
+
+def measure(given: Proportions, sizes: Sizes) -> Measured:
+    """Move the beams and the shell of a boom."""
+    from mpi4py import MPI
+
+    case = boom_case(given)
+    rule = Rule.of(given, case)
+    fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.contact_tolerance}
+    shell = shell_of(case).model_copy(update=fine)
+    models = {
+        SHELL: shell,
+        EULER: model_of(case, "beam-fe-rotary"),
+        PLAIN: model_of(case, "timoshenko"),
+        SPRUNG: calibrated(case, shell, fields=False),
+    }
+    points = [Point(*point) for point in product(sizes.plays, sizes.loads)]
+    duration = sizes.periods / rule.frequency
+    moved: dict[str, Moved] = {}
+    with TemporaryDirectory(prefix="protractile-") as scratch:
+        cache = Cache(Path(scratch) / "cache")
+        for name, model in models.items():
+            tools = workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
+            system = build(case, build_boom(case), model, tools).system
+            moved[name] = Moved.of(system, points, duration)
+    beams = {name: one for name, one in moved.items() if name != SHELL}
+    return Measured(
+        rule,
+        points,
+        duration,
+        {name: one.peaks_off(moved[SHELL]) for name, one in beams.items()},
+        {name: one.off(moved[SHELL]) for name, one in beams.items()},
+    )
+
+
+def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
+    """(num_ratios,) errors of a beam over those of the rule, of all booms and points."""
+    pairs = [
+        (
+            off,
+            one.rule.tip_off(name, point, one.duration) if tips else one.rule.peak_off(name, point),
+        )
+        for one in found
+        for point, off in zip(one.points, (one.tips if tips else one.peaks)[name], strict=True)
+    ]
+    return np.array([off / rule for off, rule in pairs if np.isfinite(off) and rule < LOST])
+
+
+def _scatter(ratio: Array) -> float:
+    """The factor by which ratios are off their geometric mean, one standard deviation."""
+    return float(np.exp(np.log(ratio).std()))
+
+
+def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+    """What each boom's beams lack, by the rule and as its shell without play has it."""
+    rows: list[Sequence[Cell]] = []
+    for name, one in found.items():
+        rule, given = one.rule, sizes.booms[name]
+        first = [one.peaks[beam][0] for beam in (EULER, PLAIN, SPRUNG)]
+        rows.append(
+            (
+                name,
+                given.length / _HEIGHT,
+                given.overlap / _HEIGHT,
+                *(100.0 * part / rule.deflection for part in (rule.shear, rule.pressed)),
+                *(100.0 * rule.lacking(beam) for beam in (EULER, PLAIN)),
+                *(100.0 * off for off in first),
+            )
+        )
+    return Table.of_rows(
+        "rule-of-thumb-booms",
+        "What beams lack of the tip's static deflection, and how far their first peaks are off",
+        {
+            "boom": "",
+            "length /\nheight": ".1f",
+            "overlap /\nheight": ".2f",
+            "shear\n(%)": ".2f",
+            "pressed\nwalls (%)": ".2f",
+            f"rule,\n{EULER} (%)": ".2f",
+            f"rule,\n{PLAIN} (%)": ".2f",
+            f"{EULER}\n(%)": ".2f",
+            f"{PLAIN}\n(%)": ".2f",
+            f"{SPRUNG}\n(%)": ".3f",
+        },
+        rows,
+        (f"Without play, under {sizes.loads[0]:g} times the weight at 1 m/s² at once.",),
+    )
+
+
+def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
+    """How far the rule is off what was measured, over all booms and points."""
+    rows: list[Sequence[Cell]] = []
+    for tips, what in ((False, "first peak"), (True, "tip")):
+        for name in (EULER, PLAIN):
+            ratio = ratios(found, name, tips)
+            mean = float(np.exp(np.log(ratio).mean()))
+            rows.append((what, name, ratio.size, mean, _scatter(ratio), ratio.min(), ratio.max()))
+    return Table.of_rows(
+        "rule-of-thumb-scatter",
+        "Measured errors over those of the rule",
+        {
+            "error of": "",
+            "beam": "",
+            "points": ".0f",
+            "geometric\nmean": ".2f",
+            "scatter,\na factor": ".2f",
+            "least": ".2f",
+            "most": ".2f",
+        },
+        rows,
+        (
+            f"{len(found)} booms, plays of {', '.join(f'{1e3 * play:g}' for play in sizes.plays)} "
+            f"mm, loads of {', '.join(f'{load:g}' for load in sizes.loads)} times the weight at "
+            f"1 m/s², {sizes.periods:g} periods of the boom without play; where the rule tells "
+            f"more than {100.0 * LOST:g} % the tip is lost, and it is left out.",
+        ),
+    )
+
+
+def springs_table(found: Mapping[str, Measured]) -> Table:
+    """What springs leave, at the worst point of each boom."""
+    return Table.of_rows(
+        "rule-of-thumb-springs",
+        "A beam with the stiffness and springs of the shell",
+        {"boom": "", "first peak, worst (%)": ".3f", "tip, worst (%)": ".2f"},
+        [
+            (name, 100.0 * float(np.nanmax(one.peaks[SPRUNG])), 100.0 * one.tips[SPRUNG].max())
+            for name, one in found.items()
+        ],
+    )
+
+
+def proofs(found: Sequence[Measured]) -> list[Proof]:
+    """The rule against the shells, and springs."""
+    told = [
+        Proof(
+            f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
+            f"{len(found)} booms",
+            float(np.exp(np.log(ratios(found, name, tips=False)).mean())),
+            1.0,
+            "",
+            "other code",
+            "shells",
+            MEAN_OFF,
+        )
+        for name in (EULER, PLAIN)
+    ]
+    worst = max(float(np.nanmax(one.peaks[SPRUNG])) for one in found)
+    what = f"beam {SPRUNG}: first tip peak, worst of {len(found)} booms"
+    return [*told, Proof(what, worst, 0.0, "", "other code", "the shell that calibrates it", PEAK)]
+
+
+def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+    """Booms of other proportions than the paper's, with its friction."""
+    sizes = sizes or Sizes()
+    found = {}
+    for name, given in sizes.booms.items():
+        tell(name)
+        found[name] = measure(given, sizes)
+    every = list(found.values())
+    return Study(
+        "rule-of-thumb",
+        "A rule of thumb for beams",
+        [boom_table(found, sizes), scatter_table(every, sizes), springs_table(found)],
+        proofs(every),
+    )
