@@ -22,6 +22,8 @@ from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
 
+pytestmark = pytest.mark.usefixtures("few_figures")
+
 COARSE = CASES / "coarse.toml"
 
 
@@ -36,7 +38,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 @pytest.fixture
-def folder(run: Run, tmp_path: Path) -> Path:
+def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
     out = tmp_path / "out"
     out.mkdir()
     write(run, judge(run.results), out, out)

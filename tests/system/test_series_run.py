@@ -158,6 +158,7 @@ def test_a_run_without_a_shell_has_no_snapshots(
     )
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_a_case_without_play_runs(tmp_path: Path) -> None:
     """No station at all: the files still open."""
     folder = tmp_path / "out"
@@ -166,6 +167,7 @@ def test_a_case_without_play_runs(tmp_path: Path) -> None:
     assert np.isnan(trajectories(folder)["contact_force"].values).all()
 
 
+@pytest.mark.usefixtures("few_figures")
 def test_a_beam_without_joints_runs(tmp_path: Path) -> None:
     """Reference: analytic. A pinned beam's midspan swings to twice 5 q L⁴ / 384 E J, nearly."""
     (tmp_path / "case.toml").write_text(

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -24,29 +27,45 @@ COMMAND = "from runs import cli; cli.main()"
 PLAYS = "--vary", "joint.play=0.006:0.014:3"
 
 
+def write_case(folder: Path) -> Path:
+    """The coarse case until shortly after its first contact, as case.toml."""
+    path = folder / "case.toml"
+    text = Path(COARSE).read_text(encoding="utf-8")
+    path.write_text(text.replace("duration = 0.6", "duration = 0.2"), encoding="utf-8")
+    return path
+
+
 @pytest.fixture
 def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """case.toml in the current folder: the coarse case until shortly after its first contact."""
+    """case.toml in the current folder."""
     monkeypatch.chdir(tmp_path)
-    text = Path(COARSE).read_text(encoding="utf-8")
-    text = text.replace("duration = 0.6", "duration = 0.2")
-    Path("case.toml").write_text(text, encoding="utf-8")
-    return "case.toml"
+    return write_case(tmp_path).name
 
 
-def stamps(folder: str) -> dict[str, int]:
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a sweep on all cores, and beside it what it said."""
+    folder = tmp_path_factory.mktemp("swept")
+    out, said = folder / "out", io.StringIO()
+    with redirect_stdout(said):
+        assert protractile("sweep", write_case(folder), *PLAYS, *MODELS, "--out", out) == 0
+    (folder / "said").write_text(said.getvalue(), encoding="utf-8")
+    return out
+
+
+def stamps(folder: str | Path) -> dict[str, int]:
     """When each point was written."""
     points = Path(folder, "points").glob("[!.]*")
     return {path.name: (path / "point.json").stat().st_mtime_ns for path in points}
 
 
 def test_a_sweep_leaves_its_files_and_is_taken_up(
-    case: str, capsys: pytest.CaptureFixture[str]
+    swept: Path, case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert protractile("sweep", case, *PLAYS, *MODELS, "--out", "out") == 0
-    out, err = capsys.readouterr()
-    assert (out.splitlines()[0], err) == ("out/sweep.csv", "")
-    assert "Sweep over joint.play: 3 points" in out
+    said = (swept.parent / "said").read_text(encoding="utf-8")
+    assert said.splitlines()[0] == f"{swept}/sweep.csv"
+    assert "Sweep over joint.play: 3 points" in said
+    shutil.copytree(swept, "out")
     before = stamps("out")
     assert len(before) == 3
     expected = {".manifest", "sweep.nc", "sweep.csv"}
@@ -57,6 +76,7 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
         image.verify()
     more = "--vary", "joint.play=0.006:0.014:5"
     assert protractile("sweep", case, *more, *MODELS, "--out", "out") == 0
+    assert capsys.readouterr().err == ""
     after = stamps("out")
     assert len(after) == 5
     assert before.items() <= after.items()
@@ -85,15 +105,14 @@ def test_a_bad_key_is_one_line_and_no_folder(case: str, capsys: pytest.CaptureFi
 
 
 def test_two_ranks_leave_what_the_cores_do(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]], case: str
+    two_ranks: Callable[..., subprocess.CompletedProcess[str]], swept: Path, case: str
 ) -> None:
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
-    assert protractile("sweep", case, *PLAYS, *MODELS, "--out", "one") == 0
     answer = two_ranks(COMMAND, "sweep", case, *PLAYS, *MODELS, "--out", "two")
     assert answer.returncode == 0
     assert answer.stdout.count("two/sweep.csv") == 1
-    assert Path("two/sweep.csv").read_bytes() == Path("one/sweep.csv").read_bytes()
-    assert stamps("two").keys() == stamps("one").keys()
+    assert Path("two/sweep.csv").read_bytes() == (swept / "sweep.csv").read_bytes()
+    assert stamps("two").keys() == stamps(swept).keys()
 
 
 def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
