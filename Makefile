@@ -13,6 +13,7 @@ SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 READINGS := runs/out/readings/readings.json
 SWINGS := runs/out/drawn-out-sweep/sweep.csv
+THEN := runs/out/then/then.json
 
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
 export OMP_NUM_THREADS ?= 1
@@ -40,8 +41,9 @@ help: ## list these targets
 
 # As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
 verify: $(READY) ## run the cases where they are not up to date, print the verdicts
-	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS) $(READINGS)
-	@cp $(READINGS) runs/out/paper/
+	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS) $(READINGS) $(THEN)
+	@cp $(READINGS) $(THEN) runs/out/paper/
+	@cp $(THEN) runs/out/paper-friction/
 	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 
 snapshots: $(REPORTS) ## pictures of the verify cases with a shell
@@ -112,6 +114,10 @@ $(READINGS): runs/cases/paper.toml $(SOURCES) | $(READY)
 $(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko \
 	    --vary joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
+
+$(THEN): runs/cases/paper.toml runs/cases/paper-friction.toml $(SOURCES) | $(READY)
+	@echo "solving $< as it was solved in 1997 ..."
+	@$(BIN)/python -m runs.studies.as_computed_then >/dev/null
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

@@ -108,7 +108,7 @@ def run(
     from runs.case import reading
     from runs.folder.cache import Cache
     from runs.folder.files import beside, whole_folder
-    from runs.paper import readings
+    from runs.paper import readings, then
     from runs.paper.rules import judge
     from runs.pipeline import estimates
     from runs.pipeline.run import run_case
@@ -129,7 +129,7 @@ def run(
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
-            whole_folder(folder, [readings.FILE]) as part,
+            whole_folder(folder, [readings.FILE, then.FILE]) as part,
             beside(folder) as scratch,
             progress.told([model.name for model in effective.models]) as tell,
         ):
@@ -151,7 +151,7 @@ def report(
     """Render the reports of runs again from their data, and print their tables."""
     from runs.case.user_files import check_left
     from runs.folder.files import alone, changed_folder
-    from runs.paper import readings
+    from runs.paper import readings, then
     from runs.paper.rules import judge
     from runs.pipeline.results import Results
     from runs.report import output
@@ -161,7 +161,7 @@ def report(
         with alone(Path(folder)):
             runs[folder] = results = Results.load(Path(folder))
             check_left(Path(folder), folder, "folder")
-            verdicts[folder] = judge(results)
+            verdicts[folder] = then.beside(judge(results), Path(folder), results.case)
             surveyed = readings.load(Path(folder), results.case)
             with changed_folder(Path(folder)) as part:
                 output.write_report(results, verdicts[folder], part, surveyed)
@@ -179,7 +179,7 @@ def snapshot(
     from runs.case.messages import BadInput
     from runs.case.user_files import check_left
     from runs.folder.files import alone, changed_folder
-    from runs.paper import readings
+    from runs.paper import readings, then
     from runs.paper.rules import judge
     from runs.pipeline.results import FIELDS, Results, read_fields
     from runs.report import output, snapshots
@@ -189,6 +189,7 @@ def snapshot(
         results = Results.load(Path(folder))
         check_left(Path(folder), folder, "folder")
         surveyed = readings.load(Path(folder), results.case)
+        verdicts = then.beside(judge(results), Path(folder), results.case)
         last = results.case.time.duration
         for t in time or []:
             if not 0.0 <= t <= last:
@@ -202,7 +203,7 @@ def snapshot(
                 drawn = snapshots.draw_snapshots(results, shells, part, times)
             except RenderingUnavailable as reason:
                 raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
-            output.write_report(results, judge(results), part, surveyed)
+            output.write_report(results, verdicts, part, surveyed)
     for name in drawn:
         print(printable(str(Path(folder) / snapshots.SNAPSHOTS / name)))
     return 0

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from runs.paper.statements import STATEMENTS
-from runs.report.theme import number
+from runs.report.theme import NONE, number
 from runs.report.verdict import Verdict
 
 _STYLES = {"reproduced": "green", "contradicted": "red", "undecided": "yellow"}
@@ -33,7 +33,11 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     table.add_column("measured", justify="right")
     table.add_column("threshold", justify="right")
     table.add_column("statement", ratio=1)
-    for name, verdict in decisive(runs):
+    found = decisive(runs)
+    by_then = any(verdict.then for _, verdict in found)
+    if by_then:
+        table.add_column("as computed then", ratio=1)
+    for name, verdict in found:
         demanded = " (demanded)" if verdict.demanded else ""
         unit = f" ({verdict.unit})" if verdict.unit else ""
         table.add_row(
@@ -45,6 +49,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
             number(verdict.measured),
             number(verdict.threshold),
             Text.assemble(verdict.statement, (unit, "dim")),
+            *((verdict.then or NONE,) if by_then else ()),
         )
     console.print(table)
 

@@ -84,6 +84,7 @@ def render(
             (v, _measured(v.measured, v), _measured(v.threshold, v), _evidence(v, shown))
             for v in verdicts
         ],
+        then=any(verdict.then for verdict in verdicts),
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         case=case,

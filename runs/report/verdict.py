@@ -22,6 +22,7 @@ class Verdict:
         verdict: what the rule says.
         why: what was compared, and what the number can and cannot decide.
         demanded: the case takes no other verdict than ``reproduced``.
+        then: what numerics of the statement's own time show; empty where none were tried.
     """
 
     id: str
@@ -32,6 +33,7 @@ class Verdict:
     verdict: Judgement
     why: str
     demanded: bool = False
+    then: str = ""
 
     @property
     def broken(self) -> bool:

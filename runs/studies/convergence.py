@@ -47,6 +47,7 @@ STUDIES = (
     "refinement",
     "model_ladder",
     "histories",
+    "as_computed_then",
     "supports",
     "second_order",
     "sections",

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Statements of the paper that fail when its equations are solved well, as solved in 1997.
+
+``python -m runs.studies.as_computed_then`` leaves what verdicts on the paper's cases show of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from geometry.arrays import Array
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.paper import then
+from runs.paper.reading import LITERAL
+from runs.paper.rules import INTERVAL, MOST, SERIES_STEPS
+from runs.process import notices
+from runs.report.tables import Cell, Table, wide_console, write
+from runs.report.theme import NONE, number
+from runs.studies.study import Plot, Study
+from runs.studies.then.general_solver import METHODS
+from runs.studies.then.modal_integrators import NEWMARK, WILSON
+from runs.studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
+from runs.studies.then.scheme_errors import proofs
+from runs.studies.then.survey import ABOUT, TOLERANCES, WITH, WITHOUT, Survey, lost_then, share
+
+OUT = Path("runs/out/then")
+TITLE = "Statements of the paper as they were computed then"
+# Figures show energy from nowhere up to so much, in percent, and so many points of a curve.
+CUT, POINTS = 150.0, 1000
+
+_PERCENT = 100.0
+
+
+def study(tell: Callable[[str], None]) -> Study:
+    """Both examples by every scheme, with few modes, gaps iterated or lagged, at three steps."""
+    return told(Survey.of(tell))
+
+
+def told(survey: Survey) -> Study:
+    """The tables, figures and proofs of a survey."""
+    made = outcome_table, free_table, rubbed_table, printed_table, reach_table
+    tables = [table(survey) for table in made]
+    return Study("as-computed-then", TITLE, tables, list(proofs()), plots(survey))
+
+
+def outcome_table(survey: Survey) -> Table:
+    """A row for each statement."""
+    rows = [
+        (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes().items()
+    ]
+    return Table.of_rows(
+        "then-statements",
+        "Which numerics of 1997 show what the paper says",
+        {"statement": "", "shown": "", "by": ""},
+        rows,
+        (
+            f"Shown: by some numerics in {_PERCENT * MOST:g} % of the runs or more. Runs have "
+            f"{', '.join(map(str, MODES))} modes of the elements, {MEMBERS} each with loads "
+            "changed by 1e-9.",
+        ),
+    )
+
+
+def free_table(survey: Survey) -> Table:
+    """Without friction: a row for each numerics, and one for both examples solved well."""
+    cutoff = survey.without.cutoff
+    well = survey.without.well
+    peak = np.mean([one.elements.first_peak for one in well])
+    rows: list[Sequence[Cell]] = []
+    for how, samples in (("solved well", well), *survey.free.items()):
+        peaks = [one.peaks(cutoff) for one in samples]
+        conform, part = (_PERCENT * share(one[i] for one in peaks) for i in (0, 1))
+        off = _PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
+        rows.append(
+            (str(how), *_energies([one.elements for one in samples]), _span(off), conform, part)
+        )
+    return Table.of_rows(
+        "then-free",
+        "Without friction: the tip by numerics of 1997",
+        {
+            "numerics": "",
+            "elements gain more\nthan was put in at (s)": "",
+            "energy at the end\n(% of that put in)": "",
+            "first peak of the\nelements off (%)": "",
+            "conform for 6 s\n(% of runs)": ".0f",
+            "part later\n(% of runs)": ".0f",
+        },
+        rows,
+    )
+
+
+def rubbed_table(survey: Survey) -> Table:
+    """With friction: the same."""
+    rows: list[Sequence[Cell]] = []
+    example = survey.with_friction
+    for how, samples in (("solved well", example.well), *survey.rubbed.items()):
+        apart = _PERCENT * np.array([one.apart() for one in samples])
+        rows.append(
+            (
+                str(how),
+                *_energies([one.elements for one in samples]),
+                _span([_PERCENT * one.elements.unsettled for one in samples]),
+                _span([_PERCENT * example.off(one.elements) for one in samples]),
+                _span(apart[:, 0]),
+                _span(apart[:, 1]),
+                _PERCENT * share(one.stratifies() for one in samples),
+                _PERCENT * share(map(lost_then, samples)),
+            )
+        )
+    return Table.of_rows(
+        "then-rubbed",
+        "With friction: the tip by numerics of 1997",
+        {
+            "numerics": "",
+            "elements gain more\nthan was put in at (s)": "",
+            "energy at the end\n(% of that put in)": "",
+            "steps without\nagreement (%)": "",
+            "elements off to 6 s\n(% of range)": "",
+            "models apart to 6 s\n(% of range)": "",
+            "and later": "",
+            "as S7 says\n(% of runs)": ".0f",
+            f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
+        },
+        rows,
+    )
+
+
+def printed_table(survey: Survey) -> Table:
+    """When elements are lost whose contacts are as soft as the print has them."""
+    gained, ends = "elements gain more than\nwas put in at (s), ", "energy at the end\n(%), "
+    headings = [part + which for which in ("free", "friction") for part in (gained, ends)]
+    rows: list[Sequence[Cell]] = [
+        (str(how), *(cell for runs in both for cell in _energies(runs)))
+        for how, both in survey.printed.items()
+    ]
+    return Table.of_rows(
+        "then-printed",
+        f"With contacts of {number(LITERAL)} N/m, as the print has them",
+        {"numerics": "", **dict.fromkeys(headings, "")},
+        rows,
+        (f"With {', '.join(map(str, MODES))} modes, one run each.",),
+    )
+
+
+def reach_table(survey: Survey) -> Table:
+    """How far the general solver comes."""
+    rows: list[Sequence[Cell]] = []
+    for method, tolerance in product(METHODS, TOLERANCES):
+        cells = [
+            one.time
+            for friction, model in product((False, True), SERIES)
+            for one in survey.reached
+            if (one.method, one.tolerance, one.model, one.friction)
+            == (method, tolerance, model, friction)
+        ]
+        rows.append((method, number(tolerance), *cells))
+    return Table.of_rows(
+        "then-series",
+        f"How far {SERIES_STEPS} steps of a general solver reach (s)",
+        {
+            "solver": "",
+            "tolerance": "",
+            "four terms": ".3g",
+            "five terms": ".3g",
+            "four terms, friction": ".3g",
+            "five terms, friction": ".3g",
+        },
+        rows,
+    )
+
+
+def plots(survey: Survey) -> list[Plot]:
+    """The tip by both iterated schemes at the paper's step, and their energy."""
+    found = []
+    for name, what, example, samples in (
+        ("then-free", "Without friction", survey.without, survey.free),
+        ("then-rubbed", "With friction", survey.with_friction, survey.rubbed),
+    ):
+        by = {
+            f"{scheme.name}, iterated": max(
+                (one.elements for one in samples[Numerics(scheme, True, THEN)]),
+                key=lambda run: run.breaks,
+            )
+            for scheme in (WILSON, NEWMARK)
+        }
+        runs = {"solved well": example.well[0].elements, **by}
+        found += [
+            Plot(
+                name,
+                f"{what}: the beam elements' tip, solved well and as computed then",
+                "time (s)",
+                "tip (mm)",
+                {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
+                f"{1e3 * THEN:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
+                logarithmic=False,
+            ),
+            Plot(
+                f"{name}-energy",
+                f"{what}: energy from nowhere",
+                "time (s)",
+                "% of the energy put in",
+                {label: _cut(run.time, _PERCENT * run.balance) for label, run in runs.items()},
+                f"Gained above, lost below zero; cut at {CUT:g} %.",
+                logarithmic=False,
+            ),
+        ]
+    return found
+
+
+def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
+    """When their energy breaks out, and what is gained or lost where it does not."""
+    breaks = [run.breaks for run in runs]
+    ends = [_PERCENT * run.balance[-1] for run in runs]
+    return _span(breaks), _span([end for end in ends if end < _PERCENT])
+
+
+def _span(values: Sequence[float] | Array) -> str:
+    """From the smallest to the largest, with two digits; none that is not finite."""
+    finite = [float(value) for value in values if np.isfinite(value)]
+    if not finite:
+        return NONE
+    ends = dict.fromkeys(number(end, 2) for end in (min(finite), max(finite)))
+    many = "" if len(finite) == len(values) else f" ({len(finite)} of {len(values)})"
+    return " … ".join(ends) + many
+
+
+def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
+    """For a figure, as many points as can be seen."""
+    shown = slice(None, None, max(1, time.size // POINTS))
+    return time[shown].tolist(), values[shown].tolist()
+
+
+def _cut(time: Array, values: Array) -> tuple[list[float], list[float]]:
+    """The same until ``CUT`` is passed."""
+    shown = np.cumsum(~(values < CUT)) == 0
+    return _curve(time[shown], values[shown])
+
+
+def leave(survey: Survey, folder: Path) -> None:
+    """Write ``then.json`` and ``then.md``."""
+    cases = [case_file.load(str(path)) for path in (WITHOUT, WITH)]
+    data = {
+        "case_hashes": [toml.digest(case) for case in cases],
+        "outcomes": {key: asdict(found) for key, found in survey.outcomes().items()},
+    }
+    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in told(survey).tables])
+
+
+def main() -> None:
+    """Print the tables, and leave them where the verdicts look for them."""
+    survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
+    for table in told(survey).tables:
+        table.text.show(wide_console())
+    leave(survey, OUT)
+    print(f"written to {OUT}")
+
+
+if __name__ == "__main__":
+    notices.show()
+    main()

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A gap system by a general solver of differential equations, held to so many steps.
+
+It stands for the NDSolve of Mathematica 2.2, with which the paper has moved its series: steps
+follow from a tolerance, and nothing is known of where contacts close or friction turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import LSODA, RK45
+
+from dynamics.arrays import Array
+from dynamics.contact import contact_terms
+from dynamics.gap_system import GapSystem
+
+METHODS = {"LSODA": LSODA, "RK45": RK45}
+# In m: a deflection of half the boom's length ends it.
+AWAY = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """What a solver has reached.
+
+    Args:
+        time: (num_steps + 1,) in s.
+        states, velocities: (num_steps + 1, num_modes).
+    """
+
+    time: Array
+    states: Array
+    velocities: Array
+
+
+def right_side(system: GapSystem) -> Callable[[float, Array], Array]:
+    """What gives (2 num_modes,) ȧ and ä of time and of a and ȧ: contacts as their laws have them,
+    friction by the sign of its speed.
+    """
+    terms = contact_terms(system.laws)
+    rows, slides = system.rows[terms["row"]], system.friction_rows
+    drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
+
+    def rates(_: float, state: Array) -> Array:
+        a, v = np.split(state, 2)
+        depths = np.maximum(terms["side"] * (rows @ a) - terms["onset"], 0.0)
+        forces = terms["side"] * terms["stiffness"] * depths ** terms["exponent"]
+        push = system.load - system.omega2 * a - forces @ rows
+        return np.concatenate([v, push - (drag * np.sign(slides @ v)) @ slides])
+
+    return rates
+
+
+def solve(system: GapSystem, duration: float, method: str, tolerance: float, most: int) -> Solved:
+    """Move a system from rest until ``duration`` in s, or for as many steps as are allowed.
+
+    Args:
+        system: under constant loads, without damping.
+        duration: in s.
+        method: of ``METHODS``.
+        tolerance: relative, and absolute in the units of a and ȧ.
+        most: steps.
+    """
+    start = np.zeros(2 * system.num_modes)
+    within = {"rtol": tolerance, "atol": tolerance}
+    solver = METHODS[method](right_side(system), 0.0, start, duration, **within)
+    time, states = [0.0], [start]
+    tip = system.observers["tip"].row
+    while solver.status == "running" and len(time) <= most:
+        solver.step()
+        time.append(solver.t)
+        states.append(solver.y.copy())
+        if not abs(tip @ solver.y[: tip.size]) < AWAY:
+            break
+    whole = np.array(states)
+    return Solved(np.array(time), *np.split(whole, 2, axis=1))

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Step-by-step integration of modal equations as codes of the 1990s had it; for studies alone.
+
+Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family:
+the equation of motion holds θ steps ahead, and the acceleration of a step's end is on the line to
+there (Hilber and Hughes 1978). Forces of gaps and friction are loads of the modes: with what the
+last step has left, or sought anew in each step until they agree with its end. Nothing here watches
+the energy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+
+from dynamics.arrays import Array
+from dynamics.contact import Terms, contact_terms
+from dynamics.energy import ENERGIES
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.contact_kicks import contact_energy, law_forces
+from dynamics.kernels.terms import term_slope
+from dynamics.motion import Motion
+from dynamics.trajectory import Trajectory
+
+# Rounds of gaps and friction within a step, and of gaps alone.
+ROUNDS, NEWTON = 8, 30
+# In m: penetrations nearer than that agree.
+AGREED = 1.0e-13
+# In √kg·m: farther away nothing is a boom any more.
+LOST = 1.0e5
+
+
+@dataclass(frozen=True, slots=True)
+class Scheme:
+    """One of the family.
+
+    Args:
+        name: its usual one.
+        beta: of the displacement within a step, after Newmark (1959); γ is ½.
+        theta: where in steps the equation of motion holds.
+    """
+
+    name: str
+    beta: float
+    theta: float = 1.0
+
+
+NEWMARK = Scheme("Newmark", 0.25)
+WILSON = Scheme("Wilson θ = 1.4", 1.0 / 6.0, 1.4)
+CENTRAL = Scheme("central differences", 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Stepped:
+    """What such a code leaves.
+
+    Args:
+        trajectory: an output for each step, NaN after the last finite one.
+        lasted: steps until the motion is not finite.
+        unsettled: (num_steps,) where friction and gaps did not come to agree with the step's end.
+    """
+
+    trajectory: Trajectory
+    lasted: int
+    unsettled: Array
+
+
+def lowest(system: GapSystem, modes: int) -> GapSystem:
+    """The system cut to its lowest modes, which is what the modal technique keeps of it."""
+    kept = np.argsort(system.omega2, kind="stable")[:modes]
+    return replace(
+        system,
+        omega2=system.omega2[kept],
+        load=system.load[kept],
+        rows=system.rows[:, kept],
+        friction_rows=system.friction_rows[:, kept],
+        observers={name: o._replace(row=o.row[kept]) for name, o in system.observers.items()},
+        **{name: getattr(system, name)[kept] for name in ("damping", "released", "thrown")},
+        dashpots=system.dashpots[:, kept],
+    )
+
+
+def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
+    """Move a system by a scheme, in one step for each output.
+
+    Args:
+        motion: of a system under constant loads without damping.
+        scheme: which.
+        settled: whether gaps and friction agree with the end of a step, or lag by one.
+    """
+    system = motion.system
+    n, h = motion.outputs, motion.output_step
+    states, speeds = np.full((2, n + 1, system.num_modes), np.nan)
+    losses, unsettled = np.zeros(n + 1), np.zeros(n, dtype=bool)
+    states[0], speeds[0] = motion.position, motion.velocity
+    terms = contact_terms(system.laws)
+    drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
+    rows, slides = (np.ascontiguousarray(part) for part in (system.rows, system.friction_rows))
+    arrays = system.omega2, system.load, rows, terms, slides, drag
+    lasted = _march(
+        arrays, h, scheme.beta, scheme.theta, settled, states, speeds, losses, unsettled
+    )
+    gaps = states @ system.rows.T
+    forces, energies = np.zeros(gaps.shape), np.zeros((n + 1, len(ENERGIES)))
+    for k in range(lasted + 1):
+        law_forces(gaps[k], terms, forces[k])
+        energies[k, 2] = contact_energy(gaps[k], terms)
+    energies[:, 0] = 0.5 * (speeds**2).sum(axis=1)
+    energies[:, 1] = 0.5 * states**2 @ system.omega2
+    energies[:, 3] = (states - states[0]) @ system.load
+    energies[:, 5] = losses
+    pressed = forces != 0.0
+    trajectory = Trajectory.record(
+        system,
+        time=h * np.arange(n + 1),
+        states=states,
+        velocities=speeds,
+        energies=energies,
+        row_gaps=gaps,
+        row_forces=forces,
+        row_peaks=np.abs(forces),
+        row_frictions=-np.sign(speeds @ system.friction_rows.T) * drag,
+        step=h,
+        steps=lasted,
+        first_contact=h * int(np.argmax(pressed.any(axis=1))) if pressed.any() else np.nan,
+        contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
+    )
+    return Stepped(trajectory, lasted, unsettled)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
+    """Gaps y (num_rows,) with y + ``cross`` F(y) = ``free``, by Newton's method; their forces."""
+    for _ in range(NEWTON):
+        law_forces(y, terms, force)
+        excess = y + cross @ force - free
+        if (excess**2).sum() < AGREED**2:
+            return True
+        slopes = np.eye(y.size)
+        for t in range(terms.size):
+            j = terms[t]["row"]
+            slopes[:, j] += cross[:, j] * term_slope(terms[t], y[j])
+        y -= np.linalg.solve(slopes, excess)
+    law_forces(y, terms, force)
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _march(
+    system: tuple[Array, Array, Array, Terms, Array, Array],
+    h: float,
+    beta: float,
+    theta: float,
+    settled: bool,
+    states: Array,
+    speeds: Array,
+    losses: Array,
+    unsettled: Array,
+) -> int:
+    """Fill in states, speeds and the loss of friction from the first ones on; how far it comes."""
+    omega2, load, rows, terms, slides, drag = system
+    tau = theta * h
+    reach = beta * tau**2
+    give = 1.0 / (1.0 + omega2 * reach)
+    cross = (reach * rows * give) @ rows.T
+    a, v = states[0], speeds[0]
+    y, force = rows @ a, np.zeros(rows.shape[0])
+    law_forces(y, terms, force)
+    sign = np.sign(slides @ v)
+    acceleration = load - omega2 * a - force @ rows - (drag * sign) @ slides
+    for k in range(unsettled.size):
+        ahead = a + tau * v + (0.5 * tau**2 - reach) * acceleration
+        if not settled:
+            law_forces(rows @ a, terms, force)
+            sign = np.sign(slides @ v)
+        for _ in range(ROUNDS):
+            pushed = load - omega2 * ahead - (drag * sign) @ slides
+            agreed = not settled or _settle(
+                rows @ (ahead + reach * give * pushed), cross, terms, y, force
+            )
+            there = give * (pushed - force @ rows)
+            after = acceleration + (there - acceleration) / theta
+            v1 = v + 0.5 * h * (acceleration + after)
+            before, sign = sign, np.sign(slides @ v1)
+            if not settled or (agreed and np.array_equal(before, sign)):
+                break
+        else:
+            unsettled[k] = True
+        a = a + h * v + h**2 * ((0.5 - beta) * acceleration + beta * after)
+        if not np.abs(a).max() < LOST:
+            return k
+        losses[k + 1] = losses[k] + 0.5 * h * (drag * before) @ (slides @ (v + v1))
+        v, acceleration = v1, after
+        states[k + 1], speeds[k + 1] = a, v
+    return int(unsettled.size)

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The paper's two examples, moved as codes of 1997 moved them, and as this program does.
+
+Its elements went by the modal technique in 4375 steps for 7 s, gaps and friction as forces on a few
+modes. Which scheme, how many modes, and whether gaps were iterated, it does not say: all are tried.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from dynamics.contact import PowerContact
+from dynamics.energy import ENERGIES
+from dynamics.gap_system import GapSystem
+from dynamics.integrators import Splitting, suited
+from dynamics.motion import Motion
+from dynamics.predictability.ensemble import changed, perturbations
+from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.paper.parting import peaks_apart
+from runs.paper.reading import LITERAL
+from runs.paper.rules import CONFORMITY, DIVERGENCE
+from runs.pipeline.members import slow_below
+from runs.studies.motions import gap_system, model_of
+from runs.studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
+
+SERIES = ("kantorovich-4", "kantorovich-5")
+ELEMENTS, TIED = "beam-fe", "beam-fe-tied"
+
+# The paper's step, 4375 of which make 7 s, and its neighbours, in s.
+STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
+THEN = STEPS[1]
+# A few modes of both segments, which the modal technique keeps.
+MODES = (6, 8, 10, 12, 14)
+# Loads a little changed: each run is a sample.
+MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
+DURATION = 10.0
+# Of the converged elements in s.
+FINE = 2.5e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Numerics:
+    """How a code of then moves modes.
+
+    Args:
+        scheme: of its steps.
+        settled: whether gaps and friction agree with the end of a step, or lag by one.
+        step: in s.
+    """
+
+    scheme: Scheme
+    settled: bool
+    step: float
+
+    def __str__(self) -> str:
+        gaps = "iterated" if self.settled else "lagged"
+        return f"{self.scheme.name}, gaps {gaps}, {1e3 * self.step:g} ms"
+
+
+def all_numerics() -> list[Numerics]:
+    """Every scheme, gaps iterated and lagged, every step."""
+    parts = product((NEWMARK, WILSON, CENTRAL), (True, False), STEPS)
+    return [Numerics(*one) for one in parts]
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """One run of one model.
+
+    Args:
+        time: (num_times,) in s.
+        tip, head: (num_times,) in m.
+        gained: (num_times,) energy from nowhere in J, lost if negative.
+        put_in: by the loads at most, where the motion is solved well, in J.
+        unsettled: part of the steps in which friction and gaps came to no agreement.
+    """
+
+    time: Array
+    tip: Array
+    head: Array
+    gained: Array
+    put_in: float
+    unsettled: float = 0.0
+
+    @classmethod
+    def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
+        """A trajectory; without ``put_in`` its own."""
+        kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
+        present = kinetic + strain + contact + sum(losses)
+        tip, head = (run.data[place].values for place in ("tip", "head"))
+        scale = put_in or float(np.abs(work).max())
+        return cls(run.time, tip, head, present - present[0] - work, scale, unsettled)
+
+    @property
+    def balance(self) -> Array:
+        """(num_times,) energy from nowhere as a part of that put in, NaN after a finite motion."""
+        return self.gained / self.put_in
+
+    @property
+    def first_peak(self) -> float:
+        """Largest deflection of the tip in the first second in m."""
+        return float(self.tip[self.time <= 1.0].max())
+
+    @property
+    def breaks(self) -> float:
+        """When it has gained more energy than was ever put in, in s; infinite if never."""
+        gained = ~(self.balance < 1.0)
+        return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """The paper's models with play, moved by the same numerics, and the play-free one.
+
+    Args:
+        models: of ``SERIES`` and ``ELEMENTS``.
+        tied: the elements without play, which any numerics moves well.
+    """
+
+    models: Sequence[Moved]
+    tied: Moved
+
+    @property
+    def elements(self) -> Moved:
+        """The finite elements with play."""
+        return self.models[-1]
+
+    def peaks(self, cutoff: float) -> tuple[bool, bool]:
+        """Whether slow peaks conform for six seconds, and whether they part later (S3)."""
+        tips = np.array([one.tip for one in self.models])
+        if not np.isfinite(tips).all():
+            return False, False
+        time, apart = peaks_apart(tips, self.elements.time, cutoff)
+        early, late = apart[time <= CONFORMITY], apart[time > CONFORMITY]
+        return bool((early <= DIVERGENCE).all()), bool((late > DIVERGENCE).any())
+
+    def apart(self) -> tuple[float, float]:
+        """Largest distance of two tips up to six seconds and after, of the largest range (S7)."""
+        return self._early_and_late(_apart([one.tip for one in self.models]))
+
+    def stratifies(self) -> bool:
+        """Whether it shows S7, as the rule on trajectories asks it."""
+        early, late = self.apart()
+        head = float(_apart([one.head for one in self.models]).max())
+        without = min(float(_apart([one.tip, self.tied.tip]).max()) for one in self.models)
+        return early < DIVERGENCE < without and early < late < head
+
+    def _early_and_late(self, distance: Array) -> tuple[float, float]:
+        early = self.elements.time <= CONFORMITY
+        return float(distance[early].max()), float(distance[~early].max())
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One of the paper's two examples.
+
+    Args:
+        case: its file's.
+        systems: of its models by their names.
+        cutoff: of the slow motion in Hz.
+        well: as this program solves it; one where friction makes it regular.
+    """
+
+    case: Case
+    systems: Mapping[str, GapSystem]
+    cutoff: float
+    well: Sequence[Sample]
+
+    @classmethod
+    def of(cls, case: Case, members: int) -> Example:
+        """With so many members solved well."""
+        boom = build_boom(case)
+        names = (*SERIES, ELEMENTS, TIED)
+        systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
+        cutoff = slow_below(boom, case.time)
+        assert cutoff is not None
+        runs = _side_by_side(
+            lambda one: Moved.of(_well(changed(Motion(systems[one[1]], DURATION), "load", one[0]))),
+            list(product(factors(members), names)),
+        )
+        well = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
+        return cls(case, systems, cutoff, well)
+
+    def samples(self, how: Numerics, modes: Sequence[int] = MODES) -> list[Sample]:
+        """A sample for each number of the elements' modes and each member."""
+        well = self.well[0].models
+        series = [(self.systems[name], run.put_in) for name, run in zip(SERIES, well, strict=False)]
+        whole, put_in = self.systems[ELEMENTS], well[-1].put_in
+        models = [*series, *((lowest(whole, few), put_in) for few in modes)]
+        tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
+        runs = _side_by_side(lambda one: _then(how, *one), tasks)
+        four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
+        tied = self.tied(how.step)
+        return [
+            Sample(played, tied)
+            for other in others
+            for played in zip(four, five, other, strict=True)
+        ]
+
+    def as_printed(self, how: Numerics) -> list[Moved]:
+        """The elements, whose contacts are linear, with their stiffness as the print has it."""
+        system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
+        laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
+        tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
+        return _side_by_side(lambda one: _then(how, *one), tasks)
+
+    def tied(self, step: float) -> Moved:
+        """The play-free elements at the times of other steps in s."""
+        run = self.well[0].tied
+        time = step * np.arange(round(DURATION / step) + 1)
+        tip, head, gained = (np.interp(time, run.time, y) for y in (run.tip, run.head, run.gained))
+        return Moved(time, tip, head, gained, run.put_in)
+
+    def off(self, run: Moved) -> float:
+        """Largest distance of the elements' tip from the one solved well, of its range."""
+        well = self.well[0].elements
+        distance = np.abs(run.tip - np.interp(run.time, well.time, well.tip))
+        return float(distance[run.time <= CONFORMITY].max() / np.ptp(well.tip))
+
+
+def factors(members: int) -> Array:
+    """(members,) of the loads."""
+    return 1.0 + perturbations(members, RELATIVE, SEED)
+
+
+def _side_by_side(move: Callable[[Any], Moved], tasks: Sequence[Any]) -> list[Moved]:
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(move, tasks))
+
+
+def _well(motion: Motion) -> Trajectory:
+    """By this program's own integrators."""
+    way = suited(motion)
+    return (Splitting(FINE) if isinstance(way, Splitting) else way)(motion)
+
+
+def _then(how: Numerics, system: GapSystem, put_in: float, factor: float) -> Moved:
+    motion = changed(Motion(system, DURATION, how.step), "load", factor)
+    run = integrate(motion, how.scheme, how.settled)
+    return Moved.of(run.trajectory, put_in, float(run.unsettled[: run.lasted].mean()))
+
+
+def _apart(curves: Sequence[Array]) -> Array:
+    """(num_times,) largest difference of any two, as a part of the largest range."""
+    return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Which numerics of 1997 show what the paper says, asked of S3, S7, S8 and S10.
+
+The measures are those of :mod:`runs.paper.rules`; runs of the elements are by the modal technique,
+those of the series by a general solver held to 2000 steps as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from runs import CASES
+from runs.case import reading as case_file
+from runs.paper.rules import ELEMENT_STEPS, INTERVAL, MOST, SERIES_STEPS
+from runs.studies.then.general_solver import METHODS, solve
+from runs.studies.then.samples import (
+    MEMBERS,
+    SERIES,
+    THEN,
+    Example,
+    Moved,
+    Numerics,
+    Sample,
+    all_numerics,
+)
+
+WITHOUT, WITH = CASES / "paper.toml", CASES / "paper-friction.toml"
+
+# Of the general solver, from rough to fine.
+TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
+# In s about the 7 s after which the paper's elements with friction were lost.
+ABOUT = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """How far a general solver comes in the steps that the paper allows the series.
+
+    Args:
+        method, tolerance: of the solver.
+        model: of ``SERIES``.
+        friction: whether it rubs.
+        time: in s.
+        steps: that it has taken.
+    """
+
+    method: str
+    tolerance: float
+    model: str
+    friction: bool
+    time: float
+    steps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What numerics of then say of a statement.
+
+    Args:
+        shown: whether with some of them most runs show it.
+        why: which, and in how many runs.
+    """
+
+    shown: bool
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """Every run of both examples.
+
+    Args:
+        without, with_friction: the examples.
+        free, rubbed: their samples by the numerics.
+        reached: by the general solver.
+        printed: elements without and with friction whose contacts are as stiff as printed.
+    """
+
+    without: Example
+    with_friction: Example
+    free: Mapping[Numerics, Sequence[Sample]]
+    rubbed: Mapping[Numerics, Sequence[Sample]]
+    reached: Sequence[Reached]
+    printed: Mapping[Numerics, Sequence[Sequence[Moved]]]
+
+    @classmethod
+    def of(cls, tell: Callable[[str], None]) -> Survey:
+        """Run everything."""
+        tell("both examples solved well")
+        free, rubbed = (case_file.load(str(path)) for path in (WITHOUT, WITH))
+        without, with_friction = Example.of(free, MEMBERS), Example.of(rubbed, 1)
+        tell("the general solver")
+        reached = list(reach(without, False)) + list(reach(with_friction, True))
+        tell("without friction")
+        of_free = {how: without.samples(how) for how in all_numerics()}
+        tell("with friction")
+        of_rubbed = {how: with_friction.samples(how) for how in all_numerics()}
+        tell("with the stiffness as printed")
+        examples = without, with_friction
+        printed = {how: [one.as_printed(how) for one in examples] for how in all_numerics()}
+        return cls(without, with_friction, of_free, of_rubbed, reached, printed)
+
+    def outcomes(self) -> dict[str, Outcome]:
+        """By the statement."""
+        return {"S3": self._s3(), "S7": self._s7(), "S8": self._s8(), "S10": self._s10()}
+
+    def _s3(self) -> Outcome:
+        return _most(self.free, lambda one: all(one.peaks(self.without.cutoff)))
+
+    def _s7(self) -> Outcome:
+        return _most(self.rubbed, Sample.stratifies)
+
+    def _s8(self) -> Outcome:
+        at_the_step = {how: found for how, found in self.rubbed.items() if how.step == THEN}
+        lost = {
+            how: max(one.elements.breaks for one in found) for how, found in at_the_step.items()
+        }
+        how = max(lost, key=lambda how: lost[how] if lost[how] < np.inf else 0.0)
+        first = min(one.elements.breaks for one in self.rubbed[how])
+        found = _most(at_the_step, lost_then)
+        last = f"by {how} energy breaks out in all, at {first:.1f} to {lost[how]:.1f} s"
+        return Outcome(found.shown, f"{found.why}; {last}")
+
+    def _s10(self) -> Outcome:
+        farthest = max((one for one in self.reached if not one.friction), key=lambda one: one.time)
+        reach = (
+            f"{SERIES_STEPS} steps of a general solver reach {farthest.time:.2g} s of the "
+            f"{INTERVAL:g} s at most, by {farthest.method} at a tolerance of {farthest.tolerance:g}"
+        )
+        stand = {
+            round(INTERVAL / how.step)
+            for how, found in self.free.items()
+            if share(one.elements.breaks > INTERVAL for one in found) >= MOST
+        }
+        fewest = f"elements stand in {min(stand)} steps" if stand else "no elements stand so long"
+        shown = farthest.time >= INTERVAL and bool(stand) and min(stand) > ELEMENT_STEPS
+        return Outcome(shown, f"{reach}; {fewest}")
+
+
+def lost_then(sample: Sample) -> bool:
+    """Whether the elements are lost about when the paper's were (S8)."""
+    return abs(sample.elements.breaks - INTERVAL) <= ABOUT
+
+
+def reach(example: Example, friction: bool) -> Iterator[Reached]:
+    """How far each general solver comes at each tolerance, both series."""
+    for method, tolerance, model in product(METHODS, TOLERANCES, SERIES):
+        found = solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS)
+        yield Reached(
+            method, tolerance, model, friction, float(found.time[-1]), found.time.size - 1
+        )
+
+
+def share(shows: Iterable[bool]) -> float:
+    """Of all, those that show something."""
+    return float(np.mean(list(shows)))
+
+
+def _most(samples: Mapping[Numerics, Sequence[Sample]], shows: Callable[[Sample], bool]) -> Outcome:
+    """By which numerics a statement is shown most often."""
+    shares = {how: share(map(shows, found)) for how, found in samples.items()}
+    best = max(shares, key=lambda how: shares[how])
+    often = f"in {100.0 * shares[best]:.0f} % of runs"
+    if shares[best] == 0.0:
+        return Outcome(False, f"in no run of {len(shares)} numerics")
+    if shares[best] < MOST:
+        return Outcome(False, f"{often} at most, by {best}")
+    return Outcome(True, f"{often} by {best}")
