@@ -115,6 +115,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     for point in segment.masses:
         dof = 2 * _nearest(nodes, point.x)
         mass[dof, dof] += point.mass
+    for point in segment.stiffener_masses:
+        dof = 2 * _nearest(nodes, point.x)
+        mass[dof, dof] += point.mass
+        turning[dof] += point.mass * point.x
+        felt[dof] += point.mass / segment.mass_per_length
     free = np.setdiff1d(np.arange(num_dofs), held)
 
     def read(shapes: _Shapes, order: int, x: float) -> Array:
@@ -182,7 +187,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
     """Equal elements between the places that must be nodes."""
-    own = [support.x for support in segment.supports] + [mass.x for mass in segment.masses]
+    own = [support.x for support in segment.supports] + [mass.x for mass in segment.carried]
     inside = [x for x in (*own, *segment.compression.places, *breaks) if segment.holds(x)]
     places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
     places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE * segment.length])]

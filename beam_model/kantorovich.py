@@ -125,6 +125,12 @@ def kantorovich_bending(
     for point in segment.masses:
         row = basis.at(point.x)
         mass += point.mass * np.outer(row, row)
+    felt = basis.value @ heavy
+    for point in segment.stiffener_masses:
+        row = basis.at(point.x)
+        mass += point.mass * np.outer(row, row)
+        turning += point.mass * point.x * row
+        felt += point.mass / segment.mass_per_length * row
     return Component(
         stiffness=stiffness,
         mass=mass,
@@ -137,7 +143,7 @@ def kantorovich_bending(
         turning=turning,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
         geometric=_geometric(segment.compression, basis.functions),
-        felt=basis.value @ heavy,
+        felt=felt,
     )
 
 

@@ -140,8 +140,8 @@ class Segment:
         viscous_damping: μ̄ of (25) in N·s/m², of the deflections along y as along z.
         masses: what it carries.
         lateral: what a boom in space needs.
-        collars, diaphragms: what stiffens the plates; beams do not know of them, and the numbers
-            above are those of the plain box.
+        collars, diaphragms: what stiffens the plates; of them beams know the mass alone, and the
+            numbers above are those of the plain box.
         compression: the axial force that it carries, see :func:`geometry.axial.with_compression`.
         shear_stiffnesses: G A_s in N along z and along y, where they are not the section's.
     """
@@ -246,6 +246,35 @@ class Segment:
         assert self.section is not None
         ends = self.section, self.head_section or self.section
         return max(ends, key=lambda section: section.perimeter)
+
+    @property
+    def carried(self) -> tuple[PointMass, ...]:
+        """Its point masses and those of its stiffeners."""
+        return (*self.masses, *self.stiffener_masses)
+
+    @property
+    def stiffener_masses(self) -> tuple[PointMass, ...]:
+        """Of diaphragms, and of collars in their middles; none where no plates are known."""
+        if self.section is None:
+            return ()
+        density = self.material.density
+        of_diaphragms = (
+            PointMass(one.x, density * self.section_at(one.x).enclosed_area * one.thickness)
+            for one in self.diaphragms
+        )
+        of_collars = (
+            PointMass(
+                0.5 * (one.start + one.end),
+                density * self.mean_perimeter(one) * (one.end - one.start) * one.thickness,
+            )
+            for one in self.collars
+        )
+        return (*of_diaphragms, *of_collars)
+
+    @property
+    def mass(self) -> float:
+        """In kg, with all that it carries."""
+        return self.mass_per_length * self.length + sum(point.mass for point in self.carried)
 
     def mean_perimeter(self, collar: Collar) -> float:
         """Length of the mid-lines in m, half-way along a collar."""

@@ -74,8 +74,7 @@ def _sections(boom: Boom) -> Iterator[str]:
 
 def _weight(segment: Segment) -> float:
     """In N, with what the segment carries."""
-    mass = segment.mass_per_length * segment.length + sum(point.mass for point in segment.masses)
-    return STANDARD_GRAVITY * mass
+    return STANDARD_GRAVITY * segment.mass
 
 
 def _loads(case: Case, boom: Boom) -> Iterator[str]:

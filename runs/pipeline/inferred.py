@@ -79,7 +79,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 def _stiffeners(boom: Boom, system: System) -> Table:
     """Those of segments with known plates; without, there is no shell either."""
     x, mass = f"x ({system.label('m')})", f"mass ({system.label('kg')})"
-    table = Table("on shells alone", "of", x, "t (mm)", mass)
+    table = Table("stiffener", "of", x, "t (mm)", mass)
     for segment in boom.segments:
         box, density = segment.section, segment.material.density
         if box is None:

@@ -147,10 +147,9 @@ def _masses(boom: Boom, system: System) -> Table:
 
     whole, moment = 0.0, 0.0
     for segment in boom.segments:
-        own, carried = segment.mass_per_length * segment.length, segment.masses
-        here = own + sum(point.mass for point in carried)
+        own, here = segment.mass_per_length * segment.length, segment.mass
         middle = own * segment.mass_middle
-        middle += sum(point.mass * point.x for point in carried)
+        middle += sum(point.mass * point.x for point in segment.carried)
         table.add_row(segment.name, mass(own), mass(here - own), place(middle / here))
         whole, moment = whole + here, moment + middle
     table.add_row("all", mass(whole), "", place(moment / whole))

@@ -83,7 +83,7 @@ class _Nodes:
         return self.component.uniform_load(*span)
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.component.unit_load
+        return force * self.component.inertia
 
     def turning(self, direction: Direction) -> Array:
         return self.component.turning
@@ -207,7 +207,7 @@ def _segment(boom: Boom, number: int, part: Part, model: FiniteElementTable) -> 
             }
             for support in segment.supports
         ],
-        "masses": [[_nearest(part.x, mass.x), mass.mass] for mass in segment.masses],
+        "masses": [[_nearest(part.x, mass.x), mass.mass] for mass in segment.carried],
     }
 
 

@@ -118,10 +118,7 @@ def _answered(own: ModelAnswers) -> Measured:
 
 def mass(boom: Boom) -> float:
     """Of all segments and of what they carry, in kg."""
-    return sum(
-        segment.mass_per_length * segment.length + sum(point.mass for point in segment.masses)
-        for segment in boom.segments
-    )
+    return sum(segment.mass for segment in boom.segments)
 
 
 def settling_time(time: Array, tip: Array) -> float | None:

@@ -56,7 +56,7 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
     """
     pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]
     for one in pushed:
-        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.masses]
+        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.carried]
     pushed[-1].forces.append((boom.tip, tip))
     for joint in reversed(boom.joints):
         inner, (first, last) = pushed[joint.inner], joint.stations
@@ -130,6 +130,5 @@ def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
             assert hold.force == pytest.approx(given[hold.x], rel=1e-3)
     stations = {x for joint in boom.joints for x in joint.stations}
     ground = sum(hold.force for hold in rest.holds if hold.segment == 0 and hold.x not in stations)
-    masses = [s.mass_per_length * s.length + sum(m.mass for m in s.masses) for s in boom.segments]
-    assert ground == pytest.approx(GRAVITY * sum(masses), rel=1e-3)
+    assert ground == pytest.approx(GRAVITY * sum(s.mass for s in boom.segments), rel=1e-3)
     assert rest.tip == pytest.approx(tip_by_hand(boom, stiffness), rel=1e-3)

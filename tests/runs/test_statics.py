@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from math import sqrt
+from pathlib import Path
+
 import pytest
 from rich.console import Console
 
@@ -10,6 +13,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.pipeline.models import build
 from runs.pipeline.statics import print_statics
 
 
@@ -57,6 +61,59 @@ def test_unequal_plays_are_not_pressed_in(capsys: pytest.CaptureFixture[str]) ->
     assert [float(value) for value in rows["inner", "10"]] == pytest.approx(
         [-2.7535, 0.0166], rel=2e-3
     )
+
+
+STIFFENED = """
+title = "An arm with a doubler and a lid"
+time = { duration = 1.0 }
+gravity = { acceleration = 10.0, angle = 45.0 }
+material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 8000.0 }
+model = [{ name = "series", kind = "kantorovich", terms = [3], base = "complete" }]
+
+[[segment]]
+name = "arm"
+length = 6.0
+supports = [{ x = 0.0, kind = "clamped" }]
+section = { height = 0.3, width = 0.2, flange = 0.006, web = 0.005 }
+collars = [{ span = [{ head = 1.0 }, "head"], thickness = 0.02 }]
+diaphragms = [{ x = "head", thickness = 0.05 }]
+"""
+
+
+def test_stiffeners_weigh_across_as_along(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: by hand, plates times density; under 45° as much across as along."""
+    path = tmp_path / "case.toml"
+    path.write_text(STIFFENED, encoding="utf-8")
+    case = case_file.load(str(path))
+    plain = 2.0 * (0.2 * 0.006 + 0.3 * 0.005) * 6.0 * 8000.0
+    collar, lid = 1.0 * 0.02 * 8000.0, 0.2 * 0.3 * 0.05 * 8000.0
+    weight = (plain + collar + lid) * 10.0 * sqrt(0.5)
+    moment = (plain * 3.0 + collar * 5.5 + lid * 6.0) * 10.0 * sqrt(0.5)
+    lines = told(case, capsys)
+    (row,) = (line.split() for line in lines if line.startswith("arm 0 "))
+    assert [float(cell) for cell in row[2:]] == pytest.approx(
+        [weight / 1e3, weight / 1e3, moment / 1e3], rel=1e-3
+    )
+
+
+def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -> None:
+    """Reference: other code, elements, which have nodes where stiffeners are."""
+    path = tmp_path / "case.toml"
+    elements = ', { name = "fe", kind = "finite-element", rotary_inertia = false }]'
+    path.write_text(
+        STIFFENED.replace("}]", "}" + elements, 1).replace("[3]", "[12]"), encoding="utf-8"
+    )
+    case = case_file.load(str(path))
+    boom = build_boom(case)
+    series, beam = (build(case, boom, model).system.gathered() for model in case.models)
+    tips = [
+        float(system.observers["tip"].row @ system.static_response(system.load))
+        for system in (series, beam)
+    ]
+    assert tips[0] == pytest.approx(tips[1], rel=1e-4)
+    assert series.frequencies[:2] == pytest.approx(beam.frequencies[:2], rel=1e-3)
 
 
 def test_a_boom_without_rest_says_so(capsys: pytest.CaptureFixture[str]) -> None:
