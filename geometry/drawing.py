@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from geometry.fault import BoomError
 from geometry.joint import Joint
 from geometry.segment import SAME_PLACE, Segment
@@ -22,6 +24,12 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
             own = () if joint.drive is None else (number,)
             return drives_below(joints, joint.outer) + own
     return ()
+
+
+def drawn(boom: Boom, segment: int, time: float) -> float:
+    """How far in m a segment has moved along since the start, at a time in s."""
+    drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
+    return sum(float(drive.history(np.array(time))) for drive in drives if drive is not None)
 
 
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:

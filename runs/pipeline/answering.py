@@ -26,7 +26,7 @@ from runs.pipeline.answers import (
     ModesBeside,
     Moved,
 )
-from runs.pipeline.at_rest import NUMERICS, at_rest, positions
+from runs.pipeline.at_rest import NUMERICS, at_rest, drawn_positions, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
@@ -47,6 +47,11 @@ class Resting(NamedTuple):
     positions: Array
     rests: list[AtRest]
     modes: list[Mode]
+
+    def beside(self, other: Resting) -> Resting:
+        """With the rests of another one."""
+        positions = np.concatenate([self.positions, other.positions])
+        return Resting(positions, [*self.rests, *other.rests], self.modes)
 
 
 def of_model(
@@ -70,10 +75,12 @@ def of_model(
     shown = boom.play_free if model.play_free else boom
     played = Shown.of(shown, built.system.gathered(), model.lines(boom, built))
     resting = _resting(played, case.time.duration)
-    moved, lives = _moving(played, resting, trajectory, model, case)
+    drawn = _drawn(played, case.time.duration)
+    moved, lives = _moving(played, resting.beside(drawn), trajectory, model, case)
     walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
     answers = ModelAnswers(
         rests=resting.rests,
+        drawn=drawn.rests,
         modes=resting.modes,
         moved=replace(moved, walls=walls),
         life=lives,
@@ -110,6 +117,17 @@ def _resting(shown: Shown, duration: float) -> Resting:
         [at_rest(*shown, time, position) for time, position in found.items()],
         modes(*shown, found[0.0]),
     )
+
+
+def _drawn(shown: Shown, duration: float) -> Resting:
+    """Where drives have drawn it farthest; its modes there are left out."""
+    found = drawn_positions(shown.system, duration)
+    rests = [
+        at_rest(shown.boom, shown.system.standing(time), shown.lines, time, position)
+        for time, position in found.items()
+    ]
+    positions = np.array(list(found.values())).reshape(-1, shown.system.num_modes)
+    return Resting(positions, rests, [])
 
 
 def _moving(

@@ -254,7 +254,8 @@ class Peak:
         largest: of the motion; of contacts the mean over an output interval, which is what a pad
             feels, not the peak of a blow.
         time: when, in s.
-        at_rest: the largest at rest under the largest loads; None where there is no rest.
+        at_rest: the largest at rest under the largest loads, wherever it is drawn to; None where
+            there is no rest.
     """
 
     what: str
@@ -346,7 +347,8 @@ class ModelAnswers:
     Args:
         rests: under the loads of t = 0, and where these change also those of the instants at which
             they are largest; none where it has no rest.
-        tied: the same without play.
+        drawn: where drives have drawn it farthest out or in, under the loads of then.
+        tied: as ``rests``, without play.
         modes: the first ones at rest under the loads of t = 0; none where it has no rest.
         tied_modes: of what ``tied`` is of, without their shapes.
         moved: over the run.
@@ -358,6 +360,7 @@ class ModelAnswers:
     """
 
     rests: list[AtRest] = field(default_factory=list)
+    drawn: list[AtRest] = field(default_factory=list)
     tied: list[AtRest] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)
     tied_modes: list[Mode] = field(default_factory=list)

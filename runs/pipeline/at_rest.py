@@ -4,18 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
 
 from dynamics.contact import ContactLaw
 from dynamics.equilibrium import equilibrium
+from dynamics.excitation import Excitation
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment
 from geometry.cylinder import forces
+from geometry.drawing import drawn, places
 from runs.case.contact import PADS_OF_SIDE
 from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
 from runs.pipeline.place_names import place_names
@@ -72,6 +76,25 @@ def positions(system: GapSystem, duration: float) -> dict[float, Array]:
     return found
 
 
+def drawn_positions(system: GapSystem, duration: float) -> dict[float, Array]:
+    """Where it rests when it is drawn out, or in, farthest, beside :func:`positions`.
+
+    Args:
+        system: of a model, all that stays constant in its ``load``.
+        duration: of the motion in s.
+    """
+    none = np.zeros(system.num_modes)
+    ways = [Excitation(none, travel.history) for travel in system.travels]
+    followed = replace(system, excitations=[*system.excitations, *ways])
+    known = instants(system, duration)
+    found: dict[float, Array] = {}
+    for time in instants(followed, duration) if ways else []:
+        with suppress(*NUMERICS), np.errstate(all="ignore"):
+            if time not in known:
+                found[time] = equilibrium(system.standing(time), load_at(system, time))
+    return found
+
+
 def at_rest(
     boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
 ) -> AtRest:
@@ -79,7 +102,7 @@ def at_rest(
 
     Args:
         boom: with the play that the system has.
-        system: of the model.
+        system: of the model; of one that is drawn out, as it stands then.
         lines: along its segments.
         time: whose loads act, in s.
         position: (num_modes,) of the rest.
@@ -94,7 +117,7 @@ def at_rest(
             _diagram(segment, line, position)
             for segment, line in zip(boom.segments, lines, strict=True)
         ],
-        tilts=list(tilts(boom, system, position)),
+        tilts=list(tilts(boom, system, position, time)),
         stations=stations,
         cylinders={name: seen[name] for name in forces(boom)},
     )
@@ -140,19 +163,22 @@ def _one_sided(law: ContactLaw, side: int, gap: float) -> float:
     return 0.0 if there is None else float(abs(there.force(np.array(gap))))
 
 
-def tilts(boom: Boom, system: GapSystem, position: Array) -> Iterator[Tilt]:
-    """Of the joints with play and two stations at least, at a rest (num_modes,)."""
+def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
+    """Of the joints with play and two stations at least, at a rest (num_modes,) at a time in s."""
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
         of_station = [
             float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations
         ]
         if len(joint.stations) > 1:
-            yield _tilt(boom, joint, of_station)
+            yield _tilt(boom, joint, of_station, time)
 
 
-def _tilt(boom: Boom, joint: Joint, gaps: Sequence[float]) -> Tilt:
-    first, last = joint.stations[0], joint.stations[-1]
+def _tilt(boom: Boom, joint: Joint, gaps: Sequence[float], time: float) -> Tilt:
+    way = drawn(boom, joint.inner, time) - drawn(boom, joint.outer, time)
+    on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
+    first, last = on_outer[0], on_outer[-1]
+    tip = boom.tip + drawn(boom, len(boom.segments) - 1, time) - drawn(boom, joint.outer, time)
     rotation = (gaps[-1] - gaps[0]) / (last - first)
     inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
-    return Tilt(inner, outer, rotation, gaps[0] + rotation * (boom.tip - first))
+    return Tilt(inner, outer, rotation, gaps[0] + rotation * (tip - first))

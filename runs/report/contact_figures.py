@@ -11,6 +11,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from geometry.arrays import Array
 from runs.report.charts import Chart
+from runs.report.drawn_axis import drawn_axis, of_start
 from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet
 
 # Over a whole run only the largest force of each of so many intervals can be seen.
@@ -40,12 +41,14 @@ def first_contacts(pen: Pen) -> list[Figure]:
             pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
             curves.append(pen.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
+        drawn_axis(pen, axes)
     panels[-1].set_xlabel("time (s)")
     title = f"Mean contact forces, first {end:g} s"
     caption = (
         f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms"
         + ("" if pen.stays_pressed else ": what the many short impacts of a press amount to")
         + ". Positive where the inner segment presses up."
+        + of_start(pen.case)
     )
     chart = Chart(pen.time, "force (kN)", curves, stations, (0.0, end))
     return [pen.finish(sheet, panels[0], "contact-first", title, caption, chart=chart)]
@@ -68,6 +71,7 @@ def contact_peaks(pen: Pen) -> list[Figure]:
             drawn.append(largest / KILO)
             pen.line(axes, name, middle, largest / KILO, linewidth=1.1, marker="o")
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
+        drawn_axis(pen, axes)
     _log_scale(panels, np.concatenate(drawn))
     panels[-1].set_xlabel("time (s)")
     peaks = [pen.summary[name].peak_contact_force for name in pen.with_play]
@@ -76,6 +80,7 @@ def contact_peaks(pen: Pen) -> list[Figure]:
     caption = (
         f"Largest contact force at each station in every {pen.time[-1] / len(bins):.2g} s, up or "
         f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE / KILO:g} kN."
+        + of_start(pen.case)
     )
     return [pen.finish(sheet, panels[0], "contact-peaks", title, caption)]
 

@@ -13,7 +13,7 @@ from dynamics.predictability.horizon import SHARES
 from geometry.arrays import Array
 from runs.report import theme
 from runs.report.charts import Chart
-from runs.report.drive_figures import drawn_axis
+from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import MILLI, Figure, Pen, farthest, highest, new_sheet
 
 # Of an ensemble this part of the members lies in its band, in percent.
@@ -63,6 +63,7 @@ def close_up(pen: Pen) -> list[Figure]:
     axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, end))
     axes.margins(y=0.08)
+    drawn_axis(pen, axes)
     title = f"Tip, first {end:g} s" + (
         f": the segments first touch at {min(contacts):.2f} s" if contacts else ""
     )
@@ -101,6 +102,7 @@ def _head(pen: Pen, place: str) -> Figure:
         _members(pen, axes, name, place)
         axes.set_title(name, color=pen.strokes[name].color)
         axes.set(xlim=(0.0, pen.time[-1]), ylim=_limits(list(curves.values())))
+        drawn_axis(pen, axes)
     panels[-1].set_xlabel("time (s)")
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)

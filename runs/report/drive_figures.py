@@ -3,43 +3,11 @@
 
 from __future__ import annotations
 
-from matplotlib.axes import Axes
-
-from runs.case.schema import Case
 from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.contact_figures import FORCE_WINDOW, running_mean
+from runs.report.drawn_axis import drawn_axis, driven
 from runs.report.figure_context import KILO, MILLI, Figure, Pen, farthest, new_sheet
-
-
-def driven(case: Case) -> dict[str, str]:
-    """Of each joint with a drive, what stands behind the names of its results, and the segment."""
-    joints = enumerate(case.joints, start=1)
-    return {
-        "" if number == 1 else f"-{number}": joint.inner
-        for number, joint in joints
-        if joint.drive is not None
-    }
-
-
-def drawn_axis(pen: Pen, axes: Axes) -> None:
-    """How far segments are drawn out, on a second axis to the right."""
-    ways = {
-        inner: pen.of(pen.models[0], f"drawn_out{suffix}")
-        for suffix, inner in driven(pen.case).items()
-        if f"drawn_out{suffix}" in pen.data
-    }
-    if not ways:
-        return
-    beside = axes.twinx()
-    for (inner, way), dashes in zip(ways.items(), ("-", "--", "-.", ":") * len(ways), strict=False):
-        label = f"{inner} drawn out"
-        beside.plot(
-            pen.time, way, color=theme.INK, linewidth=0.9, linestyle=dashes, alpha=0.5, label=label
-        )
-    beside.set_ylabel("drawn out (m)")
-    beside.grid(visible=False)
-    beside.spines["right"].set_visible(True)
 
 
 def drives(pen: Pen) -> list[Figure]:

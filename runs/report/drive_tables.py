@@ -7,7 +7,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from runs.pipeline.results import Results
-from runs.report.drive_figures import driven
+from runs.report.drawn_axis import driven
 from runs.report.tables import Column, Table
 
 PER_KILO = 1.0e-3

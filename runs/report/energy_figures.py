@@ -8,6 +8,7 @@ import numpy as np
 from dynamics.energy import DRAWN_ENERGIES, energy_residual
 from geometry.arrays import Array
 from runs.report import theme
+from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import Figure, Pen, highest, new_sheet
 
 # Of the numbers that an energy is the sum of.
@@ -45,6 +46,7 @@ def energies(pen: Pen) -> list[Figure]:
     total = f"start and {of}" if start else of
     axes.plot(pen.time, start + work, color=theme.INK, linewidth=1.3, label=total)
     axes.set(xlabel="time (s)", ylabel="energy (J)", xlim=(0.0, pen.time[-1]))
+    drawn_axis(pen, axes)
     losses = " and ".join(_named(energy) for energy in lost)
     hatched = f"; hatched: {losses}" if lost else ""
     more = " and what was there at the start" if start else ""

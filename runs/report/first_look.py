@@ -26,6 +26,7 @@ from runs.report.answer_tables import (
     play_of,
     read_first,
 )
+from runs.report.drawn_axis import driven
 from runs.report.figure_context import farthest
 from runs.report.pad_tables import PressedPad, pressed_pads
 from runs.report.tables import Column, Table
@@ -51,8 +52,10 @@ def first_table(results: Results) -> Table | None:
     questions: dict[str, Callable[[str], str]] = {
         "Tip at rest, t = 0, mm": lambda name: _at_rest(own[name].rests[:1]),
         "Tip at rest, largest loads, mm": lambda name: _at_rest(own[name].rests[1:]),
+        "Tip at rest where it is drawn to, mm": lambda name: _at_rest(own[name].drawn),
         "Tip in motion, farthest, mm": lambda name: _farthest(own[name], tips[name]),
         "Tip travels, mm": lambda name: _travels(tips[name]),
+        "Tip swings while it is drawn, mm": lambda name: _swings(own[name]),
         "Tip to the sides, farthest, mm": lambda name: _largest_of(own[name], "lateral deflection"),
         "First frequency, Hz": lambda name: _frequency(own[name]),
         "One swing takes, s": lambda name: _period(own[name]),
@@ -247,7 +250,10 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Tip travels, mm" in told:
         yield "It travels: the farthest from where it is at t = 0."
     if any("×" in cell for cells in told.values() for cell in cells):
-        yield "×: so many times what is at rest under the largest loads."
+        drawn = ", wherever it is drawn to" if driven(results.case) else ""
+        yield f"×: so many times what is at rest under the largest loads{drawn}."
+    if "Tip swings while it is drawn, mm" in told:
+        yield "It swings: about where it would rest; standing, where drives begin and end."
     if "Swings fade to a tenth in, s" in told:
         ratio = number(PERCENT * results.case.damping.modal)
         yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} % alone."
@@ -292,6 +298,14 @@ def _farthest(own: ModelAnswers, tip: Array) -> str:
 def _travels(tip: Array) -> str:
     """From where it starts; what starts in the straight line has no need of it."""
     return fixed(farthest(tip - tip[0]), 1, MILLI) if tip[0] else NONE
+
+
+def _swings(own: ModelAnswers) -> str:
+    """About where it would rest, and the same boom where drives begin and end."""
+    if (swing := own.swing) is None:
+        return NONE
+    ends = [fixed(end, 1, MILLI) for end in (swing.where_begun, swing.where_ended)]
+    return f"{fixed(swing.tip, 1, MILLI)}\nstanding {' and '.join(ends)}"
 
 
 def _largest_of(own: ModelAnswers, what: str) -> str:

@@ -13,6 +13,7 @@ from geometry.typography import signed
 from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
 from runs.report import theme
 from runs.report.charts import Chart, Curve
+from runs.report.drawn_axis import of_start
 from runs.report.figure_context import MILLI, Figure, Pen, new_sheet
 
 # Quantity → heading of its panel, and the factor to its unit.
@@ -55,7 +56,7 @@ def at_rest(pen: Pen) -> list[Figure]:
     caption = (
         "At rest under the largest loads: the line of the boom, and what its sections carry. "
         "Normal forces pull where they are positive, moments where they are pull at the top; "
-        "where segments overlap each has its own."
+        "where segments overlap each has its own." + of_start(pen.case)
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     title = f"At rest under the largest loads: the tip at {signed(f'{MILLI * far:.1f}')} mm"
@@ -80,7 +81,7 @@ def envelopes(pen: Pen) -> list[Figure]:
         return []
     caption = (
         "Between what the section forces of each segment are over the run: the lowest and the "
-        "highest at every place, whenever they are."
+        "highest at every place, whenever they are." + of_start(pen.case)
     )
     return [_stacked(pen, lines, "envelopes", "Section forces in motion", caption)]
 

@@ -21,6 +21,7 @@ from runs.pipeline.results import Results
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
+from runs.report.first_look import first_table
 from runs.sweep.points import plan
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
@@ -174,6 +175,7 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     assert float(data["drive_friction"].max()) > 100.0
     assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4
     _check_table(results, data)
+    _check_rests(results)
     _check_swings(results)
     _check_figures(draw(results, tmp_path))
 
@@ -190,6 +192,28 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
     assert cells["at most\nkN"] == [pytest.approx(force.max())]
     assert cells["power, at most\nkW"] == [pytest.approx(power.max())]
     assert cells["work\nkJ"] == [pytest.approx(1.0e-3 * power.sum())]
+
+
+def _check_rests(results: Results) -> None:
+    """Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, what lifts the tip,
+    10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm."""
+    answers, table = results.summary.answers, first_table(results)
+    assert answers is not None
+    own = answers.models["kantorovich-5"]
+    (begun,), (ended,) = own.rests, own.drawn
+    assert (begun.time, ended.time) == pytest.approx((0.0, 0.2))
+    assert ended.tilts[0].rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
+    assert ended.tilts[0].tip == pytest.approx(-0.007 - 2.2e-6 + 10.0 * 0.014004956, abs=1e-7)
+    assert [one.force for one in ended.stations] == pytest.approx([-2202.8, 2753.5], rel=1e-4)
+    assert own.moved is not None
+    assert own.moved.peaks[0].at_rest == ended.tip
+    assert table is not None
+    cells = dict(zip(table.columns[0].cells, table.columns[1].cells, strict=True))
+    assert cells["Tip at rest, t = 0, mm"] == f"{1e3 * begun.tip:.1f}"
+    assert cells["Tip at rest where it is drawn to, mm"] == f"{1e3 * ended.tip:.1f}"
+    # Both stand for too short to swing farther than they start.
+    standing = f"standing {1e3 * begun.tip:.1f} and {1e3 * ended.tip:.1f}"
+    assert str(cells["Tip swings while it is drawn, mm"]).splitlines()[1] == standing
 
 
 def _check_swings(results: Results) -> None:

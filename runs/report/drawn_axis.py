@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far segments are drawn out, beside what a figure shows over time."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+
+from runs.case.schema import Case
+from runs.report import theme
+from runs.report.figure_context import Pen
+
+
+def driven(case: Case) -> dict[str, str]:
+    """Of each joint with a drive, what stands behind the names of its results, and the segment."""
+    joints = enumerate(case.joints, start=1)
+    return {
+        "" if number == 1 else f"-{number}": joint.inner
+        for number, joint in joints
+        if joint.drive is not None
+    }
+
+
+def drawn_axis(pen: Pen, axes: Axes) -> None:
+    """How far segments are drawn out, on a second axis to the right."""
+    ways = {
+        inner: pen.of(pen.models[0], f"drawn_out{suffix}")
+        for suffix, inner in driven(pen.case).items()
+        if f"drawn_out{suffix}" in pen.data
+    }
+    if not ways:
+        return
+    beside = axes.twinx()
+    for (inner, way), dashes in zip(ways.items(), ("-", "--", "-.", ":") * len(ways), strict=False):
+        label = f"{inner} drawn out"
+        beside.plot(
+            pen.time, way, color=theme.INK, linewidth=0.9, linestyle=dashes, alpha=0.5, label=label
+        )
+    beside.set_ylabel("drawn out (m)")
+    beside.grid(visible=False)
+    beside.spines["right"].set_visible(True)
+
+
+def of_start(case: Case) -> str:
+    """A sentence for what stands over x, or is named by it; empty where nothing is drawn out."""
+    return " Places are those of t = 0, and go with their segments." if driven(case) else ""
