@@ -142,6 +142,14 @@ class PolygonSection(Section):
         """The section lying on its side, y and z exchanged."""
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
+    @property
+    def in_order(self) -> PolygonSection:
+        """Itself, its corners in the order of its plates, as those of one that it tapers to are."""
+        corners, thicknesses = self._upwards
+        return PolygonSection(
+            tuple((float(y), float(z)) for y, z in corners), tuple(map(float, thicknesses))
+        )
+
     @cached_property
     def _upwards(self) -> tuple[Array, Array]:
         """Corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
@@ -175,7 +183,7 @@ def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> S
     """
     section = PolygonSection(tuple(corners), tuple(thicknesses))
     if len(section.plates) != 4 or len(section.faces) != 4:
-        return section
+        return section.in_order
     bottom, right, top, left = (plate.thickness for plate in section.plates)
     return UnequalBox(section.size("z"), section.size("y"), top, bottom, right, left)
 

@@ -13,6 +13,7 @@ from geometry.arrays import Array
 from geometry.polygon import PolygonSection, closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
+from geometry.taper import between, check_alike
 from geometry.unequal_box import UnequalBox
 
 TRAPEZOID = PolygonSection(
@@ -57,6 +58,21 @@ def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, 
         assert face[:3] == one[:3]
         assert face[3:] == pytest.approx(one[3:], abs=1e-15)
     assert str(closed_polygon(polygon.corners, polygon.thicknesses)) == str(box)
+
+
+def test_it_tapers_wherever_its_corners_begin() -> None:
+    """Reference: by hand. Between a section and itself, its corners listed from another one and the
+    other way around, all are that section."""
+    corners = ((-0.1, -0.25), (0.1, -0.25), (0.2, 0.0), (0.1, 0.25), (-0.1, 0.25), (-0.2, 0.0))
+    thick = (0.008, 0.006, 0.006, 0.009, 0.006, 0.006)
+    tail = closed_polygon(corners, thick)
+    for head in (
+        closed_polygon(corners[1:] + corners[:1], thick[1:] + thick[:1]),
+        closed_polygon(corners[::-1], (*thick[-2::-1], thick[-1])),
+    ):
+        check_alike(tail, head)
+        for part in (0.0, 0.3, 1.0):
+            assert between(tail, head, part).plates == tail.plates
 
 
 def test_an_upright_rectangle_is_a_box() -> None:
