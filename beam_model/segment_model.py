@@ -65,7 +65,7 @@ def gap_system(
     """
     modes = BoomModes(boom, models)
     rows_at = partial(_rows, boom, modes, {"z": laws, "y": lateral_laws}, touch)
-    rows = rows_at([0.0] * len(boom.joints))
+    rows = rows_at({})
     members = [_Member(modes, number) for number in range(len(models))]
     system = rows.system(
         lambda row: row,
@@ -93,12 +93,15 @@ def _rows(
     modes: BoomModes,
     laws: Mapping[Direction, Sequence[ContactLaw]],
     touch: Touch,
-    ways: Sequence[float],
+    ways: Mapping[int, float],
 ) -> GapBuilder[Array]:
-    """What touches, rubs and drags where each joint is drawn out by its way in m."""
+    """What touches, rubs and drags where joints are drawn out by their ways in m."""
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
-        law, (on_outer, on_inner) = laws[pad.direction][pad.number], pad.ways(ways[pad.number])
+        law, (on_outer, on_inner) = (
+            laws[pad.direction][pad.number],
+            pad.ways(ways.get(pad.number, 0.0)),
+        )
         pressed, slid = touch.x(pad)
         read = partial(_relative, modes, pad)
         points_of = touch.offsets(pad), (pad.inner, pad.outer)
@@ -110,7 +113,7 @@ def _rows(
         rows.drag(pad.station, pad.joint.dashpot, points)
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
-        way = sum(ways[number] for number in drives_below(boom.joints, stop.segment))
+        way = sum(ways.get(number, 0.0) for number in drives_below(boom.joints, stop.segment))
         row = modes.displacement(stop.segment, stop.x - way, "z")
         rows.stop(station, stop, [(side, 1.0, row) for side in touch.sides])
     return rows

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import eigh
 
-from dynamics.arrays import Array
+from dynamics.arrays import Array, Indices
 from dynamics.gap_system import GapSystem, Observer
 
 # Blocks Ω⁻²ᵏ Bᵀ of what is pushed.
@@ -44,17 +44,31 @@ def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
     count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
     moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
     slow, fast = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
-    omega2 = system.omega2[fast]
+    omega2, shapes = fewer(system.omega2, pushes, slow, fast, moments)
+    return _projected(system, omega2, shapes), shapes
+
+
+def fewer(
+    omega2: Array, pushes: Array, slow: Indices, fast: Indices, moments: int
+) -> tuple[Array, Array]:
+    """(num_shapes,) ω² and (num_modes, num_shapes) of slow modes, and of what else is pushed.
+
+    Args:
+        omega2: (num_modes,) in rad²/s², positive of the fast ones.
+        pushes: (num_pushes, num_modes) that the fast modes answer by few of their motions.
+        slow, fast: positions of modes.
+        moments: of the fast ones' answer at rest that are kept.
+    """
+    elastic = omega2[fast, None]
     blocks = [_independent(pushes[:, fast].T)]
     for _ in range(moments):
-        blocks.append(_independent(blocks[-1] / omega2[:, None]))
+        blocks.append(_independent(blocks[-1] / elastic))
     basis = _independent(np.hstack(blocks[1:]))
-    stiffness, turn = eigh(basis.T @ (omega2[:, None] * basis))
-    shapes = np.zeros((system.num_modes, slow.size + stiffness.size))
+    stiffness, turn = eigh(basis.T @ (elastic * basis))
+    shapes = np.zeros((omega2.size, slow.size + stiffness.size))
     shapes[slow, np.arange(slow.size)] = 1.0
     shapes[fast, slow.size :] = basis @ turn
-    few = _projected(system, np.concatenate([system.omega2[slow], stiffness]), shapes)
-    return few, shapes
+    return np.concatenate([omega2[slow], stiffness]), shapes
 
 
 def _pushes(system: GapSystem) -> Array:

@@ -18,6 +18,7 @@ from dynamics.contact import ContactLaw, PowerContact
 from dynamics.excitation import Excitation, History, Released, Thrown
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.travel import KINDS, Kind
 
 R = TypeVar("R")
 
@@ -153,6 +154,30 @@ class GapBuilder(Generic[R]):
     def dragged(self) -> list[R]:
         """All that dashpots read."""
         return [reading for dashpot in self.dashpots.values() for _, reading in dashpot.parts]
+
+    def moving(self, stations: Sequence[int]) -> list[tuple[Kind, int]]:
+        """Kinds and positions of the rows at some stations, as a gap system stacks them."""
+        where = (
+            [contact.station for contact in self.contacts],
+            [friction.law.station for friction in self.frictions],
+            list(self.dashpots),
+        )
+        return [
+            (kind, position)
+            for kind, of_rows in zip(KINDS, where, strict=True)
+            for position, station in enumerate(of_rows)
+            if station in stations
+        ]
+
+    def some_rows(self, moving: Sequence[tuple[Kind, int]], read: Callable[[R], Array]) -> Array:
+        """(num_moving, num_modes) rows of :meth:`moving`, each reading by its row."""
+        dragged = self.dashpot_rows(read) if any(kind == "dashpots" for kind, _ in moving) else []
+        of_kind: dict[Kind, Callable[[int], Array]] = {
+            "rows": lambda position: read(self.contacts[position].reading),
+            "friction_rows": lambda position: read(self.frictions[position].reading),
+            "dashpots": lambda position: dragged[position],
+        }
+        return np.array([of_kind[kind](position) for kind, position in moving])
 
     def dashpot_rows(self, read: Callable[[R], Array]) -> list[Array]:
         """(num_modes,) of the dashpots across stations, in 1/√s, by the rows of what they read."""

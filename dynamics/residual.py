@@ -56,17 +56,28 @@ def with_springs(system: GapSystem, residual: Array) -> GapSystem:
     kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
     spring = 2.0 * np.pi * SPRING_FREQUENCY
     rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
+    return with_coordinates(system, np.full(rows.shape[1], spring**2), rows)
+
+
+def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
+    """The system with coordinates that contacts, friction and dashpots alone move.
+
+    Args:
+        system: none of its rows moves.
+        omega2: (num_added,) in rad²/s².
+        rows: (num_resisting, num_added) in 1/√kg, of dashpots in 1/√s.
+    """
     touching, rubbing, dragged = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])
     )
-    still = np.zeros(rows.shape[1])
+    still = np.zeros(omega2.size)
 
     def beside(row: Array) -> Array:
         return np.concatenate([row, still])
 
     return replace(
         system,
-        omega2=np.concatenate([system.omega2, still + spring**2]),
+        omega2=np.concatenate([system.omega2, omega2]),
         load=beside(system.load),
         rows=np.hstack([system.rows, touching]),
         friction_rows=np.hstack([system.friction_rows, rubbing]),

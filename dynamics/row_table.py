@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from dynamics.arrays import Array
 
@@ -79,6 +80,17 @@ class RowTable:
         ]
         knots = np.array([*(start for start, _ in pieces), breaks[-1]])
         return cls(knots, np.array([cubic for _, cubic in pieces]))
+
+    @classmethod
+    def through(cls, knots: Array, rows: Array) -> RowTable:
+        """The spline through rows (num_knots, num_rows, num_modes), twice smooth.
+
+        Its third derivative does not jump at the first knot inside nor at the last one.
+        """
+        lengths = np.diff(knots)[:, None, None]
+        powers = CubicSpline(knots, rows).c[::-1]
+        pieces = [cubic * lengths**power for power, cubic in enumerate(powers)]
+        return cls(knots, np.ascontiguousarray(np.stack(pieces, axis=1)))
 
     def __call__(self, s: float) -> Array:
         """(num_rows, num_modes) at s in m."""

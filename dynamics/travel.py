@@ -9,6 +9,7 @@ another place as it is drawn.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -188,6 +189,18 @@ class Travel:
         start = float(self.history(np.zeros(())))
         if abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")
+
+    @classmethod
+    def of(
+        cls,
+        histories: Sequence[History],
+        table: RowTable,
+        moving: Sequence[tuple[Kind, int]],
+        suffix: str | None,
+    ) -> Travel:
+        """What several histories move together, or one."""
+        history = histories[0] if len(histories) == 1 else Together(tuple(histories))
+        return cls(history, table, tuple(moving), suffix)
 
     @property
     def moves(self) -> bool:

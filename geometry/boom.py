@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from geometry.cylinder import Cylinder, forces
-from geometry.drawing import check_drives
+from geometry.drawing import check_drives, drives_of, places, reach
 from geometry.fault import BoomError
 from geometry.fit import check_flats, check_room
 from geometry.holding import check_held
@@ -136,6 +136,11 @@ class Boom:
         return replace(self, joints=tied)
 
     @property
+    def driven(self) -> bool:
+        """Whether something is drawn out or in while it moves."""
+        return any(joint.drive is not None for joint in self.joints)
+
+    @property
     def compressed(self) -> bool:
         """Whether a segment carries an axial force."""
         return any(segment.compression for segment in self.segments)
@@ -167,6 +172,20 @@ class Boom:
             if not joint.tied
             for x in joint.stations
         ]
+
+    def drawn_over(self, segment: int) -> tuple[float, ...]:
+        """x on a segment to which stations come that move along it, or leave as they do, rising."""
+        found = {
+            place[joint.inner == segment]
+            for joint in self.joints
+            if joint.drive is not None and segment in (joint.outer, joint.inner)
+            for way in (0.0, *joint.drive.reach)
+            for place in places(joint, way)
+        }
+        if drives := drives_of(self.joints, segment):
+            moved = [stop.x for stop in self.stops if stop.segment == segment]
+            found |= {x - way for x in moved for way in reach(drives)}
+        return tuple(sorted(found))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """x of all places at which something acts on a segment, rising.

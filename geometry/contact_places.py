@@ -10,7 +10,7 @@ patches beside the corners.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -23,8 +23,8 @@ from geometry.segment import Segment
 
 ContactLine = Literal["near webs", "across", "surface"]
 
-# What stations press of a segment's corners, over the overlap, and stops, over the height of the
-# box: about 0.1 m in the paper's boom, as slide pads are long.
+# What stations press of a segment's corners, over the least overlap, and stops, over the height of
+# the box: about 0.1 m in the paper's boom, as slide pads are long.
 _OF_OVERLAP = 0.1
 _OF_HEIGHT = 0.2
 
@@ -72,6 +72,12 @@ class Stretch:
         start = min(max(station - 0.5 * length, segment.start), segment.end - length)
         return cls(start, start + length, station)
 
+    def moved(self, segment: Segment, by: float) -> Stretch:
+        """The same length of a segment, so many m further."""
+        if by == 0.0:
+            return self
+        return Stretch.on(segment, self.station + by, self.end - self.start)
+
     def density(self, x: Array) -> Array:
         """(num_places,) a unit force per length in 1/m.
 
@@ -104,6 +110,7 @@ class Pad:
         raised: how far it stands out beyond the joint's clearance in m.
         across: how far the middle of what it covers is from its points, across its wall, in m.
         carrier: the segment on which it sits as the joint is drawn out; None where it is not.
+        moved: m by which it has moved along the inner and the outer segment.
     """
 
     station: int
@@ -122,6 +129,7 @@ class Pad:
     raised: float = 0.0
     across: float = 0.0
     carrier: Carrier | None = None
+    moved: tuple[float, float] = (0.0, 0.0)
 
     @property
     def half(self) -> int:
@@ -137,6 +145,20 @@ class Pad:
         """By how many m it moves along the outer and the inner segment, drawn out by ``way``."""
         on_outer = way if self.carrier == "inner" else 0.0
         return on_outer, -way if self.carrier == "outer" else 0.0
+
+    def drawn(self, boom: Boom, way: float) -> Pad:
+        """The pad where its joint is drawn out by ``way`` in m."""
+        on_outer, on_inner = self.ways(way)
+        inner, outer = (
+            stretch.moved(boom.segments[number], by)
+            for stretch, number, by in zip(
+                self.pressed,
+                (self.joint.inner, self.joint.outer),
+                (on_inner, on_outer),
+                strict=True,
+            )
+        )
+        return replace(self, pressed=(inner, outer), moved=(on_inner, on_outer))
 
     @property
     def slid(self) -> float:
@@ -165,6 +187,11 @@ class Rest:
     stop: Stop
     pressed: Stretch
 
+    def drawn(self, boom: Boom, way: float) -> Rest:
+        """Where its segment is drawn out by ``way`` in m."""
+        pressed = self.pressed.moved(boom.segments[self.stop.segment], -way)
+        return replace(self, pressed=pressed)
+
 
 def rests(boom: Boom) -> list[Rest]:
     """Every stop of a boom whose sections are known."""
@@ -192,7 +219,8 @@ def pads(boom: Boom) -> list[Pad]:
             if joint.tied:
                 continue
             start, end = boom.overlap(joint)
-            length = joint.contact_length or _OF_OVERLAP * (end - start)
+            drawn = 0.0 if joint.drive is None else joint.drive.reach[1]
+            length = joint.contact_length or _OF_OVERLAP * (end - start - drawn)
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None

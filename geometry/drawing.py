@@ -3,18 +3,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geometry.drive import Drive
 from geometry.fault import BoomError
 from geometry.joint import Joint
 from geometry.segment import SAME_PLACE, Segment
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """What the drives of some joints move together.
+
+    Args:
+        joints: their positions in ``Boom.joints``, from the base.
+        drives: theirs.
+        stations: positions in ``Boom.stations`` of what moves.
+    """
+
+    joints: tuple[int, ...]
+    drives: tuple[Drive, ...]
+    stations: tuple[int, ...]
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """How far in and out all of them come together, in m."""
+        return reach(self.drives)
+
+    @property
+    def suffix(self) -> str | None:
+        """Behind the names of results; nothing where several move together."""
+        if len(self.joints) > 1:
+            return None
+        return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
+
+    def ways(self, way: float) -> dict[int, float]:
+        """Position of a joint → m; only the sum of several tells where stops are."""
+        return {self.joints[0]: way}
+
+
+def courses(boom: Boom) -> list[Course]:
+    """What drives move: the stations of each joint that has one, several together for stops."""
+    moved: dict[tuple[int, ...], list[int]] = {}
+    for station, joints in _driven_stations(boom):
+        if joints:
+            moved.setdefault(joints, []).append(station)
+    return [
+        Course(
+            joints,
+            tuple(drive for n in joints if (drive := boom.joints[n].drive) is not None),
+            tuple(stations),
+        )
+        for joints, stations in moved.items()
+    ]
+
+
+def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
+    """Each station, and positions of the joints whose drives move what is read there."""
+    station = 0
+    for _ in boom.directions:
+        for number, joint in enumerate(boom.joints):
+            for _ in () if joint.tied else joint.stations:
+                yield station, () if joint.drive is None else (number,)
+                station += 1
+    for station, stop in boom.numbered_stops:
+        yield station, drives_below(boom.joints, stop.segment)
 
 
 def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
@@ -28,8 +89,18 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
 
 def drawn(boom: Boom, segment: int, time: float) -> float:
     """How far in m a segment has moved along since the start, at a time in s."""
-    drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
-    return sum(float(drive.history(np.array(time))) for drive in drives if drive is not None)
+    return sum(float(one.history(np.array(time))) for one in drives_of(boom.joints, segment))
+
+
+def drives_of(joints: Sequence[Joint], segment: int) -> list[Drive]:
+    """The drives between a segment and the ground, from the base."""
+    drives = (joints[number].drive for number in drives_below(joints, segment))
+    return [drive for drive in drives if drive is not None]
+
+
+def reach(drives: Sequence[Drive]) -> tuple[float, float]:
+    """How far in and out they come together, in m."""
+    return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:
@@ -142,9 +213,7 @@ def _check_free(boom: Boom, number: int) -> None:
             "that stays, or leave drive out",
         )
     for k, stop in enumerate(boom.stops, start=1):
-        drives = [boom.joints[j].drive for j in drives_below(boom.joints, number)]
-        ways = [drive.reach for drive in drives if drive is not None]
-        low, high = (sum(way[end] for way in ways) for end in (0, 1))
+        low, high = reach(drives_of(boom.joints, number))
         if stop.segment == number and not (
             segment.holds(stop.x - low) and segment.holds(stop.x - high)
         ):

@@ -9,12 +9,13 @@ without end, and its error goes with the square of the size.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from geometry.boom import Boom
 from geometry.contact_places import ContactLine, Pad, Stretch, pads, rests
+from geometry.drawing import drives_of, reach
 from geometry.grading import Spot
 from geometry.section import Direction, Face, Section
 
@@ -63,13 +64,16 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
     resting, touching = rests(boom), pads(boom)
     for rest in resting:
         if rest.stop.segment == number:
+            drawn = [rest.drawn(boom, way) for way in reach(drives_of(boom.joints, number))]
             for face in _faces(section, "z"):
-                yield _corner(rest.pressed, face)
+                yield _swept(_corner(one.pressed, face) for one in drawn)
     for pad in touching:
-        for end, stretch in zip((pad.joint.inner, pad.joint.outer), pad.pressed, strict=True):
-            if end == number:
+        over = (0.0, 0.0) if pad.joint.drive is None else pad.joint.drive.reach
+        for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
+            if of == number:
                 for face in _faces(section, pad.direction):
-                    yield _pressed(boom, pad, stretch, face, line)
+                    drawn_pads = (pad.drawn(boom, way) for way in over)
+                    yield _swept(_pressed(boom, one, end, face, line) for one in drawn_pads)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -107,17 +111,24 @@ def _corner(stretch: Stretch, face: Face) -> _Measured:
     return low, high, size, _CORNER_GROWTH
 
 
-def _pressed(boom: Boom, pad: Pad, stretch: Stretch, face: Face, line: ContactLine) -> _Measured:
-    """What a pad presses of a segment's face."""
+def _swept(places: Iterable[_Measured]) -> _Measured:
+    """From the first to the last of places that differ in x alone."""
+    lows, highs, sizes, growths = zip(*places, strict=True)
+    return min(lows), max(highs), sizes[0], growths[0]
+
+
+def _pressed(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Measured:
+    """What a pad presses of the inner (``end`` 0) or of the outer segment's face."""
     covered = pad.patch
     if covered is None:
-        low, high, size, growth = _corner(stretch, face)
+        low, high, size, growth = _corner(pad.pressed[end], face)
         return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
     size = _PAD * min(covered.end - covered.start, covered.width)
     near, far = covered.across(
         boom.segments[pad.joint.inner].widest.face(face.direction, face.side)
     )
     low, high = (
-        _place(face, x, across) for x, across in ((covered.start, near), (covered.end, far))
+        _place(face, x + pad.moved[end], across)
+        for x, across in ((covered.start, near), (covered.end, far))
     )
     return low, high, size, _PAD_GROWTH

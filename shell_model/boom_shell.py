@@ -25,7 +25,7 @@ from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_seg
 from geometry.observation import Quantity, Read
 from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
-from shell_model.contact.rows import gap_rows, ties
+from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.cross_section import Outline, Reading, Row
 from shell_model.reduction.krylov import KrylovOptions
@@ -103,7 +103,8 @@ class BoomShell:
         comm: the ranks that share it.
         shells: of its segments.
         stations: x in m and direction of each.
-        rows: that press, rub and drag.
+        touching: what may press, rub and drag wherever joints are drawn to.
+        rows: that do at t = 0.
         ties: what stays at zero.
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
         loads: those that follow a history, and (num_owned,) what they push.
@@ -114,6 +115,7 @@ class BoomShell:
     comm: MPI.Comm
     shells: Sequence[SegmentShell]
     stations: Sequence[tuple[float, Direction]]
+    touching: Touching
     rows: GapBuilder[Reading]
     ties: Sequence[Reading]
     own_loads: Sequence[Array]
@@ -134,10 +136,14 @@ class BoomShell:
 
     def forces(self, number: int) -> Array:
         """(num_owned, num_forces) all that acts on a segment, contacts first."""
-        own = [push for load, push in self.loads if load.segment == number]
         dragged = self.columns(number, self.rows.dragged)
+        return np.column_stack([self.joined(number), dragged, self.pushed(number)])
+
+    def pushed(self, number: int) -> Array:
+        """(num_owned, num_pushes) what acts on a segment in its own place."""
+        own = [push for load, push in self.loads if load.segment == number]
         own += [line.push for line in self.lines if line.segment == number]
-        return np.column_stack([self.joined(number), dragged, self.own_loads[number], *own])
+        return np.column_stack([self.own_loads[number], *own])
 
     def joined(self, number: int) -> Array:
         """(num_owned, num_rows) what contacts, friction and ties read of a segment."""
@@ -172,11 +178,13 @@ def assemble_boom(
     watch = stages or Stages()
     shells = assemble_segments(boom, options, comm, watch)
     with watch.stage("rows"):
+        touching = Touching.of(boom, shells, laws, options.contact_line, options.surface)
         return BoomShell(
             comm=comm,
             shells=shells,
             stations=boom.stations,
-            rows=gap_rows(boom, shells, laws, options.contact_line, options.surface),
+            touching=touching,
+            rows=touching.rows({}),
             ties=ties(boom, shells),
             own_loads=[shell.own_load(boom.directions) for shell in shells],
             loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
@@ -215,6 +223,8 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     seen = (place.x for place in boom.observations if place.segment == number)
     breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
+    drawn = boom.drawn_over(number)
+    breaks |= {f"drawn-{k}": x for k, x in enumerate(drawn, start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.widest, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,7 @@ from shell_model.contact.local_compliance import (
 )
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
+from shell_model.drawn_shell import MOMENTS, DrawnShell
 from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
@@ -94,21 +96,22 @@ def reduce_boom(
     stages = Stages(progress)
     planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     full = assemble_boom(boom, planes, options, comm, stages)
-    reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
-    coordinates = BoomCoordinates(comm, full.shells, reduced, full.ties, full.lines)
-    with stages.stage("rows"):
-        own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
-        system = _gap_system(full, coordinates, own_loads)
+    reduced, coordinates, system, pressed, lost = (_drawn if boom.driven else _resting)(
+        boom, full, options, stages
+    )
+    # Springs that go along with pads move nothing else.
+    springs = system.num_modes - coordinates.omega2.size
+    own_loads = np.pad(_own_loads(full, coordinates), ((0, 0), (0, springs)))
     with stages.stage("fields"):
         fields = gather_fields(full.shells, reduced)
         if fields is not None:
-            fields = coordinates.of_fields(fields)
+            fields = coordinates.of_fields(fields).pad({"mode": (0, springs)}, constant_values=0)
     with stages.stage("mesh error"):
         coarse = assemble_boom(boom, planes, options.coarser, comm)
         local, coarse_local = (
             local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
             for whole, rows in (
-                (_compliance(full, reduced), full.rows.contacts),
+                (pressed, full.rows.contacts),
                 (full_compliance(coarse.shells, coarse.rows.contacts), coarse.rows.contacts),
             )
         )
@@ -120,7 +123,7 @@ def reduce_boom(
         num_dofs=full.num_dofs,
         fields=fields,
         errors={
-            "contact_compliance": _largest(_lost_compliance(full, reduced) / local),
+            "contact_compliance": _largest(lost / local),
             "readings": max(segment.reading_error for segment in reduced),
             "frequency_limit_in_hz": min(segment.frequency_limit for segment in reduced),
         },
@@ -134,26 +137,77 @@ def reduce_boom(
     )
 
 
-def _reduced(full: BoomShell, number: int, options: ShellOptions, stages: Stages) -> ReducedSegment:
-    """A segment by the motions that its forces excite and its observers read."""
+class _Reduction(NamedTuple):
+    """A boom in few coordinates.
+
+    Args:
+        segments: in theirs.
+        coordinates: of all of it, less springs.
+        system: which these are.
+        compliance: (num_contacts, num_contacts) of the contacts in m/N.
+        lost: (num_contacts,) the most by which they give way wrongly in m/N.
+    """
+
+    segments: Sequence[ReducedSegment]
+    coordinates: BoomCoordinates
+    system: GapSystem
+    compliance: Array
+    lost: Array
+
+
+def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
+    """Of a boom whose pads stay where they are."""
+    reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
+    coordinates = BoomCoordinates(full.comm, full.shells, reduced, full.ties, full.lines)
+    with stages.stage("rows"):
+        system = _gap_system(full, coordinates)
+    lost = _lost_compliance(full, reduced)
+    return _Reduction(reduced, coordinates, system, _compliance(full, reduced), lost)
+
+
+def _drawn(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
+    """Of a boom that is drawn out."""
+    fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
+
+    def reduce(number: int, columns: Array) -> ReducedSegment:
+        return _reduced(full, number, fewer, stages, columns)
+
+    drawn = DrawnShell(boom, full, options.mesh_size, reduce, options.krylov.tests[0])
+    coordinates = BoomCoordinates(full.comm, full.shells, drawn.reduced, full.ties, full.lines)
+    with stages.stage("rows"):
+        system = drawn.with_springs(_gap_system(full, coordinates), coordinates)
+    pressed = compliance(system.omega2, system.rows)
+    return _Reduction(drawn.reduced, coordinates, system, pressed, drawn.lost(len(system.laws)))
+
+
+def _reduced(
+    full: BoomShell, number: int, options: ShellOptions, stages: Stages, *beside: Array
+) -> ReducedSegment:
+    """A segment by the motions that its forces excite, and others, and its observers read."""
     shell, krylov, joined = full.shells[number], options.krylov, full.joined(number)
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as tell:
-        own = reduce_segment(shell, full.forces(number), krylov, tell, readings=observed)
+        forces = np.hstack([full.forces(number), *beside])
+        own = reduce_segment(shell, forces, krylov, tell, readings=observed)
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own
 
 
-def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
+def _own_loads(full: BoomShell, coordinates: BoomCoordinates) -> Array:
+    """(num_segments, num_modes) what each segment's own loads push, in N/√kg."""
+    return np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
+
+
+def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
     """The boom in its coordinates."""
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
-        own_loads.sum(axis=0),
+        _own_loads(full, coordinates).sum(axis=0),
         full.stations,
         full.observed,
         [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],

@@ -90,16 +90,17 @@ def squeezed(contact: Contact, part: float) -> Array:
     """(num_stations,) local compliance in m/N, edges so many times as long as the default ones."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
-    from shell_model.contact.rows import gap_rows
+    from shell_model.contact.rows import Touching
 
     boom = build_boom(contact.case)
     model = finer(shell_of(contact.case), part)
     options = model.options()
     shells = assemble_segments(boom, options, MPI.COMM_SELF)
     laws = contact_laws(contact.case, model)
-    rows = gap_rows(
+    touching = Touching.of(
         boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
-    ).contacts
+    )
+    rows = touching.rows({}).contacts
     stations = [row.station for row in rows]
     local = local_compliance(full_compliance(shells, rows), [row.law for row in rows], stations)
     _, first = np.unique(stations, return_index=True)

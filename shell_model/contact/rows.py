@@ -10,12 +10,14 @@ leaves the stations to friction.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine, Pad, pads, rests
+from geometry.drawing import drives_below
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.stations import (
     Touch,
@@ -26,51 +28,82 @@ from shell_model.contact.stations import (
     flanges,
     near_webs,
 )
-from shell_model.contact.surface import SurfaceOptions, surface_points
+from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_points import WallPoints
 from shell_model.cross_section import Outline, Reading, Row
 from shell_model.segment_shell import SegmentShell
 
 
-def gap_rows(
-    boom: Boom,
-    shells: Sequence[SegmentShell],
-    laws: Mapping[Direction, Sequence[ContactLaw]],
-    line: ContactLine,
-    surface: SurfaceOptions,
-) -> GapBuilder[Reading]:
-    """Rows of every pad, surface, stop and dashpot. Collective.
+@dataclass(frozen=True, slots=True)
+class Touching:
+    """What may touch, rub and drag of a boom's shells.
 
     Args:
         boom: its joints and stops.
-        shells: of its segments.
         laws: along each direction, one for each joint.
         line: where walls touch.
-        surface: how, where it is the whole overlap.
-
-    Raises:
-        BoomError: the contact line does not suit the boom.
+        corners, walls: of the segments; no walls where nothing reads them.
+        points: of a surface; none unless walls touch there.
     """
-    _check_line(boom, line)
-    places, resting = pads(boom), rests(boom)
-    points = surface_points(boom, shells, laws, surface) if line == "surface" else []
-    rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
-    corners = [CornerLines(shell) for shell in shells]
-    by_points = line == "across" or any(joint.padded for joint in boom.joints)
-    walls = [WallPoints(shell) for shell in shells] if by_points else []
-    touches = [_touch(pad, corners, walls, line) for pad in places]
-    stopped = [flanges(rest, corners[rest.stop.segment]) for rest in resting]
-    for pad, touch in zip(places, touches, strict=True):
-        if line == "surface":
-            pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
-        else:
-            law = laws[pad.direction][pad.number]
-            pressing = rows.press(pad.station, law, touch.points, pad.raised)
-        rows.drag(pad.station, pad.joint.dashpot, touch.points)
-        rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
-    for rest, meeting in zip(resting, stopped, strict=True):
-        rows.stop(rest.station, rest.stop, meeting)
-    return rows
+
+    boom: Boom
+    laws: Mapping[Direction, Sequence[ContactLaw]]
+    line: ContactLine
+    corners: Sequence[CornerLines]
+    walls: Sequence[WallPoints]
+    points: Sequence[SurfacePoint]
+
+    @classmethod
+    def of(
+        cls,
+        boom: Boom,
+        shells: Sequence[SegmentShell],
+        laws: Mapping[Direction, Sequence[ContactLaw]],
+        line: ContactLine,
+        surface: SurfaceOptions,
+    ) -> Touching:
+        """Of shells. Collective.
+
+        Args:
+            boom, laws, line: see above.
+            shells: of its segments.
+            surface: how, where it is the whole overlap.
+
+        Raises:
+            BoomError: the contact line does not suit the boom.
+        """
+        _check_line(boom, line)
+        points = surface_points(boom, shells, laws, surface) if line == "surface" else []
+        by_points = line == "across" or any(joint.padded for joint in boom.joints)
+        walls = [WallPoints(shell) for shell in shells] if by_points else []
+        return cls(boom, laws, line, [CornerLines(shell) for shell in shells], walls, points)
+
+    def rows(self, ways: Mapping[int, float]) -> GapBuilder[Reading]:
+        """Rows of every pad, surface, stop and dashpot. Collective.
+
+        Args:
+            ways: position of a joint → m by which it is drawn out; not at all unless given.
+        """
+        boom, points = self.boom, self.points
+        rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])
+        for pad in pads(boom):
+            touch = _touch(
+                pad.drawn(boom, ways.get(pad.number, 0.0)), self.corners, self.walls, self.line
+            )
+            if self.line == "surface":
+                pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
+            else:
+                law = self.laws[pad.direction][pad.number]
+                pressing = rows.press(pad.station, law, touch.points, pad.raised)
+            rows.drag(pad.station, pad.joint.dashpot, touch.points)
+            rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
+        for rest in rests(boom):
+            segment = rest.stop.segment
+            way = sum(ways.get(number, 0.0) for number in drives_below(boom.joints, segment))
+            rows.stop(
+                rest.station, rest.stop, flanges(rest.drawn(boom, way), self.corners[segment])
+            )
+        return rows
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.contact_places import Pad, Patch, Rest, Stretch
-from geometry.section import Direction, Side
+from geometry.section import Direction, Section, Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
 from shell_model.cross_section import Reading, Row
@@ -50,7 +50,7 @@ def across(pad: Pad, inner: WallPoints, outer: WallPoints) -> Touch:
     points = []
     for side in _SIDES:
         for y, weight in zip(
-            *_half_gauss(inner.segment.section_at(pad.x).face("z", side).width), strict=True
+            *_half_gauss(_touching(pad, inner).face("z", side).width), strict=True
         ):
             rows = (
                 walls.mean(Wall("z", side), *_line(stretch, y), "z")
@@ -111,16 +111,21 @@ def _mean_approach(
 ) -> Reading:
     """Mean of u − w over a patch: read the other way round, a uniform pressure on both walls."""
     x, along = gauss(patch.start, patch.end, _POINTS)
-    near, far = patch.across(inner.segment.section_at(pad.x).face(pad.direction, side))
+    near, far = patch.across(_touching(pad, inner).face(pad.direction, side))
     y, over = gauss(half * near, half * far, _POINTS)
     places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
     weights = np.outer(along, over).ravel()
     wall = Wall(pad.direction, side)
-    return _approach(
-        pad,
-        inner.mean(wall, places, weights, pad.direction),
-        outer.mean(wall, places, weights, pad.direction),
+    rows = (
+        walls.mean(wall, places + np.array([by, 0.0]), weights, pad.direction)
+        for walls, by in zip((inner, outer), pad.moved, strict=True)
     )
+    return _approach(pad, *rows)
+
+
+def _touching(pad: Pad, inner: WallPoints) -> Section:
+    """The section of the inner segment where a pad presses it."""
+    return inner.segment.section_at(pad.x + pad.moved[0])
 
 
 def _sliding_as_its_mean(points: Sequence[tuple[Side, float, Reading]]) -> Touch:

@@ -142,12 +142,21 @@ kind = "finite-element"
         ('stations = ["tail", "head"]', "stations = [5.0, 10.0]",
          "joint[1].stations: 5 m does not tell on which segment the station goes as 'inner' is "
          "drawn; give 'tail' or 'head', or a distance from one"),
-        ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"', 'kind = "shell"',
-         "model[1]: the shell 'kantorovich-5' touches where it is reduced to, and cannot be drawn "
-         "out; leave joint[1].drive out, or run beams and series with play"),
+        ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"',
+         'kind = "shell"\ncontact_line = "surface"',
+         "model[1]: the shell 'kantorovich-5' touches over the whole overlap, which changes as it "
+         "is drawn out; leave contact_line out, or joint[1].drive"),
+        ('kind = "kantorovich"\nterms = [2, 3]\nbase = "as printed"',
+         'kind = "shell"\nmodes = 40',
+         "model[1]: the shell 'kantorovich-5' takes the coordinates that all of its way asks for; "
+         "leave modes out, or joint[1].drive"),
+        ('theory = "timoshenko"',
+         'theory = "timoshenko"\ncalibrated_by = { name = "fine", kind = "shell" }',
+         "model[3]: the springs of 'timoshenko' are those of the place where it rests, and cannot "
+         "be drawn out; leave calibrated_by out, or joint[1].drive"),
         ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\ntied = true',
-         "model[2]: 'beam-fe' is tied, and cannot be drawn out; leave joint[1].drive out, or run "
-         "beams and series with play"),
+         "model[2]: 'beam-fe' is tied, and cannot be drawn out; leave the model out, or "
+         "joint[1].drive"),
         ("[[joint]]", "[gravity]\nangle = 45.0\n\n[[joint]]",
          "joint[1].drive: axial forces change as the boom is drawn out, which no model knows; "
          "leave drive out, or axial and the angle of gravity"),

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from geometry.boom import Boom, PadSize, Support
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import gap_rows
+from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from tests.shell_model.booms import LAW, flat_boom
 from tests.shell_model.conftest import compliance
@@ -38,7 +38,11 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
     """By how much the first station closes under equal forces from above and below, in m/N."""
     options = ShellOptions(0.1, contact_tolerance=tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
-    contacts = gap_rows(boom, shells, {"z": [LAW], "y": ()}, "near webs", SurfaceOptions()).contacts
+    contacts = (
+        Touching.of(boom, shells, {"z": [LAW], "y": ()}, "near webs", SurfaceOptions())
+        .rows({})
+        .contacts
+    )
     up, down = (contact.reading for contact in contacts if contact.station == 0)
     return sum(compliance(shell, up[k] - down[k]) for k, shell in enumerate(shells))
 

@@ -21,7 +21,7 @@ from geometry.contact_places import ContactLine
 from geometry.contact_places import pads as places_of_pads
 from geometry.joint import PadSide
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import gap_rows
+from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_points import Wall, WallPoints
 from shell_model.cross_section import COMPONENT
@@ -272,7 +272,9 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     )
     boom = replace(boom, joints=(replace(boom.joints[0], pads=pads),))
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF)
-    rows = gap_rows(boom, shells, {"z": [LAW], "y": [LAW]}, "near webs", SurfaceOptions())
+    rows = Touching.of(boom, shells, {"z": [LAW], "y": [LAW]}, "near webs", SurfaceOptions()).rows(
+        {}
+    )
     inner, places = shells[1], places_of_pads(boom)
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners

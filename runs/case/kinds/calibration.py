@@ -41,6 +41,15 @@ class CalibratedTable(BeamTable):
     def needs_shell(self) -> bool:
         return self.calibrated_by is not None
 
+    @property
+    def not_drawn(self) -> str | None:
+        if self.calibrated_by is not None:
+            return (
+                f"the springs of {self.name!r} are those of the place where it rests, and cannot "
+                "be drawn out; leave calibrated_by out"
+            )
+        return super().not_drawn
+
     def with_shells(self, update: Mapping[str, object]) -> Self:
         if not isinstance(self.calibrated_by, ShellTable):
             return self

@@ -152,6 +152,13 @@ class ModelTable(Table):
         """Whether its segments are joined without play."""
         return False
 
+    @property
+    def not_drawn(self) -> str | None:
+        """Why it cannot be drawn out, and what to leave out instead; None where it can."""
+        if self.play_free:
+            return f"{self.name!r} is tied, and cannot be drawn out; leave the model out"
+        return None
+
     def check(self, where: str, joined: Joined) -> None:
         """Whether it can be a model of this boom.
 
@@ -196,15 +203,8 @@ class ModelTable(Table):
 
     def _check_drives(self, where: str, boom: Boom) -> None:
         driven = [i for i, joint in enumerate(boom.joints, start=1) if joint.drive is not None]
-        if not driven or not (self.meshed or self.play_free):
-            return
-        if self.meshed:
-            why = f"the shell {self.name!r} touches where it is reduced to, and cannot be drawn out"
-        else:
-            why = f"{self.name!r} is tied, and cannot be drawn out"
-        raise BoomError(
-            where, f"{why}; leave joint[{driven[0]}].drive out, or run beams and series with play"
-        )
+        if driven and self.not_drawn is not None:
+            raise BoomError(where, f"{self.not_drawn}, or joint[{driven[0]}].drive")
 
     @abstractmethod
     def critical_factor(self, boom: Boom) -> float | None:

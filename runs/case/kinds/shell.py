@@ -86,6 +86,20 @@ class ShellTable(ModelTable):
                     f"the shell {self.name!r} has none; leave it out, or run beams alone",
                 )
 
+    @property
+    def not_drawn(self) -> str | None:
+        if self.contact_line == "surface":
+            return (
+                f"the shell {self.name!r} touches over the whole overlap, which changes as it is "
+                "drawn out; leave contact_line out"
+            )
+        if self.modes is not None:
+            return (
+                f"the shell {self.name!r} takes the coordinates that all of its way asks for; "
+                "leave modes out"
+            )
+        return super().not_drawn
+
     def describe(self) -> str:
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 

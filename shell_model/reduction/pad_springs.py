@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Springs that go along with pads, for what walls give way beyond the modes of their segments.
+
+What forces at a place x of the way move beyond the modes ω_k with the rows b_k(x),
+
+    R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ),
+
+walls give way as if they had hardly any inertia, up to some 1000 Hz. It becomes coordinates with
+the frequencies W^½ and the rows L(x) = R^½ Q (W + σ)^½. At the shift σ of springs L (W + σ)⁻¹ Lᵀ
+is R everywhere (residual flexibility; MacNeal 1971). W and the orthogonal Q take its inertia
+R′ = −dR/dσ (Rubin 1975), in the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over the way. The symmetric
+root is smooth where R is.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Array
+from shell_model.reduction.products import times
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding, Job, shared
+from shell_model.segment_shell import SegmentShell
+
+# Hz of the shift at which springs are matched, above rigid motions and below all that they take,
+# and of the fastest spring.
+SLOW, _FASTEST = 50.0, 10000.0
+
+# A pattern of forces that gives way by less than this part of what others do, does not.
+_NOTHING = 1.0e-4
+
+
+class Answers(NamedTuple):
+    """What rows of a segment do to each other in the full model, (num_columns, num_columns).
+
+    Args:
+        compliance: B (K + σ M)⁻¹ Bᵀ in m/N at ``SLOW``.
+        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, what it loses with σ.
+        tested: the compliance at another shift.
+    """
+
+    compliance: Array
+    inertia: Array
+    tested: Array
+
+
+def answers(shell: SegmentShell, columns: Array, test: float) -> Answers:
+    """To columns (num_owned, num_columns), at ``SLOW`` and at ``test`` in Hz. Collective."""
+    jobs = Folding(shell).jobs(columns, columns[:, :0])
+    total = np.zeros((3, columns.shape[1], columns.shape[1]))
+    for root, family in shared(shell.comm, jobs, partial(_answers, test)):
+        total += shell.comm.bcast(family, root)
+    return Answers(*total)
+
+
+def _answers(test: float, _: int, job: Job) -> Array:
+    shell = job.shell()
+    solve = ShiftedSolver(shell, SLOW)
+    moved = solve(job.forces)
+    slow = job.forces.T @ moved, moved.T @ times(shell.mass, moved)
+    solve.move(test)
+    tested = job.forces.T @ solve(job.forces)
+    solve.destroy()
+    return np.array([*slow, tested])
+
+
+def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
+    """ω² (num_springs,) in rad²/s², and rows (num_ways, num_rows, num_springs) in 1/√kg.
+
+    Args:
+        residual: (num_ways, num_rows, num_rows) R in m/N at the shift ``SLOW``.
+        inertia: R′ in m s²/N.
+    """
+    sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
+    scale = np.outer(sizes, sizes)
+    values, patterns = np.linalg.eigh(residual / scale)
+    values[values < _NOTHING * values.max()] = 0.0
+    inverse = np.divide(1.0, np.sqrt(values), out=np.zeros_like(values), where=values > 0.0)
+    root, back = (
+        np.einsum("wij,wj,wkj->wik", patterns, one, patterns) for one in (np.sqrt(values), inverse)
+    )
+    slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
+    shifted = 1.0 / np.maximum(slowness, 1.0 / squared(_FASTEST))
+    pulls = root @ turn
+    pulling = np.abs(pulls).max(axis=(0, 1)) > _NOTHING
+    rows = sizes[:, None] * pulls * np.sqrt(shifted)
+    return (shifted - squared(SLOW))[pulling], rows[..., pulling]
+
+
+def squared(frequency: float) -> float:
+    """ω² in rad²/s² of a frequency in Hz."""
+    return float((2.0 * np.pi * frequency) ** 2)

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells that are drawn out: rows and springs along the way, motion beside that of beams."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from beam_model.systems import finite_element_system
+from dynamics.contact import PowerContact
+from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
+from dynamics.splitting import integrate
+from dynamics.step import contact_step
+from dynamics.trajectory import Trajectory
+from dynamics.travel import SCurve
+from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.drive import Drive
+from shell_model.boom_shell import ShellOptions
+from shell_model.contact.local_compliance import compliance, local_compliance
+from shell_model.reduced_shell import ReducedShell, reduce_boom
+from shell_model.reduction.pad_springs import SLOW, springs, squared
+from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
+
+LAW = PowerContact(1.0e8, 1.0, clearance=7.0e-3)
+DRAWN = Drive(SCurve(2.0, 1.0), ("inner", "outer"))
+SIZE = 0.25
+
+
+def telescope(way: float, drive: Drive | None = None) -> Boom:
+    """The paper's boom with an overlap of 4 m less a way in m, and with dashpots.
+
+    Without these presses are chaotic, and runs part.
+    """
+    boom = flat_boom()
+    outer, inner = boom.segments
+    inner = replace(inner, start=6.0 + way, end=16.0 + way)
+    stations = inner.start, outer.end
+    still = {"contact_length": SIZE, "dashpot": 3.0e3}
+    joint = replace(boom.joints[0], stations=stations, drive=drive, **still)
+    return replace(boom, segments=(outer, inner), joints=(joint,))
+
+
+@cache
+def shell(way: float, drive: Drive | None = None) -> ReducedShell:
+    return reduce_boom(telescope(way, drive), [LAW], ShellOptions(SIZE), MPI.COMM_WORLD)
+
+
+def local(system: GapSystem) -> Array:
+    """(num_rows,) in m/N what walls give way."""
+    whole = compliance(system.omega2, system.rows)
+    return local_compliance(whole, system.laws, system.station_of_row.tolist())
+
+
+def drawn_by(way: float) -> GapSystem:
+    """The shell that stands where it is drawn out by a way in m."""
+    system = shell(0.0, DRAWN).system
+    (travel,) = system.travels
+    times = np.linspace(0.0, 1.0, 20001)
+    return system.standing(float(np.interp(way, travel.history(times), times)))
+
+
+def test_springs_give_way_and_weigh_as_what_they_stand_for() -> None:
+    """Reference: analytic, two masses on springs behind two rows that turn along the way."""
+    omega2 = np.array([squared(900.0), squared(2500.0)])
+    shifted = omega2 + squared(SLOW)
+    angles = np.linspace(0.0, 0.3, 5)
+    turned = [[[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]] for a in angles]
+    rows = np.array(turned) @ np.array([[1.0, 0.2], [0.2, 1.5]])
+    residual, inertia = (
+        np.einsum("wij,j,wkj->wik", rows, shifted**-power, rows) for power in (1.0, 2.0)
+    )
+    found, pulls = springs(residual, inertia)
+    assert np.einsum("wij,j,wkj->wik", pulls, 1.0 / (found + squared(SLOW)), pulls) == (
+        pytest.approx(residual, rel=1e-9)
+    )
+    found, pulls = springs(residual[:1], inertia[:1])
+    assert np.sort(found) == pytest.approx(omega2, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_where_it_stands_it_is_the_shell_that_rests_there() -> None:
+    """Reference: other code, the shell reduced where it rests, with as many rings there."""
+    errors = shell(0.0, DRAWN).errors
+    assert 1.0e-4 < errors["contact_compliance"] < 0.01
+    assert errors["readings"] < 0.02
+    for way in (1.0, 2.0):
+        here, there = drawn_by(way), shell(way).system
+        tips = [
+            float(one.observers["tip"].row @ equilibrium(one, one.load)) for one in (here, there)
+        ]
+        assert tips[0] == pytest.approx(tips[1], rel=1e-6)
+        assert local(here) == pytest.approx(local(there), rel=1e-4)
+    # Springs give way by a good part of that.
+    modes = here.omega2 < squared(1000.0)
+    whole = compliance(here.omega2[modes], here.rows[:, modes])
+    without = local_compliance(whole, here.laws, here.station_of_row.tolist())
+    assert (without < 0.9 * local(there)).all()
+
+
+@pytest.mark.slow
+def test_pads_of_a_boom_in_space_on_the_way() -> None:
+    """Reference: other code, the shell in space reduced where it rests: at rest, and what its
+    contacts and friction give way.
+    """
+
+    def built(way: float, drive: Drive | None) -> GapSystem:
+        boom = boom_in_space(friction=0.2, sideways=0.3)
+        flat = telescope(way, drive)
+        outer, inner = boom.segments
+        inner = replace(inner, start=6.0 + way, end=16.0 + way)
+        lateral = {"lateral_clearance": LATERAL_LAW.clearance, "friction": 0.2}
+        joint = replace(flat.joints[0], dashpot=0.0, **lateral)
+        boom = replace(boom, segments=(outer, inner), joints=(joint,))
+        options = ShellOptions(2.0 * SIZE)
+        return reduce_boom(boom, [LAW], options, MPI.COMM_WORLD, lateral_laws=[LAW]).system
+
+    here, there = built(0.0, DRAWN).standing(1.0), built(2.0, None)
+    rests = [(one, equilibrium(one, one.load)) for one in (here, there)]
+    for name in ("tip", "tip_lateral", "head", "head_lateral"):
+        ends = [float(one.observers[name].row @ rest) for one, rest in rests]
+        assert ends[0] == pytest.approx(ends[1], rel=1e-6)
+    for kind in ("rows", "friction_rows"):
+        found, expected = (compliance(one.omega2, getattr(one, kind)) for one in (here, there))
+        assert found == pytest.approx(expected, rel=1e-5, abs=1e-6 * expected.max())
+
+
+@pytest.mark.slow
+def test_no_ring_of_the_mesh_is_felt() -> None:
+    """Reference: analytic, the law of the lever for the forces of the stations at rest, and
+    what pads give way is a straight line from ring to ring within 0.1 %; so is the drive's force.
+    """
+    ways = np.linspace(0.5, 2.0, 49)
+    (travel,) = shell(0.0, DRAWN).system.travels
+    compliances, forces, pulls = [], [], []
+    for way in ways:
+        system = drawn_by(way)
+        rest = equilibrium(system, system.load)
+        forces.append(
+            [law.force(y) for law, y in zip(system.laws, system.rows @ rest, strict=True)]
+        )
+        compliances.append(local(system))
+        rates = travel.table.slope(way)[: len(system.laws)] @ rest
+        pulls.append(np.array(forces[-1]) @ rates)
+    weight = 55.07 * 10.0
+    head, tail = np.array(forces)[:, 2:].sum(axis=1), np.array(forces)[:, :2].sum(axis=1)
+    assert head + tail == pytest.approx(weight, rel=1e-6)
+    assert head == pytest.approx(weight * 5.0 / (4.0 - ways), rel=1e-6)
+    between = np.array(compliances)
+    line = 0.5 * (between[:-2] + between[2:])
+    assert np.abs(between[1:-1] / line - 1.0).max() < 1.0e-3
+    curve = np.polynomial.Polynomial.fit(ways, pulls, 5)(ways)
+    assert np.abs(np.array(pulls) - curve).max() < 1.0e-3 * np.abs(forces).max()
+
+
+def moved(system: GapSystem, duration: float) -> Trajectory:
+    return integrate(Motion(system, duration), contact_step(system, 1.0e-3))
+
+
+@pytest.mark.slow
+def test_without_speed_it_moves_as_the_shell_that_rests() -> None:
+    """Reference: other code, the shell reduced where it rests, over its first presses."""
+    still = replace(shell(0.0, DRAWN).system, travels=())
+    runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
+    assert runs[1].data.attrs["contact_changes"] > 10
+    tips = [run.data["tip"].values for run in runs]
+    assert np.abs(tips[0] - tips[1]).max() < 5.0e-3 * np.ptp(tips[1])
+
+
+@pytest.mark.slow
+def test_beams_are_as_near_as_where_it_rests() -> None:
+    """Reference: other code, beam finite elements: as far from the shell as resting booms are.
+
+    The ledger is closed, with the work of the drive.
+    """
+    apart = []
+    for drive in (None, DRAWN):
+        beam = finite_element_system(telescope(0.0, drive), [LAW], theory="timoshenko")
+        runs = [moved(system, 0.5) for system in (beam, shell(0.0, drive).system)]
+        assert max(run.energy_residual for run in runs) < 1.0e-4
+        tips = [run.data["tip"].values for run in runs]
+        apart.append(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1]))
+    assert apart[1] < 2.0 * apart[0] < 0.02
+    works = [float(run.data["drive_work"][-1]) for run in runs]
+    assert works[0] == pytest.approx(works[1], rel=0.1)
+    assert abs(works[1]) > 0.01 * float(np.abs(runs[1].data["work"]).max())
