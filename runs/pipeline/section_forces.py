@@ -38,7 +38,7 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
         if foot is None:
             continue
         line = found[cylinder.segment]
-        x = _on_their_sides(line.x)
+        x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
         # What is beyond a section is pushed away from the part before it, or with that towards it.
         pulled = np.where((foot.x < x) & (x < cylinder.x), 1.0, 0.0)
         pulled -= np.where((cylinder.x < x) & (x < foot.x), 1.0, 0.0)

@@ -138,17 +138,18 @@ def strength_sentence(results: Results) -> str:
     answers, first = results.summary.answers, read_first(results)[0]
     own = answers.models[first] if answers else ModelAnswers()
     pad = _hardest_pads(results).get(first)
-    used: list[tuple[float, str]] = []
+    used: list[tuple[float, str, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
-            used.append((most.part, f"{what} of their yield strength ({_place(most)})"))
+            used.append((most.part, what, f"their yield strength ({_place(most)})"))
     if pad is not None and pad.utilisation is not None:
-        used.append((pad.utilisation, "pads of their allowable pressure"))
+        used.append((pad.utilisation, "pads", "their allowable pressure"))
     if not used:
         return ""
     verdict = "Not strong enough" if max(used)[0] > 1.0 else "Strong enough without a safety factor"
-    told = [f"{number(PERCENT * part)} % in {what}" for part, what in sorted(used, reverse=True)]
-    return f"{verdict}: used are {_listed(told)}."
+    used.sort(reverse=True)
+    told = [f"{what} bear {number(PERCENT * part)} % of {bears}" for part, what, bears in used]
+    return f"{verdict}: {_listed(told)}."
 
 
 _SAID = {
@@ -244,7 +245,10 @@ def _place(largest: _Largest) -> str:
 
 def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """What the table's numbers are."""
-    models = [model for model in results.ran if model.name in read_first(results)]
+    models = sorted(
+        (model for model in results.ran if model.name in read_first(results)),
+        key=lambda model: read_first(results).index(model.name),
+    )
     yield f"{'; '.join(map(_model, models))}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
     if "Tip travels, mm" in told:

@@ -147,9 +147,9 @@ def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
     """Reference: by hand, as above; without a yield strength nothing is told."""
     assert strength_sentence(results) == ""
     assert strength_sentence(with_stress(results, 300e6)) == (
-        "Strong enough without a safety factor: used are 93 % in walls beside what presses of "
-        "their yield strength (outer, 10.0 m) and 84.5 % in outer fibres of their yield strength "
-        "(outer, 2.0 m)."
+        "Strong enough without a safety factor: walls beside what presses bear 93 % of their yield "
+        "strength (outer, 10.0 m) and outer fibres bear 84.5 % of their yield strength (outer, 2.0 "
+        "m)."
     )
     assert strength_sentence(with_stress(results, 340e6)).startswith("Not strong enough: ")
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -55,9 +57,12 @@ def test_a_normal_force_has_both_sides_of_a_jump() -> None:
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
-    folder = tmp_path_factory.mktemp("arm")
+    return answers_of(CASE, tmp_path_factory.mktemp("arm"))
+
+
+def answers_of(text: str, folder: Path) -> Answers:
     file = folder / "case.toml"
-    file.write_text(CASE, encoding="utf-8")
+    file.write_text(text, encoding="utf-8")
     run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
     assert run is not None
     assert run.results.summary.answers is not None
@@ -98,6 +103,16 @@ def test_the_pin_bears_what_goes_along(answers: Answers) -> None:
     ):
         assert borne[what].largest == pytest.approx(abs(force), rel=2e-3)
         assert borne[what].at_rest == pytest.approx(abs(force), rel=2e-3)
+
+
+def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
+    """Reference: by hand, of the arm without what is before its pin."""
+    text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
+    force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
+    moved = answers_of(text, tmp_path).models["beam"].moved
+    assert moved is not None
+    (borne,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
+    assert borne.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
 
 
 def test_the_fibre_feels_the_normal_force(answers: Answers) -> None:
