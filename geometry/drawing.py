@@ -103,6 +103,13 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
     return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
+def farthest(boom: Boom, segment: int) -> float:
+    """How far in m a segment's drives move it along: out, or in where they never move it out."""
+    drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
+    reaches = [drive.reach for drive in drives if drive is not None]
+    return sum(high or low for low, high in reaches)
+
+
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:
     """x in m of each station on the outer and on the inner segment, drawn out by ``way`` in m."""
     carriers = () if joint.drive is None else joint.drive.carriers

@@ -21,6 +21,7 @@ from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.axial_forces import print_axial_forces
 from runs.pipeline.cautions import slips
+from runs.pipeline.drives import drive_lines
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
 from runs.pipeline.statics import print_statics
@@ -42,6 +43,8 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(stiffeners)
     if boom.joints:
         console.print(_joints(case, boom))
+    for line in drive_lines(boom, case.system):
+        console.print(line, markup=False, highlight=False)
     console.print(_models(case))
     if boom.compressed:
         print_axial_forces(case, boom, console)

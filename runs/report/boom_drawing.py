@@ -21,6 +21,7 @@ from matplotlib.typing import HashableList
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Segment, Stop, Support
+from geometry.drawing import farthest
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
@@ -202,7 +203,7 @@ def _draw_along(drawing: Drawing, boom: Boom, acts: Sequence[Acting]) -> None:
     _name_segments(drawing, boom)
     axes, larger = drawing.axes, drawing.larger
     margin = MARGIN * boom.length
-    axes.set_xlim(boom.segments[0].start - margin, boom.tip + margin)
+    axes.set_xlim(boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin)
     tallest = larger * max(
         abs(z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)
     )
@@ -244,6 +245,12 @@ def _segment(drawing: Drawing, boom: Boom, number: int) -> None:
     tail, head = segment.ends
     box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
     drawing.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
+    if way := farthest(boom, number):
+        look: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
+        drawing.outline(
+            np.array(box) + np.array([way, 0.0]), facecolor="none", edgecolor=color, **look
+        )
+        drawing.meanings["drawn to"] = Line2D([], [], color=theme.PLAY_FREE, **look)
     if drawing.whole:
         return
     for collar in segment.collars:
@@ -322,9 +329,15 @@ def _edge(name: str, segment: Segment, boom: Boom, x: float) -> float:
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
     """(2,) the lowest and the highest place of a boom at an angle in degrees, in m."""
     ends = [(x, z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)]
+    ends.append((boom.tip + _farthest(boom), 0.0))
     places = np.array([*ends, *(one.ground for one in boom.cylinders)])
     turned = Affine2D().rotate_deg(angle).transform(places)
     return turned.min(axis=0), turned.max(axis=0)
+
+
+def _farthest(boom: Boom) -> float:
+    """How far in m the tip comes beyond where it is."""
+    return max(0.0, farthest(boom, len(boom.segments) - 1))
 
 
 def _larger(boom: Boom) -> float:

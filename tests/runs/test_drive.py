@@ -4,11 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import rc_context
+from matplotlib.patches import Polygon
+from rich.console import Console
 
 from dynamics.equilibrium import equilibrium
 from protractile.cases import change, run_case
@@ -16,8 +20,11 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
+from runs.report import theme
+from runs.report.boom_drawing import boom_sheet
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
@@ -273,3 +280,27 @@ def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
         time = np.linspace(0.0, 8.0, 8001)
         speeds.append(np.gradient(drive.history(time), time).max())
     assert speeds == pytest.approx([4.0, 2.0, 8.0 / 6.0, 1.0], rel=1e-4)
+
+
+def test_a_check_tells_what_a_drive_does() -> None:
+    """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
+    case = load(str(CASES / "drawn-out.toml"))
+    shown = StringIO()
+    print_inferred(case, Console(file=shown, width=200))
+    assert (
+        "A drive draws 'inner' 4 m out of 'outer' from 0 to 5 s, at 1.6 m/s at most; 1 m of "
+        "overlap are left.\n"
+    ) in shown.getvalue()
+
+
+def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
+    """Reference: the case; the inner segment of 10 m from 5 m on goes 4 m farther."""
+    case = load(str(CASES / "drawn-out.toml"))
+    with rc_context(theme.RC):
+        sheet = boom_sheet(case, build_boom(case))
+    (dashed,) = [patch for patch in sheet.axes[1].patches if patch.get_linestyle() == "--"]
+    assert isinstance(dashed, Polygon)
+    x = dashed.get_xy()[:, 0]
+    assert (x.min(), x.max()) == pytest.approx((9.0, 19.0))
+    assert sheet.axes[1].get_xlim()[1] > 19.0
+    assert "drawn to" in [text.get_text() for text in sheet.legends[0].get_texts()]
