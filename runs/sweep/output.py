@@ -26,6 +26,8 @@ from runs.sweep.swings import said, swings
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
 
+# Of the distances, which are parts: a hundredth of a percent.
+DIGITS = 4
 # Of the quantities, in a terminal of 80 columns.
 SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 
@@ -123,7 +125,7 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
 def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     others = [str(name) for name in data["model"].values if name != reference]
     rows = [
-        (name, *(_range(data[one.name].sel(model=name), one) for one in DISTANCES))
+        (name, *(_range(data[one.name].sel(model=name).round(DIGITS), one) for one in DISTANCES))
         for name in others
     ]
     headings = (f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES)

@@ -27,7 +27,7 @@ def test_better_beams_are_nearer_to_the_shell(
 ) -> None:
     """Reference: other code, the shell; each beam has what the one before it lacks."""
     monkeypatch.chdir(tmp_path)
-    text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.5")
+    text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.0")
     Path("case.toml").write_text(text, encoding="utf-8")
     keys = ["joint.play=0.004,0.014", "gravity.acceleration=5,10"]
     sweeping = plan("case.toml", keys, None, 0.4, "shell")
@@ -42,4 +42,4 @@ def test_better_beams_are_nearer_to_the_shell(
         worst = data[distance].max(["joint.play", "gravity.acceleration"])
         euler, plain, sprung, fielded, _ = worst.values
         assert euler > 1.5 * plain > 3.0 * sprung > 3.0 * fielded, worst
-        assert fielded < 0.002
+        assert fielded < 0.01
