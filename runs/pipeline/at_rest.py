@@ -153,7 +153,8 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
             direction=direction,
             force=sides[0] - sides[1],
             pad=max(sides) / PADS_OF_SIDE if pads else None,
-            depth=max(system.laws[row].depth(float(gaps[row])) for row in here),
+            # A tied model has stations, and no rows there.
+            depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
         )
 
 
