@@ -181,9 +181,9 @@ def snapshot(
     from runs.folder.files import alone, changed_folder
     from runs.paper import readings, then
     from runs.paper.rules import judge
-    from runs.pipeline.results import FIELDS, Results, read_fields
+    from runs.pipeline.results import TRAJECTORIES, Results
     from runs.report import output, snapshots
-    from shell_model.pictures.rendering import RenderingUnavailable
+    from shell_model.pictures.opengl import RenderingUnavailable
 
     with alone(Path(folder)):
         results = Results.load(Path(folder))
@@ -194,13 +194,13 @@ def snapshot(
         for t in time or []:
             if not 0.0 <= t <= last:
                 raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
-        shells = {path.name: read_fields(path) for path in Path(folder).glob(f"*{FIELDS}")}
-        if not shells:
-            raise BadInput(folder, FIELDS, "missing; give the folder of a run with a shell")
+        shells = snapshots.shells_in(Path(folder))
         with changed_folder(Path(folder)) as part:
             try:
                 times = sorted(set(time)) if time else None
-                drawn = snapshots.draw_snapshots(results, shells, part, times)
+                motion = Path(folder) / TRAJECTORIES
+                with snapshots.drawing(results, shells, motion, part, times) as gather:
+                    drawn = gather()
             except RenderingUnavailable as reason:
                 raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
             output.write_report(results, verdicts, part, surveyed)

@@ -25,7 +25,8 @@ from runs.process import notices
 from runs.report.boom_drawing import draw_boom_of
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell
-from shell_model.pictures.rendering import TITLES, require_opengl, telling_instants
+from shell_model.pictures.opengl import require_opengl
+from shell_model.pictures.rendering import TITLES, telling_instants
 from shell_model.pictures.still import draw_mesh, draw_sections
 from shell_model.pictures.theme import LETTERS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,18 +28,19 @@ from runs.pipeline.results import (
     Results,
 )
 from runs.pipeline.run import Run
+from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
 from runs.report.document import render
 from runs.report.extruded import of_beam
-from runs.report.figure_context import leading
+from runs.report.figure_context import Figure, leading
 from runs.report.figures import draw
 from runs.report.moving_surface import MOST_POINTS, MovingSurface
 from runs.report.tables import TextTable
 from runs.report.verdict import Verdict
 from runs.report.viewer import VIEWER, viewer
 from shell_model.pictures.field_series import series_times, write_field_series
-from shell_model.pictures.rendering import RenderingUnavailable
+from shell_model.pictures.opengl import RenderingUnavailable
 
 REPORT = "report.html"
 VERDICTS = "verdicts.json"
@@ -105,50 +106,59 @@ def write(
     results.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
     if results.ensembles is not None:
         results.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
-    _write_csv(results.trajectories, folder / "trajectories.csv")
     _write_text(folder / CASE, toml.dumps(results.case))
     several = sum(model.meshed for model in results.case.models) > 1
-    fields = {}
-    for name, shell in run.shells.items():
-        prefix = f"{name}-" if several else ""
-        fields[f"{prefix}{FIELDS}"] = shell.fields
-        shell.fields.to_netcdf(folder / f"{prefix}{FIELDS}", engine="scipy")
-        shell.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
-            folder / f"{prefix}{STRESSES}", engine="scipy"
-        )
-        # Of names joined by a hyphen two may be the same.
-        meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
-        for place in (meshes, series):
-            place.mkdir(parents=True, exist_ok=True)
-        write_field_series(shell.fields, series, series_times(shell.fields))
-        if (modes := shell.modes) is not None:
-            of_modes = modes.assign_attrs(model=f"{name}-modes")
-            write_field_series(of_modes, series, modes["time"].values.tolist())
-        for segment, mesh in shell.meshes.items():
-            mesh.write(meshes / f"{segment}.vtu")
-            gmsh_file = mesh_folder / name / f"{segment}.msh"
-            shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
-    surface = _surface(run, fields) if find_spec("plotly") else None
-    if surface is not None:
-        surface = surface.drawn_out(build_boom(results.case))
-        _write_text(folder / VIEWER, viewer(results.case, surface))
+    files = {name: folder / f"{f'{name}-' if several else ''}{FIELDS}" for name in run.shells}
+    for name, path in files.items():
+        run.shells[name].fields.to_netcdf(path, engine="scipy")
+    pictured = [*files.values()] if snapshots_now else []
+    if files and not pictured:
+        results.summary.snapshots = Snapshots(written=[], skipped=LATER)
     try:
-        if snapshots_now:
-            snapshots.draw_snapshots(results, fields, folder)
-        elif fields:
-            results.summary.snapshots = Snapshots(written=[], skipped=LATER)
+        with snapshots.drawing(results, pictured, folder / TRAJECTORIES, folder) as gather:
+            _write_csv(results.trajectories, folder / "trajectories.csv")
+            for name, path in files.items():
+                prefix = path.name.removesuffix(FIELDS)
+                _write_shell(run.shells[name], name, folder, prefix, mesh_folder)
+            surface = _surface(run) if find_spec("plotly") else None
+            if surface is not None:
+                surface = surface.drawn_out(build_boom(results.case))
+                _write_text(folder / VIEWER, viewer(results.case, surface))
+            figures = _draw_figures(results, folder)
+            gather()
     except RenderingUnavailable as reason:
         results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
-    write_report(results, verdicts, folder)
+    _write_pages(results, verdicts, folder, figures)
 
 
-def _surface(run: Run, fields: Mapping[str, xr.Dataset]) -> MovingSurface | None:
+def _write_shell(
+    shell: ShellOutput, name: str, folder: Path, prefix: str, mesh_folder: Path
+) -> None:
+    """Stresses, series and meshes of a shell whose files' names begin with a prefix."""
+    shell.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
+        folder / f"{prefix}{STRESSES}", engine="scipy"
+    )
+    # Of names joined by a hyphen two may be the same.
+    meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
+    for place in (meshes, series):
+        place.mkdir(parents=True, exist_ok=True)
+    write_field_series(shell.fields, series, series_times(shell.fields))
+    if (modes := shell.modes) is not None:
+        of_modes = modes.assign_attrs(model=f"{name}-modes")
+        write_field_series(of_modes, series, modes["time"].values.tolist())
+    for segment, mesh in shell.meshes.items():
+        mesh.write(meshes / f"{segment}.vtu")
+        gmsh_file = mesh_folder / name / f"{segment}.msh"
+        shutil.copyfile(gmsh_file, meshes / f"{segment}.msh")
+
+
+def _surface(run: Run) -> MovingSurface | None:
     """The first shell in motion, or the beam that is read first; none of a finer mesh."""
     results = run.results
-    for shell in fields.values():
-        if shell.sizes["point"] > MOST_POINTS:
+    for name, shell in run.shells.items():
+        if shell.fields.sizes["point"] > MOST_POINTS:
             return None
-        return MovingSurface.of_shell(shell, results.trajectories.sel(model=shell.attrs["model"]))
+        return MovingSurface.of_shell(shell.fields, results.trajectories.sel(model=name))
     first = leading(results.case, list(run.beams))
     with_play = [m.name for m in results.ran if m.name in first and not m.play_free]
     name = [*first, *with_play][-1]
@@ -169,6 +179,23 @@ def write_report(
         folder: gets them.
         surveyed: what a survey of the case's readings has found.
     """
+    _write_pages(results, verdicts, folder, _draw_figures(results, folder), surveyed)
+
+
+def _draw_figures(results: Results, folder: Path) -> list[Figure]:
+    """Those that a run has the numbers for, in place of all earlier ones."""
+    shutil.rmtree(folder / FIGURES, ignore_errors=True)
+    (folder / FIGURES).mkdir()
+    return draw(results, folder / FIGURES)
+
+
+def _write_pages(
+    results: Results,
+    verdicts: Sequence[Verdict],
+    folder: Path,
+    figures: Sequence[Figure],
+    surveyed: Sequence[TextTable] = (),
+) -> None:
     _write_text(folder / SUMMARY, str(results.summary))
     if cards := {
         name: model.calibration.model_dump()
@@ -178,9 +205,6 @@ def write_report(
         _write_text(folder / CALIBRATION, _json(cards))
     if verdicts:
         _write_text(folder / VERDICTS, _json([asdict(verdict) for verdict in verdicts]))
-    shutil.rmtree(folder / FIGURES, ignore_errors=True)
-    (folder / FIGURES).mkdir()
-    figures = draw(results, folder / FIGURES)
     pictures = snapshots.describe(results, folder)
     there = VIEWER if (folder / VIEWER).is_file() else ""
     _write_text(folder / REPORT, render(results, verdicts, figures, pictures, surveyed, there))

@@ -4,24 +4,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import xarray as xr
 
 from geometry.typography import signed
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
-from runs.folder.files import beside
-from runs.pipeline.results import FIELDS, Results
+from runs.case.messages import BadInput
+from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
+from runs.process.workers import workers
 from runs.report.figure_context import MILLI, Figure
+from shell_model.pictures import opengl
 from shell_model.pictures.rendering import (
     ANIMATED,
     ANIMATION,
     SHOWN,
     TITLES,
-    render_snapshots,
+    render_files,
     telling_instants,
 )
 
@@ -40,40 +46,86 @@ _NAME = re.compile(
 )
 
 
-def draw_snapshots(
+def shells_in(folder: Path) -> list[Path]:
+    """The fields of all shells in a run's folder.
+
+    Raises:
+        BadInput: there are none, or some that are damaged, or another version's.
+    """
+    shells = list(folder.glob(f"*{FIELDS}"))
+    for path in shells:
+        read_fields(path)
+    if not shells:
+        raise BadInput(str(folder), FIELDS, "missing; give the folder of a run with a shell")
+    return shells
+
+
+@contextmanager
+def drawing(
     results: Results,
-    shells: Mapping[str, xr.Dataset],
+    shells: Sequence[Path],
+    trajectories: Path,
     folder: Path,
     times: Sequence[float] | None = None,
-) -> list[str]:
-    """Render the deformed shells of a run, and note it in the summary.
+) -> Iterator[Callable[[], list[str]]]:
+    """Render the deformed shells of a run in a process beside this one.
 
     Args:
         results: of the run.
-        shells: fields by the name of their file, ``[SHELL-]fields.nc``.
+        shells: files of fields, ``[SHELL-]fields.nc``.
+        trajectories: file of all.
         folder: of the run; pictures of other instants stay in it.
         times: in s; the telling ones unless given.
 
-    Returns:
-        The names of the pictures.
-
-    Raises:
-        RenderingUnavailable: no picture can be made here.
+    What it gives waits for the pictures, notes them in the summary, and gives their names. It
+    raises RenderingUnavailable where no picture can be made.
     """
-    written = []
-    pictures = folder / SNAPSHOTS
-    with beside(pictures) as easel:
-        for file, fields in sorted(shells.items()):
-            model = fields.attrs["model"]
-            prefix = file.removesuffix(FIELDS)
-            for drawn in render_snapshots(fields, results.trajectories, model, easel, times):
-                pictures.mkdir(exist_ok=True)
-                written.append(drawn.replace(pictures / f"{prefix}{drawn.name}").name)
-    earlier = results.summary.snapshots.written
-    results.summary.snapshots = Snapshots(
-        written=list(dict.fromkeys([*earlier, *written])), skipped=None
-    )
-    return written
+    if not shells:
+        yield list
+        return
+    with TemporaryDirectory(dir=folder) as easel, workers(1, opengl.hush) as pool:
+        first = pool.submit(opengl.first_picture)
+        drawn = {}
+        for number, path in enumerate(sorted(shells)):
+            place = Path(easel) / str(number)
+            place.mkdir()
+            prefix = path.name.removesuffix(FIELDS)
+            drawn[prefix] = pool.submit(render_files, path, trajectories, place, times)
+
+        def gather() -> list[str]:
+            pictures = {
+                f"{prefix}{picture.name}": picture
+                for prefix, several in _finished(first, drawn).items()
+                for picture in several
+            }
+            (folder / SNAPSHOTS).mkdir(exist_ok=True)
+            for name, picture in pictures.items():
+                picture.replace(folder / SNAPSHOTS / name)
+            earlier = results.summary.snapshots.written
+            results.summary.snapshots = Snapshots(
+                written=list(dict.fromkeys([*earlier, *pictures])), skipped=None
+            )
+            return list(pictures)
+
+        yield gather
+
+
+def _finished(
+    first: Future[None], drawn: Mapping[str, Future[list[Path]]]
+) -> dict[str, list[Path]]:
+    """The pictures of each shell, when all are there."""
+    try:
+        first.result(opengl.PROBE_SECONDS)
+        return {prefix: pictures.result() for prefix, pictures in drawn.items()}
+    except TimeoutError:
+        raise opengl.too_late() from None
+    except BrokenProcessPool:
+        # Another process tells what it has died of.
+        opengl.require_opengl()
+        raise MemoryError("the system has killed the process that draws") from None
+    except (ImportError, RuntimeError):
+        opengl.require_opengl()
+        raise
 
 
 def describe(results: Results, folder: Path) -> list[Figure]:

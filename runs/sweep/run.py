@@ -9,18 +9,14 @@ what is done is not done again, whatever sweep of the folder asks for it.
 from __future__ import annotations
 
 import json
-import os
-import signal
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from functools import partial
-from multiprocessing import active_children, get_context, parent_process
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Thread
 from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
@@ -34,8 +30,8 @@ from runs.folder.cache import Cache, Files, key
 from runs.folder.versions import program
 from runs.pipeline import members
 from runs.pipeline.run import Progress, run_case, silent
-from runs.process import notices, ranks
-from runs.process.interruption import undone
+from runs.process import ranks
+from runs.process import workers as processes
 from runs.sweep.distances import DISTANCES, Seen, comparable_until
 from runs.sweep.points import Plan, Point
 from runs.sweep.quantities import QUANTITIES, Measured, measure
@@ -47,14 +43,6 @@ if TYPE_CHECKING:
 
 POINTS = "points"
 _POINT = "point.json"
-
-# A process has one thread, though its libraries would take all cores. They warn nobody while they
-# are imported, nor does the process that counts what others share when all are killed.
-_OF_WORKERS = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-) | {"PYTHONWARNINGS": "ignore"}
-# What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
-_OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,23 +111,8 @@ def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
         with members.workers(comm) as others:
             yield others
         return
-    # A process takes these from here when it starts.
-    outside = {name: os.environ.get(name) for name in _OF_WORKERS}
-    os.environ.update(_OF_WORKERS)
-    pool = ProcessPoolExecutor(os.cpu_count(), get_context("spawn"), _start_worker)
-    try:
-        with undone(_end_workers):
-            yield pool
-    except BaseException:
-        _end_workers()
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
-        for name, value in outside.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    with processes.workers(None) as pool:
+        yield pool
 
 
 def run_points(
@@ -173,12 +146,11 @@ def run_points(
         for name, point in zip(names, points, strict=True)
     ]
     stage = f"{len(points)} points"
-    with _deaf_children():
-        futures = {
-            pool.submit(run_point, point.case, scratch, cache, reference): i
-            for i, point in enumerate(points)
-            if outcomes[i] is None
-        }
+    futures = {
+        pool.submit(run_point, point.case, scratch, cache, reference): i
+        for i, point in enumerate(points)
+        if outcomes[i] is None
+    }
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
@@ -232,37 +204,6 @@ def run_point(
             {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
         )
     return outcome
-
-
-def _start_worker() -> None:
-    """A worker is no rank, and does not outlive its parent, which ends it when interrupted."""
-    notices.show()
-    for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
-        del os.environ[name]
-    Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_workers() -> None:
-    for process in active_children():
-        process.kill()
-
-
-@contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Processes that start meanwhile never hear signals to all of a group, as Ctrl-C is one."""
-    signals = {signal.SIGINT, signal.SIGTERM}
-    signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
-
-
-def _end_with_parent() -> None:
-    parent = parent_process()
-    assert parent is not None
-    parent.join()
-    os._exit(1)
 
 
 def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:

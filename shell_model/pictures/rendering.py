@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of a run's shell: at which instants, in which files, and whether any can be made."""
+"""Pictures of a run's shell: at which instants, in which files."""
 
 from __future__ import annotations
 
-import signal
-import subprocess
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -35,21 +32,13 @@ TITLES = {
 # What happens at one station, of a joint or a stop.
 AT_A_STATION = ("largest-force", "first-contact")
 
-# Without a working OpenGL VTK ends its process, so another process makes a picture first.
-PROBE = """
-import pyvista
-plotter = pyvista.Plotter(off_screen=True, window_size=[32, 32])
-plotter.add_mesh(pyvista.Sphere(), color="black")
-picture = plotter.screenshot(return_img=True)
-if picture.min() == picture.max():
-    raise SystemExit("VTK draws nothing")
-"""
-PROBE_SECONDS = 60.0
-REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"
 
-
-class RenderingUnavailable(RuntimeError):
-    """No picture can be made here; the message says why, in one line."""
+def render_files(
+    fields: Path, trajectories: Path, folder: Path, times: Sequence[float] | None = None
+) -> list[Path]:
+    """:func:`render_snapshots` of netCDF files, ``model`` being the attribute of the fields."""
+    shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
+    return render_snapshots(shell, motion, shell.attrs["model"], folder, times)
 
 
 def render_snapshots(
@@ -76,7 +65,6 @@ def render_snapshots(
         The files.
 
     Raises:
-        RenderingUnavailable: there is no VTK, or no OpenGL that works.
         ValueError: a time lies outside the run.
     """
     views = MovingShell.views(fields, trajectories.sel(model=model))
@@ -86,7 +74,6 @@ def render_snapshots(
     for t in when.values():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
-    require_opengl()
 
     instants = _instants(views, when)
     film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
@@ -176,28 +163,6 @@ def where_pressed(views: Sequence[MovingShell], time: float) -> str:
     peaks = shell.motion["contact_force_peak"].sel(time=time, method="nearest").values
     hardest = int(np.abs(np.nan_to_num(peaks)).argmax())
     return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
-
-
-def require_opengl() -> None:
-    """Make sure that VTK can draw.
-
-    Raises:
-        RenderingUnavailable: it cannot.
-    """
-    try:
-        probe = subprocess.run(
-            [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=PROBE_SECONDS
-        )
-    except subprocess.TimeoutExpired:
-        raise RenderingUnavailable(
-            f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}"
-        ) from None
-    if probe.returncode < 0:
-        name = signal.Signals(-probe.returncode).name
-        raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
-    if probe.returncode > 0:
-        why = probe.stderr.strip().splitlines()[-1]
-        raise RenderingUnavailable(f"pyvista makes no picture: {why}")
 
 
 def _save_animation(pictures: Sequence[Image.Image], path: Path) -> None:

@@ -3,8 +3,13 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from multiprocessing import active_children
 from pathlib import Path
+from time import sleep
 
 import numpy as np
 import pytest
@@ -13,7 +18,9 @@ import xarray as xr
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
-from runs.report.snapshots import describe_one
+from runs.report.snapshots import describe_one, drawing
+from shell_model.pictures import opengl
+from shell_model.pictures.opengl import RenderingUnavailable
 
 COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
@@ -94,3 +101,36 @@ def test_of_several_shells_the_right_one_is_named() -> None:
     for name in ("shell", "shell-fine"):
         assert f"{name!r}" in describe_one(both, Path(f"{name}-boom-first-peak.png")).caption
         assert f"{name!r}" in describe_one(both, Path(f"{name}-motion.gif")).caption
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("work", "probe", "seconds", "error", "message"),
+    [
+        (os.abort, "import os; os.abort()", 60, RenderingUnavailable, "dies of SIGABRT; install"),
+        (os.abort, "pass", 60, MemoryError, "the system has killed the process that draws"),
+        (partial(sleep, 60), "pass", 0.1, RenderingUnavailable, "makes no picture within 0.1 s"),
+    ],
+    ids=["no OpenGL", "killed", "hangs"],
+)
+def test_a_drawing_process_that_fails_is_said_and_leaves_nothing(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    work: Callable[[], None],
+    probe: str,
+    seconds: float,
+    error: type[Exception],
+    message: str,
+) -> None:
+    """Reference: processes that die, or do not end."""
+    monkeypatch.setattr(opengl, "first_picture", work)
+    monkeypatch.setattr(opengl, "PROBE", probe)
+    monkeypatch.setattr(opengl, "PROBE_SECONDS", seconds)
+    fields, motion = tmp_path / "fields.nc", tmp_path / "trajectories.nc"
+    with (
+        pytest.raises(error, match=message),
+        drawing(results("a"), [fields], motion, tmp_path) as gather,
+    ):
+        gather()
+    assert not list(tmp_path.iterdir())
+    assert not active_children()

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -18,8 +17,9 @@ from PIL import Image
 from runs.case.build import build_boom
 from runs.pipeline.results import Results
 from shell_model.pictures import rendering
-from shell_model.pictures.rendering import RenderingUnavailable, require_opengl
+from shell_model.pictures.opengl import RenderingUnavailable, require_opengl
 from shell_model.stress.stresses import ShellStress, wall_forces
+from tests import at_once
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -35,12 +35,11 @@ pytestmark = pytest.mark.slow
 BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _short_film() -> Iterator[None]:
-    """The film itself is what the tests of rendering look at."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(rendering, "FRAMES", 3)
-        yield
+@pytest.fixture
+def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The film itself is what the tests of rendering look at; one run draws in its own process."""
+    monkeypatch.setattr(rendering, "FRAMES", 3)
+    monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +150,7 @@ def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
     assert np.abs(moved - tip).max() < 1e-3 * np.abs(tip).max()
 
 
-@pytest.mark.usefixtures("few_figures")
+@pytest.mark.usefixtures("few_figures", "_short_film")
 def test_snapshots_of_given_times_join_the_others(whole: Path, tmp_path: Path) -> None:
     again = tmp_path / "out"
     shutil.copytree(whole, again)
@@ -188,7 +187,7 @@ def test_fields_of_another_version_are_one_line(
     )
 
 
-@pytest.mark.usefixtures("few_figures")
+@pytest.mark.usefixtures("few_figures", "_short_film")
 def test_a_run_without_opengl_says_so_and_goes_on(
     whole: Path,
     tmp_path: Path,
@@ -198,7 +197,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("runs.report.snapshots.render_snapshots", refuse)
+    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", refuse)
     again = tmp_path / "out"
     shutil.copytree(whole, again)
     assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
@@ -212,7 +211,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     )
 
 
-@pytest.mark.usefixtures("few_figures")
+@pytest.mark.usefixtures("few_figures", "_short_film")
 def test_pictures_can_be_left_to_later(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -222,7 +221,7 @@ def test_pictures_can_be_left_to_later(
     def refuse(*arguments: object) -> list[Path]:
         raise AssertionError("nobody asked for pictures")
 
-    monkeypatch.setattr("runs.report.snapshots.render_snapshots", refuse)
+    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", refuse)
     out = tmp_path / "out"
     assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "they were not asked for; protractile snapshot draws them"
@@ -231,7 +230,7 @@ def test_pictures_can_be_left_to_later(
     assert summary["snapshots"] == {"written": [], "skipped": later}
 
 
-@pytest.mark.usefixtures("few_figures")
+@pytest.mark.usefixtures("few_figures", "_short_film")
 def test_two_shells_of_a_case_keep_their_files_apart(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -244,7 +243,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         Image.new("RGB", (8, 8)).save(path)
         return [path]
 
-    monkeypatch.setattr("runs.report.snapshots.render_snapshots", draw)
+    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", draw)
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from runs.report import figures
+from tests import at_once
 from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
 
 pytestmark = pytest.mark.slow
@@ -23,12 +24,10 @@ Ranks = Callable[..., subprocess.CompletedProcess[str]]
 COMMAND = """
 from runs import cli
 from runs.report import figures, snapshots
-from shell_model.pictures.rendering import RenderingUnavailable
+from tests import at_once
 
-def refuse(*arguments):
-    raise RenderingUnavailable("left out")
-
-snapshots.render_snapshots = refuse
+snapshots.workers = at_once.workers
+snapshots.render_files = lambda *_: []
 figures.FIGURES = figures.FIGURES[-1:]
 cli.main()
 """
@@ -65,7 +64,8 @@ def test_two_ranks_run_a_shell_as_one_does(
     text = Path(COARSE).read_text(encoding="utf-8")
     case.write_text(text.replace("duration = 0.6", "duration = 0.12"), encoding="utf-8")
     models = "kantorovich-4,shell"
-    monkeypatch.setattr("runs.report.snapshots.render_snapshots", lambda *arguments: [])
+    monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
+    monkeypatch.setattr("runs.report.snapshots.render_files", lambda *arguments: [])
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
     options = ("--models", models, "--mesh-size", "1", "--no-cache", "--out")
     assert protractile("run", case, *options, tmp_path / "one") == 0

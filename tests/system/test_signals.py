@@ -113,3 +113,28 @@ def test_who_presses_twice_does_not_wait_for_ever() -> None:
     )
     assert (ended.stdout, ended.stderr) == ("clean\n", "protractile: interrupted\n")
     assert ended.returncode == 128 + signal.SIGINT
+
+
+WORKERS = """
+import time
+from runs.process import interruption
+from runs.process.workers import workers
+
+interruption.listen()
+with workers(2) as pool:
+    pool.submit(print, "works", flush=True).result()
+    pool.submit(time.sleep, 60.0).result()
+"""
+
+
+def test_processes_end_with_the_one_that_started_them() -> None:
+    """Reference: by construction. Output ends when the last process that could write to it does."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", WORKERS], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, start_new_session=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+    assert process.stdout.readline() == "works\n"
+    process.terminate()
+    assert process.communicate(timeout=30) == ("", "protractile: interrupted\n")
+    assert process.returncode == 128 + signal.SIGTERM

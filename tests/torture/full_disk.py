@@ -12,7 +12,6 @@ import errno
 import io
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import ExitStack, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,8 @@ from PIL import Image
 
 from runs import CASES, cli
 from runs.folder.cache import VARIABLE
-from shell_model.pictures.rendering import RenderingUnavailable
+from shell_model.pictures.opengl import RenderingUnavailable
+from tests import at_once
 
 Row = tuple[str, int, int, str]
 
@@ -177,17 +177,15 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
     def dot(sheet: Sheet, path: Path, **options: object) -> None:
         Image.new("L", (1, 1)).save(path)
 
-    def here(*arguments: object) -> Executor:
-        return ThreadPoolExecutor(1)
-
     status: object = None
     said = io.StringIO()
     with redirect_stdout(io.StringIO()), redirect_stderr(said), suppress(SystemExit):
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("runs.report.snapshots.render_snapshots", refuse),
-                patch("runs.sweep.run.ProcessPoolExecutor", here),
+                patch("shell_model.pictures.rendering.render_snapshots", refuse),
+                patch("runs.report.snapshots.workers", at_once.workers),
+                patch("runs.process.workers.workers", at_once.workers),
                 patch.object(Sheet, "savefig", dot),
             ):
                 cli.main(command)

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Processes beside this one, on its other cores: the one place where they are started and ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import active_children, get_context, parent_process
+from threading import Thread
+from typing import Any
+
+from runs.process import notices
+from runs.process.interruption import undone
+
+# A process has one thread, though its libraries would take all cores. They warn nobody while they
+# are imported, nor does the process that counts what others share when all are killed.
+_OF_WORKERS = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+) | {"PYTHONWARNINGS": "ignore"}
+# What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
+_OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
+
+
+class _Deaf(ProcessPoolExecutor):
+    """Its processes never hear signals to all of a group, as Ctrl-C is one."""
+
+    def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
+        """As of any executor; this is when the processes start."""
+        signals = {signal.SIGINT, signal.SIGTERM}
+        signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+        try:
+            return super().submit(work, *given, **named)
+        finally:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
+
+
+@contextmanager
+def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
+    """What does several things at a time, each in a process of its own; they end with this one.
+
+    What is given to them and what they answer is pickled.
+
+    Args:
+        count: of processes; None for one on each core.
+        prepare: what each does first.
+    """
+    # A process takes these from here when it starts.
+    outside = {name: os.environ.get(name) for name in _OF_WORKERS}
+    os.environ.update(_OF_WORKERS)
+    pool = _Deaf(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
+    try:
+        with undone(end):
+            yield pool
+    except BaseException:
+        end()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+        for name, value in outside.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def end() -> None:
+    """End all processes that this one has started so."""
+    for process in active_children():
+        process.kill()
+
+
+def _start(prepare: Callable[[], object]) -> None:
+    """A worker is no rank, and does not outlive its parent, which ends it when interrupted."""
+    notices.show()
+    for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
+        del os.environ[name]
+    Thread(target=_end_with_parent, daemon=True).start()
+    prepare()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)

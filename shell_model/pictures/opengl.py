@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether VTK can draw here. Without a working OpenGL it ends its process, so another one tries."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+PROBE = f"from {__name__} import first_picture; first_picture()"
+PROBE_SECONDS = 60.0
+REMEDY = "install libegl1 and libgl1-mesa-dri beside pip's vtk, or give Debian's VTK a display"
+
+
+class RenderingUnavailable(RuntimeError):
+    """No picture can be made here; the message says why, in one line."""
+
+
+def first_picture() -> None:
+    """Draw a ball.
+
+    Raises:
+        ImportError: there is no VTK.
+        RuntimeError: nothing is seen of it.
+    """
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, window_size=[32, 32])
+    plotter.add_mesh(pyvista.Sphere(), color="black")
+    picture = plotter.screenshot(return_img=True)
+    plotter.close()
+    if picture is None or picture.min() == picture.max():
+        raise RuntimeError("VTK draws nothing")
+
+
+def hush() -> None:
+    """From now on this process says nothing on stderr, where VTK and OpenGL would."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+
+
+def require_opengl() -> None:
+    """Make sure that VTK can draw.
+
+    Raises:
+        RenderingUnavailable: it cannot.
+    """
+    try:
+        probe = subprocess.run(
+            [sys.executable, "-c", PROBE], capture_output=True, text=True, timeout=PROBE_SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        raise too_late() from None
+    if probe.returncode < 0:
+        name = signal.Signals(-probe.returncode).name
+        raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
+    if probe.returncode > 0:
+        why = probe.stderr.strip().splitlines()[-1].removeprefix("RuntimeError: ")
+        raise RenderingUnavailable(f"pyvista makes no picture: {why}")
+
+
+def too_late() -> RenderingUnavailable:
+    """What is said of a VTK that draws nothing and does not end."""
+    return RenderingUnavailable(f"VTK makes no picture within {PROBE_SECONDS:g} s; {REMEDY}")
