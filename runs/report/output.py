@@ -112,8 +112,8 @@ def write(
     for name, path in files.items():
         run.shells[name].fields.to_netcdf(path, engine="scipy")
     pictured = [*files.values()] if snapshots_now else []
-    if files and not pictured:
-        results.summary.snapshots = Snapshots(written=[], skipped=LATER)
+    later = LATER if files and not pictured else None
+    results.summary.snapshots = Snapshots(written=[], skipped=later)
     try:
         with snapshots.drawing(results, pictured, folder / TRAJECTORIES, folder) as gather:
             _write_csv(results.trajectories, folder / "trajectories.csv")
