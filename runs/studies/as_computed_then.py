@@ -18,7 +18,7 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.paper import then
 from runs.paper.reading import LITERAL
-from runs.paper.rules import INTERVAL, MOST, SERIES_STEPS
+from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.process import notices
 from runs.report.tables import Cell, Table, wide_console, write
 from runs.report.theme import NONE, number
@@ -69,17 +69,18 @@ def outcome_table(survey: Survey) -> Table:
 
 def free_table(survey: Survey) -> Table:
     """Without friction: a row for each numerics, and one for both examples solved well."""
-    cutoff = survey.without.cutoff
-    well = survey.without.well
-    peak = np.mean([one.elements.first_peak for one in well])
+    example = survey.without
+    peak = np.mean([one.elements.first_peak for one in example.well])
     rows: list[Sequence[Cell]] = []
-    for how, samples in (("solved well", well), *survey.free.items()):
-        peaks = [one.peaks(cutoff) for one in samples]
-        conform, part = (_PERCENT * share(one[i] for one in peaks) for i in (0, 1))
+    for how, samples in (("solved well", example.well), *survey.free.items()):
         off = _PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
-        rows.append(
-            (str(how), *_energies([one.elements for one in samples]), _span(off), conform, part)
+        alike, mixed = (
+            [one.peaks(example.cutoff) for one in found]
+            for found in (samples, example.mixed(samples))
         )
+        energies = _energies([one.elements for one in samples])
+        rows.append((str(how), *energies, _span(off), *_parting(alike), *_parting(mixed)))
+    headings = ("peaks apart to 6 s\n(%, median)", "and later", "as S3 says\n(% of runs)")
     return Table.of_rows(
         "then-free",
         "Without friction: the tip by numerics of 1997",
@@ -88,8 +89,8 @@ def free_table(survey: Survey) -> Table:
             "elements gain more\nthan was put in at (s)": "",
             "energy at the end\n(% of that put in)": "",
             "first peak of the\nelements off (%)": "",
-            "conform for 6 s\n(% of runs)": ".0f",
-            "part later\n(% of runs)": ".0f",
+            **dict.fromkeys(headings, ".0f"),
+            **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
         },
         rows,
     )
@@ -110,6 +111,7 @@ def rubbed_table(survey: Survey) -> Table:
                 _span(apart[:, 0]),
                 _span(apart[:, 1]),
                 _PERCENT * share(one.stratifies() for one in samples),
+                _PERCENT * share(one.stratifies() for one in example.mixed(samples)),
                 _PERCENT * share(map(lost_then, samples)),
             )
         )
@@ -125,6 +127,7 @@ def rubbed_table(survey: Survey) -> Table:
             "models apart to 6 s\n(% of range)": "",
             "and later": "",
             "as S7 says\n(% of runs)": ".0f",
+            "with the series\nsolved well": ".0f",
             f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
         },
         rows,
@@ -187,9 +190,9 @@ def plots(survey: Survey) -> list[Plot]:
                 (one.elements for one in samples[Numerics(scheme, True, THEN)]),
                 key=lambda run: run.breaks,
             )
-            for scheme in (WILSON, NEWMARK)
+            for scheme in (NEWMARK, WILSON)
         }
-        runs = {"solved well": example.well[0].elements, **by}
+        runs = {**by, "solved well": example.well[0].elements}
         found += [
             Plot(
                 name,
@@ -218,6 +221,13 @@ def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
     breaks = [run.breaks for run in runs]
     ends = [_PERCENT * run.balance[-1] for run in runs]
     return _span(breaks), _span([end for end in ends if end < _PERCENT])
+
+
+def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
+    """Medians of how far peaks are apart early and late, and the runs that show S3, in percent."""
+    early, late = np.median(peaks, axis=0)
+    shown = share(before <= DIVERGENCE < after for before, after in peaks)
+    return _PERCENT * float(early), _PERCENT * float(late), _PERCENT * shown
 
 
 def _span(values: Sequence[float] | Array) -> str:

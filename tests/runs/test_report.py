@@ -194,6 +194,16 @@ def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> 
     assert {"href": "#readings"} not in Page(render(results, judge(results), figures, [])).all("a")
 
 
+def test_shows_what_was_computed_then_where_it_was(results: Results, figures: list[Figure]) -> None:
+    verdicts = judge(results)
+    tried = [replace(verdicts[0], then="not shown: in <no> run"), *verdicts[1:]]
+    with_it, without = (Page(render(results, found, figures, [])) for found in (tried, verdicts))
+    cells = [cell for cell in with_it.all("td") if cell.get("data-name") == "As computed then"]
+    assert [cell.get("class") for cell in cells] == [None, *["none"] * (len(verdicts) - 1)]
+    assert "not shown: in <no> run" in with_it.text
+    assert "As computed then" not in without.text
+
+
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0

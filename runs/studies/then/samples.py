@@ -106,6 +106,12 @@ class Moved:
         """(num_times,) energy from nowhere as a part of that put in, NaN after a finite motion."""
         return self.gained / self.put_in
 
+    def at(self, time: Array) -> Moved:
+        """The same at other times in s."""
+        curves = self.tip, self.head, self.gained
+        tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
+        return Moved(time, tip, head, gained, self.put_in, self.unsettled)
+
     @property
     def first_peak(self) -> float:
         """Largest deflection of the tip in the first second in m."""
@@ -135,14 +141,22 @@ class Sample:
         """The finite elements with play."""
         return self.models[-1]
 
-    def peaks(self, cutoff: float) -> tuple[bool, bool]:
-        """Whether slow peaks conform for six seconds, and whether they part later (S3)."""
+    def peaks(self, cutoff: float) -> tuple[float, float]:
+        """How far slow peaks are from one another up to six seconds and later (S3).
+
+        Infinite and NaN where the energy of a model has broken out.
+        """
+        if min(one.breaks for one in self.models) < np.inf:
+            return np.inf, np.nan
         tips = np.array([one.tip for one in self.models])
-        if not np.isfinite(tips).all():
-            return False, False
         time, apart = peaks_apart(tips, self.elements.time, cutoff)
-        early, late = apart[time <= CONFORMITY], apart[time > CONFORMITY]
-        return bool((early <= DIVERGENCE).all()), bool((late > DIVERGENCE).any())
+        early = time <= CONFORMITY
+        return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
+
+    def conforms_then_parts(self, cutoff: float) -> bool:
+        """Whether it shows S3."""
+        early, late = self.peaks(cutoff)
+        return early <= DIVERGENCE < late
 
     def apart(self) -> tuple[float, float]:
         """Largest distance of two tips up to six seconds and after, of the largest range (S7)."""
@@ -200,11 +214,20 @@ class Example:
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
         runs = _side_by_side(lambda one: _then(how, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
-        tied = self.tied(how.step)
+        tied = self.well[0].tied.at(four[0].time)
         return [
             Sample(played, tied)
             for other in others
             for played in zip(four, five, other, strict=True)
+        ]
+
+    def mixed(self, samples: Sequence[Sample]) -> list[Sample]:
+        """The samples with the series solved well, as a general solver does without a limit."""
+        members = [self.well[i % MEMBERS % len(self.well)] for i in range(len(samples))]
+        return [
+            replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
+            for one, well in zip(samples, members, strict=True)
+            for series in [well.models[: len(SERIES)]]
         ]
 
     def as_printed(self, how: Numerics) -> list[Moved]:
@@ -213,13 +236,6 @@ class Example:
         laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
         return _side_by_side(lambda one: _then(how, *one), tasks)
-
-    def tied(self, step: float) -> Moved:
-        """The play-free elements at the times of other steps in s."""
-        run = self.well[0].tied
-        time = step * np.arange(round(DURATION / step) + 1)
-        tip, head, gained = (np.interp(time, run.time, y) for y in (run.tip, run.head, run.gained))
-        return Moved(time, tip, head, gained, run.put_in)
 
     def off(self, run: Moved) -> float:
         """Largest distance of the elements' tip from the one solved well, of its range."""
