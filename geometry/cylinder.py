@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from geometry.arrays import Array
 from geometry.fault import BoomError
 from geometry.load import Body
@@ -68,6 +70,16 @@ class Cylinder:
         """Of its line about the pin of a foot in m."""
         along, up = self.direction
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
+
+    def pull(self, x: Array, foot: Support | None) -> Array:
+        """(num_places,) the normal force in N at x (num_places,) in m of 1 N that it presses with.
+
+        Between its lug and the foot, which holds the segment along x; none without a foot.
+        """
+        if foot is None:
+            return np.zeros(x.shape)
+        between = (min(foot.x, self.x) < x) & (x < max(foot.x, self.x))
+        return np.where(between, np.sign(self.x - foot.x) * self.direction[0], 0.0)
 
     def check(self, where: str, spatial: bool) -> None:
         """Whether there can be such a cylinder.

@@ -31,7 +31,7 @@ from shell_model.drawn_shell import MOMENTS, DrawnShell
 from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
-from shell_model.stress.fields import gather_fields
+from shell_model.stress.fields import gather_fields, with_cylinders
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +106,7 @@ def reduce_boom(
         fields = gather_fields(full.shells, reduced)
         if fields is not None:
             fields = coordinates.of_fields(fields).pad({"mode": (0, springs)}, constant_values=0)
+            fields = with_cylinders(fields, boom, full.shells, system)
     with stages.stage("mesh error"):
         coarse = assemble_boom(boom, planes, options.coarser, comm)
         local, coarse_local = (

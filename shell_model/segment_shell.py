@@ -63,15 +63,19 @@ class SegmentShell(Shell):
 
     @property
     def axial_stress(self) -> Array | None:
-        """(num_triangles,) what the axial force adds to the stress along x in Pa, on rank 0.
+        """(num_triangles,) what the axial force adds to the stress along x in Pa, on rank 0."""
+        return self.pulled(lambda x: -self.segment.compression(x))
 
-        The plain walls carry it, and hand it on to collars.
+    def pulled(self, force: Callable[[Array], Array]) -> Array | None:
+        """(num_triangles,) the stress along x of normal forces in N at x in Pa, on rank 0.
+
+        The plain walls carry them, and hand them on to collars.
         """
         if self.mesh is None:
             return None
         x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
-        force = self.segment.compression(x) / self.segment.area
-        return -force * _evenly(self.segment, self.mesh) / plate_thickness(self.segment, self.mesh)
+        plain = force(x) / self.segment.area
+        return plain * _evenly(self.segment, self.mesh) / plate_thickness(self.segment, self.mesh)
 
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""

@@ -34,16 +34,10 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
     """
     found = list(lines)
     for number, cylinder in enumerate(boom.cylinders, start=1):
-        foot = boom.segments[cylinder.segment].foot
-        if foot is None:
-            continue
-        line = found[cylinder.segment]
+        line, foot = found[cylinder.segment], boom.segments[cylinder.segment].foot
         x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
-        # What is beyond a section is pushed away from the part before it, or with that towards it.
-        pulled = np.where((foot.x < x) & (x < cylinder.x), 1.0, 0.0)
-        pulled -= np.where((cylinder.x < x) & (x < foot.x), 1.0, 0.0)
-        push = cylinder.direction[0] * system.observers[force_name(number)].row
-        normal = line.rows.get("normal", 0.0) + np.outer(pulled, push)
+        pull = np.outer(cylinder.pull(x, foot), system.observers[force_name(number)].row)
+        normal = line.rows.get("normal", 0.0) + pull
         found[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
     return found
 

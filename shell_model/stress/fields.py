@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.spatial import cKDTree
 
+from dynamics.gap_system import GapSystem
+from geometry.boom import Boom
+from geometry.cylinder import force_name
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment_shell import SegmentShell
 from shell_model.shell import ON_LINE
@@ -87,6 +91,34 @@ def gather_fields(
             **{f"plate_{k}": list(mesh.plates) for k, mesh in enumerate(meshes, start=1)},
         },
     )
+
+
+def with_cylinders(
+    fields: xr.Dataset, boom: Boom, shells: Sequence[SegmentShell], system: GapSystem
+) -> xr.Dataset:
+    """Fields with the stresses of what luffing cylinders push along the boom, on rank 0.
+
+    Args:
+        fields: of the system's coordinates.
+        boom: its feet hold what is pushed.
+        shells: of its segments.
+        system: whose observers read the cylinders' forces.
+    """
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        k = cylinder.segment + 1
+        foot = boom.segments[cylinder.segment].foot
+        pulled = shells[cylinder.segment].pulled(partial(cylinder.pull, foot=foot))
+        if pulled is None:
+            continue
+        stress = np.zeros((1, pulled.size, len(COMPONENTS)), dtype=np.float32)
+        stress[0, :, COMPONENTS.index("membrane_x")] = pulled
+        row = system.observers[force_name(number)].row[None]
+        grown: dict[str, Any] = {}
+        for name, more in ((f"coordinates_{k}", row), (f"stress_{k}", stress)):
+            own = fields[name]
+            grown[name] = own.dims, np.concatenate([own.values, more]), own.attrs
+        fields = fields.drop_vars(list(grown)).assign(grown)
+    return fields
 
 
 def _axial_stress(shells: Sequence[SegmentShell]) -> dict[str, _Variable]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -21,6 +22,7 @@ from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
+from shell_model.stress.stresses import ShellStress, wall_forces
 from tests.shell_model.booms import boom_in_space, box_segment
 
 # Thick walls: the section hardly distorts.
@@ -52,6 +54,22 @@ def at_rest(system: GapSystem) -> dict[str, float]:
     return {
         name: float(system.observers[name].row @ position) for name in ("cylinder_force", "tip")
     }
+
+
+@pytest.mark.slow
+def test_walls_carry_what_the_cylinder_pushes_along() -> None:
+    """Reference: by hand, its force times the slope of its line, from its lug to the hinge."""
+    boom = luffed()
+    made = reduce_boom(boom, [], ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)
+    position = equilibrium(made.system, made.system.gathered().load)
+    force = float(made.system.observers["cylinder_force"].row @ position)
+    assert made.fields is not None
+    state = ("time", "mode"), position[None].astype(np.float32)
+    stress = ShellStress.of(made.fields.assign(state=state, time=("time", [0.0])))
+    along, _ = CYLINDER.direction
+    for x, expected in ((1.0, along * force), (2.0, along * force), (4.0, 0.0)):
+        axial = sum(wall.axial for wall in wall_forces(stress, 0.0, 0, x).values())
+        assert axial == pytest.approx(expected, abs=2e-3 * force)
 
 
 @pytest.mark.slow
