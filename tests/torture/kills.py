@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from runs import CASES
+from tests.torture.shared_cache import COMMAND
 
 Row = tuple[str, int, int, str]
 
@@ -29,7 +30,7 @@ _COARSE = CASES / "coarse.toml"
 _SEED = 76
 # In the names of all that is not whole yet.
 _IN_THE_MAKING = "protractile-"
-_COMMAND = sys.executable, "-m", "runs"
+_COMMAND = sys.executable, "-c", COMMAND
 _RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
 
 # Models and what is varied of each command.

@@ -17,8 +17,8 @@ Row = tuple[str, int, int, str]
 _ROOT = Path(__file__).parents[2]
 _COARSE = CASES / "coarse.toml"
 _SHELL = "--models", "shell", "--mesh-size", "1"
-# One figure is written as all of them are.
-_COMMAND = """
+# The command, with one figure, which is written as all of them are.
+COMMAND = """
 from runs import cli
 from runs.report import figures
 figures.FIGURES = figures.FIGURES[-1:]
@@ -65,7 +65,7 @@ def one_folder(folder: Path, tries: int, models: Sequence[str]) -> Row:
 
 def _start(models: Sequence[str], out: Path, cache: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-c", _COMMAND, "run", str(_COARSE), *models, "--out", str(out)],
+        [sys.executable, "-c", COMMAND, "run", str(_COARSE), *models, "--out", str(out)],
         env=os.environ | {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": str(cache)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
