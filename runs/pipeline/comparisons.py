@@ -7,7 +7,7 @@ the beginning to the end: friction takes what impacts would otherwise let grow.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import xarray as xr
 
@@ -41,6 +41,21 @@ def reference_of(models: Iterable[Model]) -> str | None:
     shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
     return candidates[-1].name if candidates else None
+
+
+def leading(case: Case, models: Sequence[str]) -> set[str]:
+    """Those that are read first: the last shell, the last beam with play, the first without.
+
+    All of up to three, and of kinds that a run lacks the last one with play.
+    """
+    if len(models) <= 3:
+        return set(models)
+    ran = [model for model in case.models if model.name in models]
+    loose = [model for model in ran if not model.play_free]
+    shells = [model.name for model in loose if model.meshed]
+    beams = [model.name for model in loose if not model.meshed]
+    tied = [model.name for model in ran if model.play_free]
+    return {*shells[-1:], *beams[-1:], *tied[:1]}
 
 
 def compare_models(

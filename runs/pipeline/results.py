@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.pipeline.cautions import of_buckling, of_tip, slips
+from runs.pipeline.comparisons import leading, reference_of
 from runs.pipeline.place_names import place_names
 from runs.pipeline.summary import Summary
 
@@ -40,7 +42,7 @@ CONVENTIONS = "CF-1.8"
 POOR = 0.01
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Results:
     """One run.
 
@@ -107,9 +109,26 @@ class Results:
         """The models that have not failed."""
         return [model for model in self.case.models if model.name in self.summary.models]
 
+    @cached_property
+    def boom(self) -> Boom:
+        """Of the case."""
+        return build_boom(self.case)
+
+    @cached_property
+    def reference(self) -> str | None:
+        """The model that the others are held against."""
+        return reference_of(self.ran)
+
+    @cached_property
+    def read_first(self) -> list[str]:
+        """The models that are read first, before the others the one that these are held against."""
+        names = list(self.summary.models)
+        first = leading(self.case, names)
+        return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
+
     def cautions(self) -> list[str]:
         """What the results are not worth, a line each."""
-        boom = build_boom(self.case)
+        boom = self.boom
         largest = np.abs(self.trajectories["tip"].values).max(axis=1)
         models = self.summary.models.items()
         far = [

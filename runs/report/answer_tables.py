@@ -6,10 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Moved, Peak, PlayAdds
-from runs.pipeline.comparisons import reference_of
 from runs.pipeline.results import Results
 from runs.report.drive_tables import drive_table, swing_table
-from runs.report.figure_context import leading
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, number
@@ -191,11 +189,10 @@ def stress_table(results: Results) -> Table | None:
 def life_table(results: Results) -> Table | None:
     """Rainflow ranges of each segment, of the models that are read first."""
     answers = results.summary.answers
-    first = leading(results.case, list(results.summary.models))
     rows = [
         (name, life)
         for name, own in (answers.models.items() if answers else ())
-        if name in first
+        if name in results.read_first
         for life in own.life
     ]
     if not rows:
@@ -237,7 +234,7 @@ def answer_tables(results: Results) -> list[Table]:
 
 def play_of(results: Results) -> PlayAdds | None:
     """Of the model that the others are held against."""
-    answers, reference = results.summary.answers, reference_of(results.ran)
+    answers, reference = results.summary.answers, results.reference
     known = answers.play if answers else []
     return next((one for one in known if one.model == reference and one.numbers), None)
 
@@ -247,23 +244,13 @@ def hardly(one: Added) -> bool:
     return one.share is not None and abs(one.share) < HARDLY
 
 
-def read_first(results: Results) -> list[str]:
-    """The models that are read first, before the others the one that these are held against."""
-    first = leading(results.case, list(results.summary.models))
-    reference = reference_of(results.ran)
-    return sorted(
-        (name for name in results.summary.models if name in first),
-        key=lambda name: name != reference,
-    )
-
-
 def _moved(results: Results) -> dict[str, Moved]:
     """Of the models that are read first."""
     answers = results.summary.answers
     own = answers.models if answers else {}
     return {
         name: moved
-        for name in read_first(results)
+        for name in results.read_first
         if name in own and (moved := own[name].moved) is not None
     }
 

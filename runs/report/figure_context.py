@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
-from runs.case.schema import Case
 from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.report import theme
@@ -85,7 +84,7 @@ class Pen:
             if model.play_free
         }
         self.answers = results.summary.answers
-        self.leading = leading(results.case, self.models)
+        self.leading = results.read_first
 
     def of(self, name: str, variable: str) -> Array:
         """(num_times,) of one model; (num_times, num_stations) of what stations have."""
@@ -174,21 +173,6 @@ class Pen:
         if chart is not None and chart.thinned:
             caption += THINNED
         return Figure(path, title, caption, statements, part, chart)
-
-
-def leading(case: Case, models: Sequence[str]) -> set[str]:
-    """Those that are read first: the last shell, the last beam with play, the first without.
-
-    All of up to three, and of kinds that a run lacks the last one with play.
-    """
-    if len(models) <= 3:
-        return set(models)
-    ran = [model for model in case.models if model.name in models]
-    loose = [model for model in ran if not model.play_free]
-    shells = [model.name for model in loose if model.meshed]
-    beams = [model.name for model in loose if not model.meshed]
-    tied = [model.name for model in ran if model.play_free]
-    return {*shells[-1:], *beams[-1:], *tied[:1]}
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:

@@ -9,10 +9,8 @@ from typing import NamedTuple
 
 from geometry.arrays import Array
 from geometry.typography import signed
-from runs.case.build import build_boom
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
-from runs.pipeline.comparisons import reference_of
 from runs.pipeline.results import Results
 from runs.pipeline.trust import off_at_rest
 from runs.report.answer_tables import (
@@ -24,7 +22,6 @@ from runs.report.answer_tables import (
     amount,
     hardly,
     play_of,
-    read_first,
 )
 from runs.report.drawn_axis import driven
 from runs.report.figure_context import farthest
@@ -43,7 +40,7 @@ def first_table(results: Results) -> Table | None:
     answers = results.summary.answers
     if answers is None:
         return None
-    names = read_first(results)
+    names = results.read_first
     own = {name: answers.models[name] for name in names}
     tips = {name: results.trajectories["tip"].sel(model=name).values for name in names}
     walls = {name: _walls(own[name]) for name in names}
@@ -83,7 +80,7 @@ def first_table(results: Results) -> Table | None:
 
 def trust_line(results: Results) -> str:
     """How far the other models with play are off the one they are held against; else empty."""
-    answers, reference = results.summary.answers, reference_of(results.ran)
+    answers, reference = results.summary.answers, results.reference
     if answers is None or reference is None:
         return ""
     loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
@@ -95,7 +92,7 @@ def trust_line(results: Results) -> str:
     ]
     if not told:
         return ""
-    behind = [name for name in results.summary.models if name not in read_first(results)]
+    behind = [name for name in results.summary.models if name not in results.read_first]
     more = f" Of {_listed(behind)} tables and figures below tell." if behind else ""
     return (
         f"Held against {reference}, the tip at rest under the largest loads is off: "
@@ -135,7 +132,7 @@ def strength_sentence(results: Results) -> str:
 
     Where neither strengths nor allowable pressures are known there is nothing to be said.
     """
-    answers, first = results.summary.answers, read_first(results)[0]
+    answers, first = results.summary.answers, results.read_first[0]
     own = answers.models[first] if answers else ModelAnswers()
     pad = _hardest_pads(results).get(first)
     used: list[tuple[float, str, str]] = []
@@ -246,8 +243,8 @@ def _place(largest: _Largest) -> str:
 def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """What the table's numbers are."""
     models = sorted(
-        (model for model in results.ran if model.name in read_first(results)),
-        key=lambda model: read_first(results).index(model.name),
+        (model for model in results.ran if model.name in results.read_first),
+        key=lambda model: results.read_first.index(model.name),
     )
     yield f"{'; '.join(map(_model, models))}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
@@ -265,7 +262,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
         yield f"Pad: one of a pair, at its peak{bears and f'; %: of the allowable {bears}'}."
-    strengths = _span(one.material.yield_strength for one in build_boom(results.case).segments)
+    strengths = _span(one.material.yield_strength for one in results.boom.segments)
     if strengths:
         yield f"Stresses: % of the yield strength, {strengths}."
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}

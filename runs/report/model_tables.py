@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dynamics.predictability.horizon import SHARES
 from runs.case.build import contact_laws
-from runs.pipeline.comparisons import reference_of, rubs
+from runs.pipeline.comparisons import rubs
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import Cell, Column, Table
@@ -149,7 +149,7 @@ def law_table(results: Results) -> Table | None:
 def space_table(results: Results) -> Table | None:
     """First peaks along both directions against the reference; None for a flat boom."""
     models, duration = results.summary.models, results.case.time.duration
-    reference = reference_of(results.ran)
+    reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:
         return None
     columns = [Column("model", list(models))]

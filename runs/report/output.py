@@ -14,10 +14,10 @@ from typing import Any
 import xarray as xr
 
 from runs.case import toml
-from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
 from runs.folder.files import beside, whole
+from runs.pipeline.comparisons import leading
 from runs.pipeline.results import (
     CASE,
     CONVENTIONS,
@@ -33,7 +33,7 @@ from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
 from runs.report.document import render
 from runs.report.extruded import of_beam
-from runs.report.figure_context import Figure, leading
+from runs.report.figure_context import Figure
 from runs.report.figures import draw
 from runs.report.moving_surface import MOST_POINTS, MovingSurface
 from runs.report.tables import TextTable
@@ -122,7 +122,7 @@ def write(
                 _write_shell(run.shells[name], name, folder, prefix, mesh_folder)
             surface = _surface(run) if find_spec("plotly") else None
             if surface is not None:
-                surface = surface.drawn_out(build_boom(results.case))
+                surface = surface.drawn_out(results.boom)
                 _write_text(folder / VIEWER, viewer(results.case, surface))
             figures = _draw_figures(results, folder)
             gather()
@@ -162,7 +162,7 @@ def _surface(run: Run) -> MovingSurface | None:
     first = leading(results.case, list(run.beams))
     with_play = [m.name for m in results.ran if m.name in first and not m.play_free]
     name = [*first, *with_play][-1]
-    return of_beam(build_boom(results.case), name, run.beams[name])
+    return of_beam(results.boom, name, run.beams[name])
 
 
 def write_report(

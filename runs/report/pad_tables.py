@@ -14,7 +14,7 @@ from dynamics.contact import ContactLaw
 from geometry.arrays import Array
 from geometry.boom import Direction, Joint
 from geometry.joint import SIDES
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import contact_laws
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
 from runs.pipeline.results import Results
 from runs.report.stress_tables import PER_KILO, PER_MEGA
@@ -72,7 +72,7 @@ def pressed_pads(results: Results) -> Iterator[PressedPad]:
     case = results.case
     if not any(table.pad or table.pads for table in case.joints):
         return
-    boom = build_boom(case)
+    boom = results.boom
     peaks = results.trajectories["contact_force_peak"]
     for model in (model for model in results.ran if not model.play_free):
         station, own = count(), peaks.sel(model=model.name)

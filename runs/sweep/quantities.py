@@ -9,7 +9,6 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
-from runs.case.build import build_boom
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.results import Results
 
@@ -87,7 +86,7 @@ def measure(results: Results, model: str) -> Measured:
         **_answered(ModelAnswers() if answers is None else answers.models[model]),
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "peak_contact_force": summary.peak_contact_force,
-        "mass": mass(build_boom(results.case)),
+        "mass": mass(results.boom),
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,

@@ -12,8 +12,8 @@ import pytest
 
 from runs import CASES
 from runs.case.reading import load
+from runs.pipeline.comparisons import leading
 from runs.report.charts import MOST, Chart, Curve, extremes, packed_charts, packed_plotly
-from runs.report.figure_context import leading
 
 
 def unpacked(text: str, form: str) -> np.ndarray:
