@@ -13,6 +13,7 @@ import xarray as xr
 from dynamics.damping import pressed_modes
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from geometry.drawing import drives_below
 from geometry.load import Load
 from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
@@ -76,7 +77,7 @@ class ShellOutput:
             **_lugs(boom),
             **_signs(boom),
             **_modes(reduced),
-        ).assign_attrs(model=name, segments=json.dumps(names))
+        ).assign_attrs(model=name, segments=json.dumps(names), drawn=json.dumps(_drawn(boom)))
         shell = ShellStress.of(fields)
         stresses = near_places(shell, _places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
@@ -162,6 +163,12 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
         "pressed_mode": ("pressed_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
         "pressed_mode_shape": (("pressed_mode", "mode"), modes / largest[:, None]),
     }
+
+
+def _drawn(boom: Boom) -> list[list[str]]:
+    """The results that together tell how far each segment is drawn along."""
+    drives = [drives_below(boom.joints, number) for number in range(len(boom.segments))]
+    return [[f"drawn_out-{n + 1}" if n else "drawn_out" for n in below] for below in drives]
 
 
 def _joints(boom: Boom) -> dict[str, Any]:

@@ -87,7 +87,7 @@ class BoomView:
             low, high = min(low, moved[:, 2].min()), max(high, moved[:, 2].max())
         # A scale has two ends, even at rest.
         largest = 1.0e3 * max(high, -low, SAME_PLACE)
-        begin, end = shell.points[:, 0].min(), shell.points[:, 0].max()
+        begin, end = reach(shell, instants)
         half = SECTION_DRAWN * shell.points[:, 2].max()
         play = sum(overlap.clearance for overlap in shell.overlaps)
         scale = round_scale(
@@ -103,6 +103,13 @@ class BoomView:
         centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
         camera = Camera(centre, width, pixels, elevation=10.0)
         return cls(scale, largest, camera)
+
+
+def reach(shell: MovingShell, instants: Sequence[Instant]) -> tuple[float, float]:
+    """The least and the largest x in m at which the boom is, drawn out as it may be."""
+    x = shell.points[:, 0]
+    places = [x, *(x + shell.along(instant.time) for instant in instants)]
+    return float(np.min(places)), float(np.max(places))
 
 
 def draw_boom(
@@ -126,7 +133,7 @@ def draw_boom(
     camera = view.camera
     time, tip = shell.motion["time"].values, shell.motion["tip"].values
     sheet = Sheet(camera.pixels, 325, part)
-    sheet.mark_x(camera, shell.points[:, 0].min(), shell.points[:, 0].max())
+    sheet.mark_x(camera, *reach(shell, instants))
     bar = sheet.figure.colorbar(
         ScalarMappable(Normalize(0.0, view.largest), theme.DEFLECTION),
         cax=sheet.axes(1110, 150, 420, 40),
@@ -142,6 +149,7 @@ def draw_boom(
     sheet.move(past, now)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     where, black = ("seen from above; ", "") if shell.from_above else ("", "; black: supports")
+    still = "at rest, as at t = 0" if shell.ways.size else "at rest"
     black += " and cylinders" if shell.lugs else ""
     springs = [sign for sign in shell.signs if sign.kind == SPRING]
     grey = [*(["stops"] if shell.stops else []), *(["springs"] if springs else [])]
@@ -168,6 +176,7 @@ def draw_boom(
         all_moved = shell.displacements([instant.time for instant in instants])
         for instant, moved in zip(instants, all_moved, strict=True):
             places = shell.drawn(moved, view.scale, SECTION_DRAWN)
+            places[:, 0] += shell.along(instant.time)
             scene.surface(
                 "boom",
                 places,
@@ -185,7 +194,7 @@ def draw_boom(
             sheet.write(
                 instant.heading(shell, float(tip[last])),
                 f"{where}drawn: displacements and play × {view.scale:g}, sections × "
-                f"{SECTION_DRAWN:g}\ngrey: at rest{black}{pace}",
+                f"{SECTION_DRAWN:g}\ngrey: {still}{black}{pace}",
             )
             yield sheet.image()
 

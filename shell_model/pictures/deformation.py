@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -121,6 +121,8 @@ class MovingShell:
         stress: of the triangles.
         from_above: whether y has taken the place of z, see :meth:`views`.
         names: of the segments.
+        ways: (num_times, num_segments) how far drives have moved each along x since the start, in
+            m, at the times of ``motion``; nothing where there is no drive.
     """
 
     points: Array
@@ -137,6 +139,7 @@ class MovingShell:
     stress: ShellStress
     from_above: bool
     names: Sequence[str]
+    ways: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset) -> list[MovingShell]:
@@ -149,8 +152,9 @@ class MovingShell:
                 joints: ``joint_outer``, ``joint_inner``, ``clearance`` and ``lateral_clearance``
                 (joint), ``station_joint`` (station); ``stop_segment``, ``stop_x``, ``stop_side``
                 and ``stop_clearance`` (stop); ``lug_segment``, ``lug_x``, ``lug_along`` and
-                ``lug_up`` (lug); ``sign_segment``, ``sign_x`` and ``sign_kind`` (sign). What the
-                boom has none of may be missing.
+                ``lug_up`` (lug); ``sign_segment``, ``sign_x`` and ``sign_kind`` (sign); attribute
+                ``drawn``, for each segment the names in ``motion`` of what draws it, as JSON. What
+                the boom has none of may be missing.
             motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
                 ``contact_force`` and ``contact_force_peak`` in N; coordinate ``direction`` of the
                 stations.
@@ -172,6 +176,7 @@ class MovingShell:
             stress=ShellStress.of(fields),
             from_above=False,
             names=_names(fields),
+            ways=_ways(fields, motion),
         )
         sideways = _overlaps(fields, directions, "y")
         if not sideways:
@@ -225,6 +230,18 @@ class MovingShell:
         x, _, z = self.points.T
         whole = np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
         return np.asarray(moved - whole)
+
+    def along(self, t: float) -> Array:
+        """(num_points,) how far drives have moved each along x in m, at a time in s."""
+        if not self.ways.size:
+            return np.zeros(len(self.points))
+        step = int(np.abs(self.motion["time"].values - t).argmin())
+        return self._at_points(self.ways[step])
+
+    def slides(self, overlap: Overlap) -> bool:
+        """Whether a drive moves the inner segment of an overlap in the outer one."""
+        both = [overlap.outer, overlap.inner]
+        return bool(self.ways.size and np.ptp(self.ways[:, both], axis=1).any())
 
     def half_height(self, segment: int) -> float:
         """Half of how tall a segment's section is, in m."""
@@ -331,6 +348,15 @@ def _names(fields: xr.Dataset) -> list[str]:
     given = str(fields.attrs.get("segments", ""))
     count = int(fields["segment"].max()) + 1
     return list(json.loads(given)) if given else [f"segment {n + 1}" for n in range(count)]
+
+
+def _ways(fields: xr.Dataset, motion: xr.Dataset) -> Array:
+    """Of each segment, the sum of the results that tell how far it is drawn along."""
+    names = json.loads(str(fields.attrs.get("drawn", "[]")))
+    if not any(names):
+        return np.zeros((0, 0))
+    none = np.zeros(motion.sizes["time"])
+    return np.column_stack([sum((motion[n].values for n in own), none) for own in names])
 
 
 def _overlaps(fields: xr.Dataset, directions: npt.NDArray[np.str_], along: str) -> list[Overlap]:

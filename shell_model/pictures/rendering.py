@@ -88,6 +88,9 @@ def render_snapshots(
             for name, picture in zip(when, draw_boom(seen, instants, view, end), strict=True):
                 drawn[f"boom{above}-{name}.png"] = picture
             for number, overlap in enumerate(seen.overlaps, start=1):
+                if seen.slides(overlap):
+                    # Its stations do not stay where these pictures look.
+                    continue
                 joint = above if number == 1 else f"{above}-{number}"
                 pictures = {
                     "overlap": draw_overlap(seen, instants, overlap),

@@ -123,6 +123,7 @@ def draw_stress(
         for instant in instants:
             values = smoothed(shell, shell.stress.at(instant.time).largest())
             places = shell.drawn(shell.displacement(instant.time), view.scale, SECTION_DRAWN)
+            places[:, 0] += shell.along(instant.time)
             small.surface("boom", *apart(places, shell.triangles), **scale.look(values))
             small.outline("edges", places, edges, theme.INK, 1.2)
             sheet.inset(small.seen_by(view.camera), 20, 550)

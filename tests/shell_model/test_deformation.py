@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from shell_model.pictures.boom import Instant, reach
 from shell_model.pictures.deformation import MovingShell, round_scale
 from shell_model.pictures.rendering import where_pressed
 from shell_model.pictures.stress import apart, smoothed
@@ -42,6 +43,23 @@ def test_displacement_is_the_sum_of_the_modes(fields: xr.Dataset, trajectories: 
     np.testing.assert_allclose(moved[:, 0], -z * slope, atol=1e-8)
     assert not moved[:, 1].any()
     assert not shell.displacement(0.0)[~is_inner].any()
+
+
+def test_segments_move_along_as_they_are_drawn_out(
+    fields: xr.Dataset, trajectories: xr.Dataset
+) -> None:
+    """Reference (analytic): the inner segment is 2 m farther out at 0.5 s, the outer one stays."""
+    motion = trajectories.sel(model="shell")
+    still = MovingShell.views(fields, motion)[0]
+    assert not still.along(0.5).any()
+    assert not still.slides(still.overlaps[0])
+    drawn = motion.assign(drawn_out=("time", 4.0 * motion["time"].values))
+    shell = MovingShell.views(fields.assign_attrs(drawn='[[], ["drawn_out"]]'), drawn)[0]
+    assert shell.slides(shell.overlaps[0])
+    is_inner = np.arange(len(shell.points)) >= shell.members[1].min()
+    np.testing.assert_allclose(shell.along(0.5), np.where(is_inner, 2.0, 0.0))
+    end = shell.points[:, 0].max()
+    assert reach(shell, [Instant(0.5)]) == pytest.approx((0.0, end + 2.0))
 
 
 def test_supports_are_where_nothing_moves(fields: xr.Dataset, trajectories: xr.Dataset) -> None:
