@@ -79,13 +79,13 @@ class MovingSurface:
         rest = shell.drawn(np.zeros_like(shell.points), scale, SECTION_DRAWN)
         drawn = [
             shell.drawn(moved, scale, SECTION_DRAWN) - rest + scale * moved * [0.0, 1.0, 0.0]
-            for moved in map(shell.displacement, time.tolist())
+            for moved in shell.displacements(time.tolist())
         ]
         parts, shapes = few_shapes(np.array(drawn).reshape(time.size, -1))
         segment = np.zeros(len(rest), dtype=np.int32)
         for number, members in enumerate(shell.members):
             segment[members] = number
-        stresses = [smooth(shell, shell.stress.at(t).largest()) for t in time.tolist()]
+        stresses = [smooth(shell, s.largest()) for s in shell.stress.instants(time.tolist())]
         return cls(
             model=str(fields.attrs["model"]),
             time=time,

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-import meshio
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress
+from shell_model.pictures.vtu import TriangleFiles
+from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
 # A series has so many frames at most, and fewer of a fine mesh: all triangles of all frames, of
 # about 50 bytes each, make 50 MB at most. The paper's boom takes 14 MB.
@@ -50,12 +50,18 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
         if not known[0] <= t <= known[-1]:
             raise ValueError(f"time must be between {known[0]:g} and {known[-1]:g} s, got {t:g}")
     steps = np.unique([np.abs(known - t).argmin() for t in times])
-    stress, model = ShellStress.of(fields), str(fields.attrs["model"])
+    shell, model = ShellStress.of(fields), str(fields.attrs["model"])
+    triangles = TriangleFiles(fields["points"].values, fields["triangles"].values)
+    segment = (fields["segment"].values + 1).astype(np.int32)
+    modes, states = fields["modes"].values, fields["state"].values[steps]
     digits = len(str(steps.size - 1))
     written = []
-    for number, step in enumerate(steps):
+    for number, (state, stress) in enumerate(
+        zip(states, shell.instants(known[steps].tolist()), strict=True)
+    ):
         path = folder / f"{model}-{number:0{digits}}.vtu"
-        _frame(fields, stress, int(step)).write(path)
+        moved = np.tensordot(state, modes, axes=1).astype(np.float32)
+        triangles.write(path, {"displacement (m)": moved}, {"segment": segment, **_named(stress)})
         written.append(path)
     collection = folder / f"{model}.pvd"
     names = [path.name for path in written]
@@ -63,22 +69,13 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
     return [*written, collection]
 
 
-def _frame(fields: xr.Dataset, shell: ShellStress, step: int) -> meshio.Mesh:
-    state, modes = fields["state"].values[step], fields["modes"].values
-    stress = shell.at(float(shell.time[step]))
-    triangles: dict[str, npt.NDArray[np.generic]] = {"segment": fields["segment"].values + 1}
-    triangles |= {f"von Mises, {face} (Pa)": stress.von_mises(face) for face in FACES}
+def _named(stress: Stress) -> dict[str, npt.NDArray[np.generic]]:
+    """What is on triangles, by its name."""
     components = np.concatenate([stress.membrane, stress.bending], axis=1)
-    triangles |= {
-        f"{name.replace('_', ' ')} (Pa)": np.ascontiguousarray(values)
+    return {f"von Mises, {face} (Pa)": stress.von_mises(face) for face in FACES} | {
+        f"{name.replace('_', ' ')} (Pa)": values
         for name, values in zip(COMPONENTS, components.T, strict=True)
     }
-    return meshio.Mesh(
-        fields["points"].values,
-        [("triangle", fields["triangles"].values)],
-        point_data={"displacement (m)": np.tensordot(state, modes, axes=1).astype(np.float32)},
-        cell_data={name: [values] for name, values in triangles.items()},
-    )
 
 
 def _write_collection(path: Path, times: Sequence[float], names: Sequence[str]) -> None:

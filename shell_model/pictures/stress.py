@@ -57,8 +57,8 @@ class StressScale:
     def of(cls, shell: MovingShell, instants: Iterable[Instant]) -> StressScale:
         """From all triangles at these instants."""
         end, largest = 0.0, 0.0
-        for instant in instants:
-            values = shell.stress.at(instant.time).largest()
+        for stress in shell.stress.instants([instant.time for instant in instants]):
+            values = stress.largest()
             rising = values.argsort()
             covered = np.cumsum(shell.stress.areas[rising])
             place = int(np.searchsorted(covered, SHOWN_AREA * covered[-1]))

@@ -41,6 +41,9 @@ SAME_LINE = 1.0e-6
 # Numbers that are in memory at once when a history is computed: what a processor keeps at hand.
 _AT_ONCE = 1_000_000
 
+# Instants that are computed together.
+_TOGETHER = 10
+
 
 class Stress(NamedTuple):
     """Stresses at the centroids of triangles, in Pa.
@@ -141,14 +144,21 @@ class ShellStress:
 
     def at(self, t: float) -> Stress:
         """Of all triangles, at the output time next to ``t`` (s)."""
-        step = int(np.abs(self.time - t).argmin())
-        values = [
-            np.tensordot(state[step], modes, axes=1)
-            for state, modes in zip(self.states, self.modes, strict=True)
-        ]
-        whole = np.concatenate(values)
-        whole[:, 0] += self.axial
-        return _stress(whole)
+        return next(self.instants([t]))
+
+    def instants(self, times: Sequence[float]) -> Iterator[Stress]:
+        """Of all triangles, at the output times next to ``times`` (s), one after the other."""
+        steps = [int(np.abs(self.time - t).argmin()) for t in times]
+        # The modes, which do not fit into a processor's memory, are read once for several times.
+        for begin in range(0, len(steps), _TOGETHER):
+            some = steps[begin : begin + _TOGETHER]
+            values = [
+                np.tensordot(state[some], modes, axes=1)
+                for state, modes in zip(self.states, self.modes, strict=True)
+            ]
+            together = np.concatenate(values, axis=1)
+            together[..., 0] += self.axial
+            yield from map(_stress, together)
 
     def over_time(
         self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
