@@ -24,7 +24,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
+from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
@@ -42,9 +44,13 @@ from runs.studies.working_load import Point
 NEAR_WEBS = 0.20, 0.70
 # Under a pad, in d²/(E t³), d from the middle of the pad to the web.
 PADS = 1.8
+# How much too high springs leave free bending, over the square of its frequency over the flange's.
+FLANGES = 0.065
 # What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
 UNEVEN = 0.09
 _DENSITY = 7850.0
+# A mode of the shell is the beam's if its frequency is as near, as a part.
+_NEAR = 0.15
 # What is allowed of the geometric mean of measured errors over those of the rule, and of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
 # Rules of more than this say no more than that the tip is lost.
@@ -239,6 +245,7 @@ class Measured:
         points: play and load.
         duration: of the motions in s.
         peaks, tips: (num_points,) errors by the name of the beam.
+        bending: first frequency of the free inner segment in Hz, by the name of the model.
     """
 
     rule: Rule
@@ -246,6 +253,31 @@ class Measured:
     duration: float
     peaks: Mapping[str, Array]
     tips: Mapping[str, Array]
+    bending: Mapping[str, float]
+
+
+def flange_frequency(case: Case) -> float:
+    """Of a strip of the inner segment's flange, which rests on the webs, in Hz."""
+    inner = build_boom(case).segments[1]
+    box, material = inner.section, inner.material
+    assert isinstance(box, BoxSection)
+    plate = material.youngs_modulus * box.flange**2 / (12.0 * (1.0 - material.poissons_ratio**2))
+    return float(0.5 * np.pi * np.sqrt(plate / material.density) / box.width**2)
+
+
+def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
+    """First frequency of the free inner segment in Hz: that mode moves the tip much."""
+    own, shown = _moving_tip(beam), _moving_tip(shell)
+    bending = min(own)
+    near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}
+    return {SPRUNG: bending, SHELL: max(near, key=near.__getitem__)}
+
+
+def _moving_tip(system: GapSystem) -> dict[float, float]:
+    """How much those modes move the tip that move it much, by their frequencies in Hz."""
+    frequencies, moves = system.omega / (2.0 * np.pi), np.abs(system.observers["tip"].row)
+    much = (frequencies > 0.0) & (moves > 0.1 * moves.max())
+    return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
 
 
 def measure(given: Proportions, sizes: Sizes) -> Measured:
@@ -264,13 +296,13 @@ def measure(given: Proportions, sizes: Sizes) -> Measured:
     }
     points = [Point(*point) for point in product(sizes.plays, sizes.loads)]
     duration = sizes.periods / rule.frequency
-    moved: dict[str, Moved] = {}
+    systems: dict[str, GapSystem] = {}
     with TemporaryDirectory(prefix="protractile-") as scratch:
         cache = Cache(Path(scratch) / "cache")
         for name, model in models.items():
             tools = workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
-            system = build(case, build_boom(case), model, tools).system
-            moved[name] = Moved.of(system, points, duration)
+            systems[name] = build(case, build_boom(case), model, tools).system
+    moved = {name: Moved.of(system, points, duration) for name, system in systems.items()}
     beams = {name: one for name, one in moved.items() if name != SHELL}
     return Measured(
         rule,
@@ -278,6 +310,7 @@ def measure(given: Proportions, sizes: Sizes) -> Measured:
         duration,
         {name: one.peaks_off(moved[SHELL]) for name, one in beams.items()},
         {name: one.off(moved[SHELL]) for name, one in beams.items()},
+        inner_bending(systems[SHELL], systems[SPRUNG]),
     )
 
 
@@ -365,16 +398,39 @@ def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
     )
 
 
-def springs_table(found: Mapping[str, Measured]) -> Table:
-    """What springs leave, at the worst point of each boom."""
+def _too_high(one: Measured) -> float:
+    return one.bending[SPRUNG] / one.bending[SHELL] - 1.0
+
+
+def _flanges(one: Measured, given: Proportions) -> float:
+    return FLANGES * (one.bending[SHELL] / flange_frequency(boom_case(given))) ** 2
+
+
+def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+    """What springs leave, at the worst point of each boom, and the flanges' part in it."""
     return Table.of_rows(
         "rule-of-thumb-springs",
         "A beam with the stiffness and springs of the shell",
-        {"boom": "", "first peak, worst (%)": ".3f", "tip, worst (%)": ".2f"},
+        {
+            "boom": "",
+            "first peak,\nworst (%)": ".3f",
+            "tip,\nworst (%)": ".2f",
+            "free bending of the\ninner segment (Hz)": ".1f",
+            "too high\n(%)": ".2f",
+            "of the\nflanges (%)": ".2f",
+        },
         [
-            (name, 100.0 * float(np.nanmax(one.peaks[SPRUNG])), 100.0 * one.tips[SPRUNG].max())
+            (
+                name,
+                100.0 * float(np.nanmax(one.peaks[SPRUNG])),
+                100.0 * one.tips[SPRUNG].max(),
+                one.bending[SHELL],
+                100.0 * _too_high(one),
+                100.0 * _flanges(one, sizes.booms[name]),
+            )
             for name, one in found.items()
         ],
+        ("Flanges: 0.065 times the square of the frequency over that of a strip on the webs.",),
     )
 
 
@@ -409,6 +465,6 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     return Study(
         "rule-of-thumb",
         "A rule of thumb for beams",
-        [boom_table(found, sizes), scatter_table(every, sizes), springs_table(found)],
+        [boom_table(found, sizes), scatter_table(every, sizes), springs_table(found, sizes)],
         proofs(every),
     )

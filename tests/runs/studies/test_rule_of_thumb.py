@@ -10,7 +10,16 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
 from runs.studies.calibrated_beams import EULER, PLAIN, SPRUNG
-from runs.studies.rule_of_thumb import BOOMS, UNEVEN, Proportions, Rule, Sizes, boom_case, measure
+from runs.studies.rule_of_thumb import (
+    BOOMS,
+    UNEVEN,
+    Proportions,
+    Rule,
+    Sizes,
+    boom_case,
+    flange_frequency,
+    measure,
+)
 from runs.studies.working_load import Point
 
 
@@ -63,6 +72,15 @@ def test_the_first_boom_is_the_paper_s() -> None:
     for segment, mass, second in zip(segments, (83.16, 55.07), (3.7986e-4, 2.1829e-4), strict=True):
         assert segment.mass_per_length == pytest.approx(mass, rel=0.01)
         assert segment.second_moment_of_area == pytest.approx(second, rel=0.01)
+
+
+def test_the_flange_s_frequency_is_that_of_a_strip() -> None:
+    """Reference: analytic, Timoshenko: π/2 √(D/ρt)/b² of a plate that rests on two sides."""
+    case = boom_case(Proportions())
+    width, wall = 0.83 * 0.4945 / 1.634, 4.87e-3
+    rigidity = 2.1e11 * wall**3 / (12.0 * (1.0 - 0.3**2))
+    expected = 0.5 * np.pi * np.sqrt(rigidity / (7850.0 * wall)) / width**2
+    assert flange_frequency(case) == pytest.approx(expected)
 
 
 @pytest.mark.slow
