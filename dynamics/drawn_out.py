@@ -20,7 +20,7 @@ from dynamics.energy import DRAWN_ENERGIES, check_energy
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.drawn_steps import Rows, Still, march_drawn, space_for
-from dynamics.kernels.drawn_strides import strides_for
+from dynamics.kernels.drawn_strides import strides_for, strides_over
 from dynamics.kernels.integrator_state import (
     CHANGES,
     FIRST_CONTACT,
@@ -60,7 +60,7 @@ def integrate_drawn(
     h = output_step / substeps
     state = initial_state(system, motion.position.copy(), motion.velocity.copy())
     still, rows, space = _still(system), _rows(system), space_for(system)
-    tables = row_tables(system)
+    tables, strides = row_tables(system), strides_for(system, h)
 
     columns = (n, n if system.observes_rates else 0, len(DRAWN_ENERGIES), m, m, m, f, len(rows[0]))
     recorded = tuple(np.zeros((outputs + 1, count)) for count in columns)
@@ -79,7 +79,7 @@ def integrate_drawn(
         times = h * np.arange(done * substeps, (done + made) * substeps + 1)
         excitations, ways = _followed(system, times, h)
         straight = excitation_arrays(replace(system, travels=()), times, h)[4]
-        strides = strides_for(system, straight, ways, h)
+        strides = strides_over(strides, tables[3], straight, ways, h)
         march_drawn(
             state, still, rows, tables, ways, excitations, space, strides, h, substeps,
             tuple(array[1 + done : 1 + done + made] for array in recorded),
@@ -111,12 +111,9 @@ def _still(system: GapSystem) -> Still:
     """What of a system does not move."""
     _, given, pressing, _ = friction_arrays(system)
     rates = system.damping if system.damping.any() else np.zeros(0)
-    travel_of = np.full(len(stacked_rows(system)), -1, dtype=np.int64)
-    for row, number, _ in row_tables(system)[3]:
-        travel_of[row] = number
     omega2, load, rates = map(np.ascontiguousarray, (system.omega2, system.load, rates))
     terms, limits = contact_terms(system.laws), contact_limits(system.laws)
-    return omega2, load, terms, limits, rates, given, pressing, travel_of
+    return omega2, load, terms, limits, rates, given, pressing
 
 
 def _rows(system: GapSystem) -> Rows:

@@ -73,11 +73,13 @@ def add_closed_forces(
 def damped_kick(
     v: Array,
     rows: Array,
+    carried: Array,
     force: Array,
     limits: Limits,
     duration: float,
     backward: bool,
     push: Array,
+    driven: Array,
 ) -> float:
     """Change the speeds by forces with contact damping; gives its loss in J.
 
@@ -86,17 +88,19 @@ def damped_kick(
 
     Args:
         v: (num_modes,) is changed.
+        carried: (num_rows,) speeds in m/s that gaps have since rows move.
         force: (num_rows,) elastic forces in N.
         push: (num_rows,) is set to the forces with damping in N.
+        driven: (num_rows,) is given what moves the rows does in J.
     """
     loss = 0.0
-    for position in range(rows.shape[0]):
-        j = rows.shape[0] - 1 - position if backward else position
+    for position in range(force.size):
+        j = force.size - 1 - position if backward else position
         push[j] = 0.0
         if force[j] == 0.0:
             continue
         side = np.sign(force[j])
-        rate = 0.0
+        rate = side * carried[j]
         square = 0.0
         for i in range(v.size):
             rate += side * rows[j, i] * v[i]
@@ -106,6 +110,7 @@ def damped_kick(
         strength = elastic * limits[j]["damping"]
         impulse = max(0.0, (elastic + strength * rate) / (1.0 + 0.5 * strength * square))
         loss += (impulse - elastic) * (rate - 0.5 * impulse * square)
+        driven[j] += side * impulse * carried[j]
         push[j] = side * impulse / duration
         for i in range(v.size):
             v[i] -= side * rows[j, i] * impulse

@@ -11,11 +11,12 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array, Indices
+from dynamics.arrays import Array
 from dynamics.contact import Limits, Terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
-from dynamics.kernels.contact_kicks import contact_energy, contact_forces
+from dynamics.kernels.compiled import borrowed
+from dynamics.kernels.contact_kicks import contact_energy, contact_forces, damped_kick
 from dynamics.kernels.decay import fade, kept_after
 from dynamics.kernels.drawn_strides import Strides, glide
 from dynamics.kernels.friction_step import (
@@ -45,7 +46,7 @@ from dynamics.kernels.integrator_state import (
     read,
 )
 from dynamics.kernels.modal_flow import drive, modal_energy, move, tabulate, travel
-from dynamics.kernels.moving_rows import Tables, carry, moving_drag, moving_kick, place_rows
+from dynamics.kernels.moving_rows import Tables, arrive, average, carry, moving_drag, place_rows
 
 # After so many steps apart it is worth the while to look how many more can be made at once.
 _APART = 8
@@ -55,8 +56,8 @@ _TOGETHER = 1.0e-9
 
 # ω² and load (num_modes,), terms and limits of the laws, rates c of damping (num_modes,) or none
 # (0,), μ and prescribed N (2, num_frictions), 1 where a contact row presses (num_frictions,
-# num_rows), the travel of each row or −1.
-Still = tuple[Array, Array, Terms, Limits, Array, Array, Array, Indices]
+# num_rows).
+Still = tuple[Array, Array, Terms, Limits, Array, Array, Array]
 
 # All rows where a part of a step begins, where it ends, and in the mean (num_all, num_modes);
 # convective rates, what the drive has done at each row in this part and in all (3, num_all).
@@ -95,24 +96,6 @@ def _damp(
     return loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _flow(
-    a: Array,
-    v: Array,
-    flow: Array,
-    time: float,
-    still: Still,
-    excited: bool,
-    now: Array,
-    then: Array,
-    tally: Array,
-) -> None:
-    if excited:
-        travel(a, v, flow, time, still[0], still[1], False, now, then, tally)
-    else:
-        move(a, v, flow)
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def drawn_steps(
     state: State,
@@ -136,12 +119,14 @@ def drawn_steps(
 
     Gives the number of the next step.
     """
-    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = state
-    omega2, load, terms, limits, rates, given, pressing, travel_of = still
-    now, then, middles, told = rows
-    loads, _, spans, parts, _, pushes = excitations
+    whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = borrowed(state)
+    omega2, load, terms, limits, rates, given, pressing = borrowed(still)
+    now, then, middles, told = borrowed(rows)
+    tabled, driving = borrowed(tables), borrowed(excitations)
+    moving = tabled[3]
+    loads, _, spans, parts, _, pushes = driving
     start, centre, end = pushes
-    length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem = space
+    length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem = borrowed(space)
     push, y_ahead, force_ahead = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
@@ -151,17 +136,23 @@ def drawn_steps(
     m, o = y.size, y.size + friction.size
     f = friction.size if rubbing else 0
     d = now.shape[0] - o
-    halved = fading or d > 0 or f > 0
+    damped = fading or d > 0
+    halved = damped or f > 0
     touching_rows, rubbing_rows = then[:m], then[m : m + f]
     between, dragging = middles[m : m + f], middles[o:]
     carried_on, driven_on = carried[o:], driven[o:]
     none, no_rates, no_work = np.zeros(a.size), np.zeros(d), np.zeros(d)
     place = np.zeros(ways.shape[1])
+    # Whether rows moved in the part before, or may have.
+    fresh = True
     k, apart, touching, pressed_then = first, 0, force.any(), False
     for p in range(parts[first], parts[last]):
         span = spans[p]
         left = span
         cuts = 0
+        moves = False
+        for t in range(place.size):
+            moves = moves or ways[p, t] != ways[p + 1, t]
         while left > 0.0:
             before[:] = y
             if f > 0:
@@ -171,37 +162,41 @@ def drawn_steps(
             cut = False
             while True:
                 reached = 1.0 - (left - time) / span
-                for t in range(place.size):
-                    place[t] = ways[p, t] + reached * (ways[p + 1, t] - ways[p, t])
-                place_rows(place, tables, then)
-                if halved:
-                    for j in range(m, now.shape[0]):
-                        for i in range(a.size):
-                            middles[j, i] = 0.5 * (now[j, i] + then[j, i])
+                fresh = fresh or moves or time != length[0]
                 if time != length[0]:
                     length[0] = time
                     tabulate(half, omega2, load, none, 0.5 * time if halved else time)
                     kept_after(rates, 0.25 * time, faded)
-                if f > 0:
+                if fresh:
+                    for t in range(place.size):
+                        place[t] = ways[p, t] + reached * (ways[p + 1, t] - ways[p, t])
+                    place_rows(place, tabled, then)
+                    carried[:] = 0.0
+                if fresh and halved:
+                    average(now, then, moving, middles)
+                if fresh and f > 0:
                     filter_rows(between, half, time, filtered)
-                for j in range(f):
-                    ahead[:] = filtered[j]
-                    _damp(ahead, faded, dragging, no_rates, 0.5 * time, False, no_work)
-                    read(filtered, ahead, matrix[j])
-                    matrix[j] *= 0.5 * time
-                    read(rubbing_rows, then[m + j], masses[j])
-                for j in range(f):
-                    for i in range(j):
-                        matrix[j, i] = matrix[i, j] = 0.5 * (matrix[j, i] + matrix[i, j])
+                    for j in range(f):
+                        ahead[:] = filtered[j]
+                        if damped:
+                            _damp(ahead, faded, dragging, no_rates, 0.5 * time, False, no_work)
+                        read(filtered, ahead, matrix[j])
+                        matrix[j] *= 0.5 * time
+                        read(rubbing_rows, then[m + j], masses[j])
+                    for j in range(f):
+                        for i in range(j):
+                            matrix[j, i] = matrix[i, j] = 0.5 * (matrix[j, i] + matrix[i, j])
+                fresh = moves
                 if excited:
-                    excite(excitations, p, p + 1, 1.0 - left / span, reached)
+                    excite(driving, p, p + 1, 1.0 - left / span, reached)
                 share = 0.5 * time / (substeps * step)
                 driven[:] = 0.0
 
                 loss = 0.0
                 if touching:
-                    carry(now, then, a, time, carried)
-                    loss += moving_kick(
+                    if moves:
+                        carry(now, then, moving, 0, m, a, time, carried)
+                    loss += damped_kick(
                         v, now, carried, force, limits, 0.5 * time, False, push, driven
                     )
                     for j in range(m):
@@ -209,15 +204,20 @@ def drawn_steps(
                 else:
                     push[:] = 0.0
                 if halved:
-                    _flow(a, v, half, 0.5 * time, still, excited, start, centre, tally)
-                    carry(now, then, a, time, carried)
-                    tally[DAMPING] += _damp(
-                        v, faded, dragging, carried_on, 0.5 * time, False, driven_on
-                    )
+                    if excited:
+                        travel(a, v, half, 0.5 * time, omega2, load, False, start, centre, tally)
+                    else:
+                        move(a, v, half)
+                    if moves:
+                        carry(now, then, moving, m, carried.size, a, time, carried)
+                    if damped:
+                        tally[DAMPING] += _damp(
+                            v, faded, dragging, carried_on, 0.5 * time, False, driven_on
+                        )
                     if f > 0:
-                        for i in range(a.size):
-                            ahead[i] = v[i]
-                        _damp(ahead, faded, dragging, carried_on, 0.5 * time, True, no_work)
+                        ahead[:] = v
+                        if damped:
+                            _damp(ahead, faded, dragging, carried_on, 0.5 * time, True, no_work)
                         look_ahead(a, ahead, half, ahead)
                         if excited:
                             drive(ahead, half, centre, end)
@@ -234,17 +234,23 @@ def drawn_steps(
                         tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
                         for j in range(f):
                             driven[m + j] -= grip[MIDDLE, j] * carried[m + j]
-                    tally[DAMPING] += _damp(
-                        v, faded, dragging, carried_on, 0.5 * time, True, driven_on
-                    )
-                    _flow(a, v, half, 0.5 * time, still, excited, centre, end, tally)
+                    if damped:
+                        tally[DAMPING] += _damp(
+                            v, faded, dragging, carried_on, 0.5 * time, True, driven_on
+                        )
+                    if excited:
+                        travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
+                    else:
+                        move(a, v, half)
+                elif excited:
+                    travel(a, v, half, time, omega2, load, False, start, end, tally)
                 else:
-                    _flow(a, v, half, time, still, excited, start, end, tally)
+                    move(a, v, half)
                 pressed_then = contact_forces(a, touching_rows, terms, y, force)
-                if pressed_then or f > 0:
-                    carry(now, then, a, time, carried)
+                if moves and (pressed_then or f > 0):
+                    carry(now, then, moving, 0, o, a, time, carried)
                 if pressed_then:
-                    loss += moving_kick(
+                    loss += damped_kick(
                         v, then, carried, force, limits, 0.5 * time, True, push, driven
                     )
                     for j in range(m):
@@ -276,11 +282,10 @@ def drawn_steps(
                 for j in range(f):
                     if turns[j] <= time * (1.0 + _TOGETHER):
                         grip[SLIDING, j] = 0.0
-            for j in range(now.shape[0]):
+            for j in range(done.size):
                 done[j] += driven[j]
-                if travel_of[j] >= 0:
-                    for i in range(a.size):
-                        now[j, i] = then[j, i]
+            if moves:
+                arrive(now, then, moving)
             touching = pressed_then
             left -= time
             cuts += 1
@@ -312,7 +317,7 @@ def march_drawn(
     of the drive at each row), one row an interval; velocities may have no columns.
     """
     _, a, v, y, _, _, tally, mean, peak, friction, _, _ = state
-    omega2, load, terms, limits, rates, given, pressing, _ = still
+    omega2, load, terms, limits, rates, given, pressing = still
     modal = omega2, load, rates
     # What rubs or drags does so in every step.
     dragged = len(rows[0]) > y.size + friction.size

@@ -21,27 +21,39 @@ from dynamics.kernels.strides import STRIDES, closing_bounds, safe_stride
 Strides = tuple[Indices, Array, Indices, Array, Array, Array, Array]
 
 
-def strides_for(system: GapSystem, straight: Indices, ways: Array, step: float) -> Strides:
-    """What strides of a system need.
-
-    Args:
-        straight: through how many steps from each one on its loads go straight.
-        ways: (num_parts + 1, num_travels) in m, in parts no longer than a step.
-        step: s.
-    """
+def strides_for(system: GapSystem, step: float) -> Strides:
+    """What strides of a system by steps in s need, but for loads and travels of some time."""
     flows = np.array([ModalFlow.over(system, stride * step).stacked() for stride in STRIDES])
     rates, slopes = np.zeros(len(system.laws)), np.zeros(system.rows.shape)
-    fastest = np.abs(np.diff(ways, axis=0)).max(axis=0, initial=0.0) / step
     _, _, coefficients, moving = row_tables(system)
-    for row, number, first in moving:
+    for row, number, first, *_ in moving:
         if row < len(rates):
             knots = system.travels[number].table.knots
             cubic = coefficients[first : first + len(knots) - 1]
             steepest = np.abs(cubic[:, 1]) + 2.0 * np.abs(cubic[:, 2]) + 3.0 * np.abs(cubic[:, 3])
             slopes[row] = (steepest / np.diff(knots)[:, None]).max(axis=0)
-            rates[row] = fastest[number]
-    scratch = np.zeros((3, system.num_modes))
-    return STRIDES, flows, straight, rates, slopes, scratch, np.zeros(len(system.laws))
+    scratch, bounds = np.zeros((3, system.num_modes)), np.zeros(len(system.laws))
+    return STRIDES, flows, np.zeros(0, dtype=np.int64), rates, slopes, scratch, bounds
+
+
+def strides_over(
+    strides: Strides, moving: Indices, straight: Indices, ways: Array, step: float
+) -> Strides:
+    """Strides over some time.
+
+    Args:
+        strides: of the system.
+        moving: the rows of its tables.
+        straight: through how many steps from each one on its loads go straight.
+        ways: (num_parts + 1, num_travels) in m, in parts no longer than a step.
+        step: s.
+    """
+    counts, flows, _, rates, *scratch = strides
+    fastest = np.abs(np.diff(ways, axis=0)).max(axis=0, initial=0.0) / step
+    touching = moving[moving[:, 0] < rates.size]
+    rates[touching[:, 0]] = fastest[touching[:, 1]]
+    slopes, reach, bounds = scratch
+    return counts, flows, straight, rates, slopes, reach, bounds
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -46,7 +46,7 @@ _TOGETHER = 1.0e-9
 
 # A length of step in s (1,), and of this the flow over its half (9, num_modes), what modes keep
 # over a quarter (num_rates,) and dashpots over a half (num_dashpots,), the filtered friction rows
-# and their matrix; scratch for modes (num_modes,), contact rows (3, num_rows), friction rows
+# and their matrix; scratch for modes (num_modes,), contact rows (5, num_rows), friction rows
 # (3, num_frictions), and the problem of bounded impulses.
 Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
@@ -56,7 +56,7 @@ def space_for(system: GapSystem, damping: Damping) -> Space:
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
     rates, _, dashpot_rates = damping
     r, d = rates.size, dashpot_rates.size
-    shapes = ((1,), (9, n), (r,), (d,), (f, n), (f, f), (n,), (3, m), (3, f))
+    shapes = ((1,), (9, n), (r,), (d,), (f, n), (f, f), (n,), (5, m), (3, f))
     length, half, faded, dragged, filtered, matrix, ahead, middle, lines = map(np.zeros, shapes)
     return length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem_for(f)
 
@@ -92,7 +92,7 @@ def lossy_steps(
     loads, _, spans, parts, _, pushes = borrowed(excitations)
     start, centre, end = pushes
     length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = borrowed(space)
-    push, y_ahead, force_ahead = middle
+    push, y_ahead, force_ahead, resting, driven = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     pressed = pressing.any()
@@ -125,7 +125,7 @@ def lossy_steps(
                     excite(excitations, p, p + 1, 1.0 - left / span, 1.0 - (left - time) / span)
                 share = 0.5 * time / (substeps * step)
 
-                loss = damped_kick(v, rows, force, limits, 0.5 * time, False, push)
+                loss = damped_kick(v, rows, resting, force, limits, 0.5 * time, False, push, driven)
                 for j in range(y.size):
                     mean[j] += share * push[j]
                 if excited:
@@ -162,7 +162,7 @@ def lossy_steps(
                 else:
                     move(a, v, half)
                 contact_forces(a, rows, terms, y, force)
-                loss += damped_kick(v, rows, force, limits, 0.5 * time, True, push)
+                loss += damped_kick(v, rows, resting, force, limits, 0.5 * time, True, push, driven)
                 tally[CONTACT] += loss
                 for j in range(y.size):
                     mean[j] += share * push[j]

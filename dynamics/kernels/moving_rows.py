@@ -12,15 +12,17 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import Limits
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 from dynamics.travel import KINDS
 
 # Knots of all travels in m, where those of each begin (num_travels + 1,), coefficients of all
 # pieces (num_pieces of all rows, 4, num_modes), and for each row that moves its position among all
-# rows, its travel, and the first of its pieces (num_moving, 3).
+# rows, its travel, the first of its pieces, and between which entries it changes (num_moving, 5).
 Tables = tuple[Array, Indices, Array, Indices]
+
+# An entry that changes by a smaller part of the largest is constant but for round-off.
+_CONSTANT = 1.0e-13
 
 
 def stacked_rows(system: GapSystem) -> Array:
@@ -30,18 +32,29 @@ def stacked_rows(system: GapSystem) -> Array:
 
 def row_tables(system: GapSystem) -> Tables:
     """The tables of a system in the layout of the compiled loop."""
+    rubbing = any(f.pressed_by or f.normal_force * f.coefficient for f in system.frictions)
     firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in KINDS)])
     first_of = dict(zip(KINDS, firsts[:-1].tolist(), strict=True))
     coefficients, moving, pieces = [np.zeros((0, 4, system.num_modes))], [], 0
     for number, travel in enumerate(system.travels):
         for row, (kind, position) in enumerate(travel.moving):
-            moving.append((first_of[kind] + position, number, pieces))
-            coefficients.append(travel.table.coefficients[:, :, row])
-            pieces += len(coefficients[-1])
+            if kind == "friction_rows" and not rubbing:
+                continue
+            cubics = travel.table.coefficients[:, :, row]
+            moving.append((first_of[kind] + position, number, pieces, *_changing(cubics)))
+            coefficients.append(cubics)
+            pieces += len(cubics)
     knots = [travel.table.knots for travel in system.travels]
     starts = np.cumsum([0, *(len(one) for one in knots)])
     flat = np.ascontiguousarray(np.concatenate(coefficients))
-    return np.concatenate(knots), starts, flat, np.array(moving, dtype=np.int64).reshape(-1, 3)
+    return np.concatenate(knots), starts, flat, np.array(moving, dtype=np.int64).reshape(-1, 5)
+
+
+def _changing(cubics: Array) -> tuple[int, int]:
+    """From which to before which entry a row (num_pieces, 4, num_modes) changes."""
+    reach = np.abs(cubics[:, 1:]).max(axis=(0, 1)) + np.ptp(cubics[:, 0], axis=0)
+    (entries,) = np.nonzero(reach > _CONSTANT * np.abs(cubics).max(initial=0.0))
+    return (int(entries[0]), int(entries[-1]) + 1) if entries.size else (0, 0)
 
 
 @njit(**SUMS)
@@ -49,7 +62,7 @@ def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
     """Set those of all rows that move to where travels have come, ``ways`` (num_travels,) in m."""
     knots, starts, coefficients, moving = tables
     for m in range(moving.shape[0]):
-        row, travel, first = moving[m]
+        row, travel, first, begin, end = moving[m]
         low, high = starts[travel], starts[travel + 1] - 1
         while high - low > 1:
             middle = (low + high) // 2
@@ -59,62 +72,50 @@ def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
                 high = middle
         u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
         piece = first + low - starts[travel]
-        for i in range(rows.shape[1]):
+        for i in range(begin, end):
             bent = coefficients[piece, 2, i] + u * coefficients[piece, 3, i]
             straight = coefficients[piece, 1, i] + u * bent
             rows[row, i] = coefficients[piece, 0, i] + u * straight
 
 
 @njit(**SUMS)
-def carry(now: Array, then: Array, a: Array, time: float, rates: Array) -> None:
-    """Fill in the convective rates ΔB a/τ of all rows in m/s."""
-    for j in range(now.shape[0]):
+def carry(
+    now: Array,
+    then: Array,
+    moving: Indices,
+    first: int,
+    last: int,
+    a: Array,
+    time: float,
+    rates: Array,
+) -> None:
+    """Fill in the convective rates ΔB a/τ in m/s of the rows from ``first`` to before ``last``."""
+    for m in range(moving.shape[0]):
+        j = moving[m, 0]
+        if not first <= j < last:
+            continue
         total = 0.0
-        for i in range(a.size):
+        for i in range(moving[m, 3], moving[m, 4]):
             total += (then[j, i] - now[j, i]) * a[i]
         rates[j] = total / time
 
 
 @njit(**SUMS)
-def moving_kick(
-    v: Array,
-    rows: Array,
-    carried: Array,
-    force: Array,
-    limits: Limits,
-    duration: float,
-    backward: bool,
-    push: Array,
-    driven: Array,
-) -> float:
-    """Change the speeds by contact forces, as :func:`damped_kick` does; gives the loss in J.
+def average(now: Array, then: Array, moving: Indices, middle: Array) -> None:
+    """Fill in the rows that move as they are in the mean."""
+    for m in range(moving.shape[0]):
+        j = moving[m, 0]
+        for i in range(moving[m, 3], moving[m, 4]):
+            middle[j, i] = 0.5 * (now[j, i] + then[j, i])
 
-    Args:
-        carried: (num_rows,) convective rates in m/s.
-        driven: (num_rows,) is given what the drive does at each row in J.
-    """
-    loss = 0.0
-    count = force.size
-    for position in range(count):
-        j = count - 1 - position if backward else position
-        push[j] = 0.0
-        if force[j] == 0.0:
-            continue
-        side = np.sign(force[j])
-        rate = side * carried[j]
-        square = 0.0
-        for i in range(v.size):
-            rate += side * rows[j, i] * v[i]
-            square += rows[j, i] * rows[j, i]
-        elastic = duration * abs(force[j])
-        strength = elastic * limits[j]["damping"]
-        impulse = max(0.0, (elastic + strength * rate) / (1.0 + 0.5 * strength * square))
-        loss += (impulse - elastic) * (rate - 0.5 * impulse * square)
-        driven[j] += side * impulse * carried[j]
-        push[j] = side * impulse / duration
-        for i in range(v.size):
-            v[i] -= side * rows[j, i] * impulse
-    return loss
+
+@njit(**SUMS)
+def arrive(now: Array, then: Array, moving: Indices) -> None:
+    """Set the rows that move to where they come."""
+    for m in range(moving.shape[0]):
+        j = moving[m, 0]
+        for i in range(moving[m, 3], moving[m, 4]):
+            now[j, i] = then[j, i]
 
 
 @njit(**SUMS)
