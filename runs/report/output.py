@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from runs.case import toml
@@ -233,5 +236,16 @@ def _write_csv(trajectories: xr.Dataset, path: Path) -> None:
                 columns[f"{name}@{place}"] = values
         else:
             columns[str(name)] = variable
-    table = xr.Dataset(columns).to_dataframe(["model", "time"])
-    table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
+    values = xr.Dataset(columns).to_array().transpose("model", "time", "variable").values
+    time = trajectories["time"].values
+    line = ",%.9g" * (1 + len(columns)) + "\r\n"
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["model", "time", *columns])
+        for name, rows in zip(trajectories["model"].values, values, strict=True):
+            # A writer's own way with numbers takes four times as long.
+            begin = StringIO()
+            csv.writer(begin, lineterminator="").writerow([name])
+            numbers = np.column_stack([time, rows]).tolist()
+            lines = [(line % tuple(row)).replace("nan", "") for row in numbers]
+            file.writelines(f"{begin.getvalue()}{text}" for text in lines)

@@ -8,7 +8,9 @@ import json
 from dataclasses import asdict, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 
 from runs import CASES
 from runs.case import reading as case_file
@@ -20,7 +22,7 @@ from runs.paper.rules import judge
 from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
-from runs.report.output import write, write_report
+from runs.report.output import _write_csv, write, write_report
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
@@ -94,3 +96,23 @@ def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
 
 def test_columns_of_a_flat_boom_have_their_x(folder: Path) -> None:
     assert [name for name in header(folder) if name.startswith("gap@")] == ["gap@9", "gap@10"]
+
+
+def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
+    """Reference: other code, byte by byte; a model without friction leaves its column empty."""
+    plain = run.results.trajectories
+    data = xr.concat(
+        [plain, plain.assign(friction_force=np.nan * plain["friction_force"])], "model"
+    )
+    data = data.assign_coords(model=["a, b", "nan"])
+    _write_csv(data, tmp_path / "ours.csv")
+    columns = {}
+    for name, variable in data.data_vars.items():
+        if "station" in variable.dims:
+            for number, place in enumerate(data["place"].values):
+                columns[f"{name}@{place}"] = variable.isel(station=number, drop=True)
+        else:
+            columns[str(name)] = variable
+    table = xr.Dataset(columns).to_dataframe(["model", "time"])
+    table.to_csv(tmp_path / "theirs.csv", float_format="%.9g", lineterminator="\r\n")
+    assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
