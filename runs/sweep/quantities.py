@@ -71,12 +71,12 @@ QUANTITIES = (
 def measure(results: Results, model: str) -> Measured:
     """The quantities of one model of a run.
 
-    The tip at rest is that under the largest loads, the deflection's static part; the tip's
-    amplitude, its dynamic part, is half the way between its highest and its lowest place. The
-    dynamic factor is the largest deflection over the largest at rest. The contact force is the
-    largest mean of an output interval at any station, the peak of a blow what no pad feels as long;
-    the stress that of an outer fibre, of section forces, the wall stress a shell's own over a
-    patch, the damage that of a life at the worst place. Swings are those of
+    The tip at rest is that under the largest loads, wherever it is drawn to, the deflection's
+    static part; the tip's amplitude, its dynamic part, is half the way between its highest and its
+    lowest place. The dynamic factor is the largest deflection over the largest at rest. The contact
+    force is the largest mean of an output interval at any station, the peak of a blow what no pad
+    feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
+    own over a patch, the damage that of a life at the worst place. Swings are those of
     :class:`runs.pipeline.answers.Swing`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
