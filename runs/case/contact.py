@@ -271,7 +271,7 @@ class JointTable(Table):
     contact_length: Length | None = Field(
         None,
         description="the length along x in m on which stations press the corners, as long as a "
-        "slide pad, which shells alone heed; a tenth of the overlap unless given",
+        "slide pad, which shells alone heed; a tenth of the least overlap unless given",
     )
     dashpot: Annotated[NotNegative, In("N s/m")] = Field(
         0.0,
