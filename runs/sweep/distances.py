@@ -147,7 +147,7 @@ def comparable_until(
     end = float(time[-1])
     if model.play_free or all(joint.friction and joint.normal_forces for joint in case.joints):
         return end
-    tools = None if comm is None else workshop(comm, meshes, cache=cache)
+    tools = None if comm is None else workshop(comm, meshes / model.name, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:

@@ -18,6 +18,7 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
+from runs.folder.cache import Cache
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan as Moving
 from runs.sweep import output
@@ -31,7 +32,7 @@ from runs.sweep.distances import (
     slow_period,
 )
 from runs.sweep.points import Plan, plan
-from runs.sweep.run import Outcome
+from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
 
 TIME = np.arange(2001) / 1000
@@ -186,3 +187,16 @@ def test_chaos_is_compared_until_its_horizon(tmp_path: Path) -> None:
     joint = case.joints[0].model_copy(update={"friction": 0.2, "normal_forces": (4500.0, 5000.0)})
     rubbing = case.model_copy(update={"joints": (joint,)})
     assert comparable_until(rubbing, model, run_case(rubbing), None, tmp_path, None) == 3.0
+
+
+@pytest.mark.slow
+def test_a_shell_is_a_reference_that_loses_itself(tmp_path: Path) -> None:
+    """Reference: analytic, no tip can be told beyond the end; a shell is built once more for it."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    case = case_file.select(case_file.load(str(COARSE)), "", ["timoshenko", "shell"], 0.5)
+    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.3})})
+    outcome = run_point(case, tmp_path, Cache(tmp_path / "cache"), "shell")
+    assert outcome.failures == {}
+    off = outcome.off["timoshenko"]["tip_off"]
+    assert off is not None
+    assert 0.0 < off < 0.2
