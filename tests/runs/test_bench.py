@@ -43,6 +43,7 @@ SIZES = Sizes(
     updates=200,
     members=3,
     shell_members=0,
+    left=("series",),
 )
 
 
@@ -108,12 +109,14 @@ def test_every_table_is_complete(folder: Path, data: Any) -> None:
             assert min(entry["wall s"]) > 0.0
     assert [list(cost) for cost in data["steps"]] == [["modes", "2 rows", "3 rows"]] * 2
     assert [cost["modes"] for cost in data["steps"]] == [5, 7]
+    assert [cost["what"] for cost in data["leaving"]] == ["without snapshots", "with snapshots"]
+    assert min(cost["processor s"] for cost in data["leaving"]) > 0.0
     assert {entry["ensemble"] for entry in data["ensembles"]} == {
         "3 five-term series, event-driven",
         "3 five-term series, splitting",
     }
     text = (folder / "bench.md").read_text(encoding="utf-8")
-    assert text.count("\n## ") == 4
+    assert text.count("\n## ") == 5
     for how in ("as one writes it in NumPy", "compiled by numba"):
         assert text.count(f"With the same right-hand side {how}, the best of solve_ivp is ") == 2
     assert text.count("odeint, whose loop is in Fortran: ") == 4

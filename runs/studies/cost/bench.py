@@ -45,6 +45,7 @@ from runs.studies.cost.generic_solvers import (
     generic,
     matched,
 )
+from runs.studies.cost.leaving import leaving
 from runs.studies.cost.timing import NOISE, by_turns, leave
 from runs.studies.motions import gap_system, model_of, shell_of
 
@@ -91,6 +92,7 @@ class Sizes:
         updates: of one mode by one step, that are timed for an entry of the former.
         members: of the ensemble of series.
         shell_members: of the ensemble of shells, 0 for none.
+        left: models of the run whose leaving is timed.
     """
 
     duration: float = 10.0
@@ -103,6 +105,7 @@ class Sizes:
     updates: int = 5_000_000
     members: int = 256
     shell_members: int = 32
+    left: Sequence[str] = ("series", "timoshenko", "shell")
 
 
 @dataclass(frozen=True, slots=True)
@@ -313,6 +316,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
         *(partial(compare, case, *level, sizes) for level in sizes.levels),
         partial(steps, sizes),
         partial(ensembles, case, sizes),
+        partial(leaving, sizes.left),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
     data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
