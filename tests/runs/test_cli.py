@@ -278,7 +278,7 @@ main(["run", "case.toml", "--models", "kantorovich-5,timoshenko", "--out", "out"
 
 def test_the_module_is_the_command(tmp_path: Path) -> None:
     answer = subprocess.run(
-        [sys.executable, "-m", "runs", "check", "nowhere.toml"],
+        [sys.executable, "-m", "protractile", "check", "nowhere.toml"],
         cwd=tmp_path,
         env=os.environ | {"PYTHONPATH": str(ROOT)},
         check=False,

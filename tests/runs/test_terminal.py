@@ -22,7 +22,7 @@ def check(redirection: str, **environment: str) -> subprocess.CompletedProcess[s
 
 
 def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = f"{sys.executable} -m runs {line}"
+    command = f"{sys.executable} -m protractile {line}"
     return subprocess.run(
         ["bash", "-o", "pipefail", "-c", command],
         cwd=ROOT,

@@ -41,7 +41,7 @@ with interruption.undone(clean):
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     """A command in a process group of its own, as a terminal starts it."""
     return subprocess.Popen(
-        [sys.executable, "-m", "runs", *arguments, "--out", "out"],
+        [sys.executable, "-m", "protractile", *arguments, "--out", "out"],
         cwd=folder,
         env=os.environ | {"PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
