@@ -113,6 +113,7 @@ def run(
     from runs.pipeline import estimates
     from runs.pipeline.run import run_case
     from runs.report import output
+    from runs.report.printed import say_what_failed
     from runs.sweep.run import launched_world
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
@@ -141,7 +142,7 @@ def run(
             tell("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: verdicts})
-        return _show_models_that_failed(case, finished.results) or status
+        return say_what_failed(case, finished.results) or status
 
 
 @app.command()
@@ -443,22 +444,6 @@ def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]
             )
         )
     return 1 if broken else 0
-
-
-def _show_models_that_failed(file: str, results: Results) -> int:
-    """A line where a model took smaller steps, and one for all that failed; the exit status."""
-    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
-    for name, model in results.summary.models.items():
-        if refused := model.refused_steps:
-            taken = f"took {2 ** len(refused)} times as many steps"
-            say(message(f"{shown(file)}: model[{numbers[name]}]: {taken}, since {refused[0]}"))
-    failures = results.summary.failures
-    if not failures:
-        return 0
-    first, *others = (f"model[{numbers[name]}]" for name in failures)
-    too = f"{', '.join(others)} failed, too; first " if others else ""
-    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
-    return 3
 
 
 def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:

@@ -12,6 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from runs.pipeline.results import Results
+from runs.process.shown import message, shown
+from runs.process.terminal import say
 from runs.report.model_tables import model_table
 from runs.report.theme import number
 
@@ -73,3 +75,19 @@ def _print_swings(results: Results, console: Console) -> None:
             markup=False,
             highlight=False,
         )
+
+
+def say_what_failed(file: str, results: Results) -> int:
+    """A line where a model took smaller steps, and one for all that failed; the exit status."""
+    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
+    for name, model in results.summary.models.items():
+        if refused := model.refused_steps:
+            taken = f"took {2 ** len(refused)} times as many steps"
+            say(message(f"{shown(file)}: model[{numbers[name]}]: {taken}, since {refused[0]}"))
+    failures = results.summary.failures
+    if not failures:
+        return 0
+    first, *others = (f"model[{numbers[name]}]" for name in failures)
+    too = f"{', '.join(others)} failed, too; first " if others else ""
+    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    return 3
