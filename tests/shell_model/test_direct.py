@@ -22,6 +22,7 @@ from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Direction, Stop
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
+from shell_model.contact.rows import Touching
 from shell_model.cross_section import Reading
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
@@ -58,8 +59,9 @@ class _Loaded:
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
         observed = {"tip": Observed(Reading({0: tip}))}
+        touching = Touching(Boom((shell.segment,), ()), {}, "near webs", [], [], [])
         self.few, self.all = (
-            BoomShell(MPI.COMM_WORLD, [shell], [], GapBuilder(), [], [push], [], observed)
+            BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)
             for push in (narrow, load)
         )
 

@@ -19,7 +19,7 @@ from runs.report.figures import draw
 pytestmark = pytest.mark.slow
 
 
-NAMES = ["friction-walk", "paper", "paper-friction", "spatial", "three-segments"]
+NAMES = ["drawn-out", "friction-walk", "paper", "paper-friction", "spatial", "three-segments"]
 
 
 @pytest.mark.parametrize("name", NAMES)
