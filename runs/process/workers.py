@@ -20,6 +20,8 @@ from runs.process.interruption import undone
 _OF_WORKERS = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
+# After which a killed process is not waited for.
+_SECONDS_TO_DIE = 1.0
 # What could make a rank of a process: Open MPI, PMIx, MPICH and its kin.
 _OF_RANKS = ("OMPI_", "PMIX_", "PMI_")
 
@@ -67,9 +69,12 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
 
 
 def end() -> None:
-    """End all processes that this one has started so."""
-    for process in active_children():
+    """End all processes that this one has started so, and see that they have ended."""
+    children = active_children()
+    for process in children:
         process.kill()
+    for process in children:
+        process.join(_SECONDS_TO_DIE)
 
 
 def _start(prepare: Callable[[], object]) -> None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -28,10 +28,14 @@ from shell_model.pictures.rendering import (
     SHOWN,
     TITLES,
     render_files,
+    render_film,
+    render_stills,
     telling_instants,
 )
 
 SNAPSHOTS = "snapshots"
+# What is drawn of each shell, at a time.
+RENDERED = render_stills, render_film
 
 # What an arrow stands for where there is more than one point to a station.
 ON_SURFACES = (
@@ -68,7 +72,7 @@ def drawing(
     folder: Path,
     times: Sequence[float] | None = None,
 ) -> Iterator[Callable[[], list[str]]]:
-    """Render the deformed shells of a run in a process beside this one.
+    """Render the deformed shells of a run in processes beside this one.
 
     Args:
         results: of the run.
@@ -83,19 +87,20 @@ def drawing(
     if not shells:
         yield list
         return
-    with TemporaryDirectory(dir=folder) as easel, workers(1, opengl.hush) as pool:
+    with TemporaryDirectory(dir=folder) as easel, workers(len(RENDERED), opengl.hush) as pool:
         first = pool.submit(opengl.first_picture)
-        drawn = {}
+        drawn = []
         for number, path in enumerate(sorted(shells)):
             place = Path(easel) / str(number)
             place.mkdir()
-            prefix = path.name.removesuffix(FIELDS)
-            drawn[prefix] = pool.submit(render_files, path, trajectories, place, times)
+            for render in RENDERED:
+                found = pool.submit(render_files, render, path, trajectories, place, times)
+                drawn.append((path.name.removesuffix(FIELDS), found))
 
         def gather() -> list[str]:
             pictures = {
                 f"{prefix}{picture.name}": picture
-                for prefix, several in _finished(first, drawn).items()
+                for prefix, several in _finished(first, drawn)
                 for picture in several
             }
             (folder / SNAPSHOTS).mkdir(exist_ok=True)
@@ -111,12 +116,12 @@ def drawing(
 
 
 def _finished(
-    first: Future[None], drawn: Mapping[str, Future[list[Path]]]
-) -> dict[str, list[Path]]:
+    first: Future[None], drawn: Sequence[tuple[str, Future[list[Path]]]]
+) -> list[tuple[str, list[Path]]]:
     """The pictures of each shell, when all are there."""
     try:
         first.result(opengl.PROBE_SECONDS)
-        return {prefix: pictures.result() for prefix, pictures in drawn.items()}
+        return [(prefix, pictures.result()) for prefix, pictures in drawn]
     except TimeoutError:
         raise opengl.too_late() from None
     except BrokenProcessPool:
@@ -141,7 +146,7 @@ def describe_one(results: Results, path: Path) -> Figure:
 
     Args:
         results: of the run whose shell it shows.
-        path: as :func:`shell_model.pictures.rendering.render_snapshots` names it, with the shell's
+        path: as :func:`shell_model.pictures.rendering.render_stills` names it, with the shell's
             name before it where the case has several.
     """
     lines = {m.name: m.contact_line for m in of_kind(ShellTable, results.case.models)}

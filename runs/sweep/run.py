@@ -32,6 +32,7 @@ from runs.pipeline import members
 from runs.pipeline.run import Progress, run_case, silent
 from runs.process import ranks
 from runs.process import workers as processes
+from runs.process.interruption import undone
 from runs.sweep.distances import DISTANCES, Seen, comparable_until
 from runs.sweep.points import Plan, Point
 from runs.sweep.quantities import QUANTITIES, Measured, measure
@@ -154,12 +155,14 @@ def run_points(
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
-        for future in as_completed(futures):
-            i = futures[future]
-            outcomes[i] = outcome = future.result()
-            kept.keep(names[i], _written(outcome, points[i]))
-            done += 1
-            progress("sweep", stage, done / len(points))
+        # They end before the folder goes in which they write.
+        with undone(processes.end):
+            for future in as_completed(futures):
+                i = futures[future]
+                outcomes[i] = outcome = future.result()
+                kept.keep(names[i], _written(outcome, points[i]))
+                done += 1
+                progress("sweep", stage, done / len(points))
     except BrokenProcessPool:
         raise MemoryError("the system has killed a process of the sweep") from None
     finally:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import xarray as xr
@@ -33,22 +34,39 @@ TITLES = {
 AT_A_STATION = ("largest-force", "first-contact")
 
 
+class Render(Protocol):
+    """:func:`render_stills` or :func:`render_film`."""
+
+    def __call__(
+        self,
+        fields: xr.Dataset,
+        trajectories: xr.Dataset,
+        model: str,
+        folder: Path,
+        times: Sequence[float] | None = None,
+    ) -> list[Path]: ...
+
+
 def render_files(
-    fields: Path, trajectories: Path, folder: Path, times: Sequence[float] | None = None
+    render: Render,
+    fields: Path,
+    trajectories: Path,
+    folder: Path,
+    times: Sequence[float] | None = None,
 ) -> list[Path]:
-    """:func:`render_snapshots` of netCDF files, ``model`` being the attribute of the fields."""
+    """What is drawn of netCDF files, ``model`` being the attribute of the fields."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
-    return render_snapshots(shell, motion, shell.attrs["model"], folder, times)
+    return render(shell, motion, shell.attrs["model"], folder, times)
 
 
-def render_snapshots(
+def render_stills(
     fields: xr.Dataset,
     trajectories: xr.Dataset,
     model: str,
     folder: Path,
     times: Sequence[float] | None = None,
 ) -> list[Path]:
-    """Draw a shell at some instants, and its first motion.
+    """Draw a shell at some instants.
 
     Args:
         fields: what ``shell_model.stress.fields`` gathers, the modal coordinates ``state`` (time,
@@ -58,7 +76,7 @@ def render_snapshots(
         model: the shell's name in ``trajectories``.
         folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
             instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
-            seen from above too (``boom-above-WHEN.png``), and ``motion.gif``.
+            seen from above too (``boom-above-WHEN.png``).
         times: in s; those of :func:`telling_instants` unless given.
 
     Returns:
@@ -68,23 +86,19 @@ def render_snapshots(
         ValueError: a time lies outside the run.
     """
     views = MovingShell.views(fields, trajectories.sel(model=model))
-    shell = views[0]
-    begin, end = (float(t) for t in shell.motion["time"].values[[0, -1]])
-    when = _when(shell.motion, times)
+    begin, end = _ends(views[0])
+    when = _when(views[0].motion, times)
     for t in when.values():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
-
-    instants = _instants(views, when)
-    film = [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
     drawn: dict[str, Image.Image] = {}
     with rc_context(LETTERS):
-        scale = StressScale.of(shell, instants)
+        scale = StressScale.of(views[0], _instants(views, when))
         for seen in views:
             above = "-above" if seen.from_above else ""
             when = _when(seen.motion, times)
             instants = _instants(views, when)
-            view = BoomView.of(seen, [*instants, *film])
+            view = BoomView.of(seen, [*instants, *_film(seen)])
             for name, picture in zip(when, draw_boom(seen, instants, view, end), strict=True):
                 drawn[f"boom{above}-{name}.png"] = picture
             for number, overlap in enumerate(seen.overlaps, start=1):
@@ -99,15 +113,40 @@ def render_snapshots(
                 for kind, several in pictures.items():
                     for name, picture in zip(when, several, strict=True):
                         drawn[f"{kind}{joint}-{name}.png"] = picture
-            if not seen.from_above:
-                last = film[-1].time
-                slow = SHOWN / (last - begin) if last > begin else 1.0
-                pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
-                moving = list(draw_boom(seen, film, view, last, pace, SMALL))
     for name, picture in drawn.items():
         picture.save(folder / name)
-    _save_animation(moving, folder / ANIMATION)
-    return [folder / name for name in (*drawn, ANIMATION)]
+    return [folder / name for name in drawn]
+
+
+def render_film(
+    fields: xr.Dataset,
+    trajectories: xr.Dataset,
+    model: str,
+    folder: Path,
+    times: Sequence[float] | None = None,
+) -> list[Path]:
+    """Draw the first motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
+    views = MovingShell.views(fields, trajectories.sel(model=model))
+    shell = views[0]
+    film, (begin, _) = _film(shell), _ends(shell)
+    with rc_context(LETTERS):
+        view = BoomView.of(shell, [*_instants(views, _when(shell.motion, times)), *film])
+        last = film[-1].time
+        slow = SHOWN / (last - begin) if last > begin else 1.0
+        pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
+        _save_animation(list(draw_boom(shell, film, view, last, pace, SMALL)), folder / ANIMATION)
+    return [folder / ANIMATION]
+
+
+def _ends(shell: MovingShell) -> tuple[float, float]:
+    """Of its motion in s."""
+    begin, end = shell.motion["time"].values[[0, -1]]
+    return float(begin), float(end)
+
+
+def _film(shell: MovingShell) -> list[Instant]:
+    begin, end = _ends(shell)
+    return [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
 
 
 # Instants nearer to one another than this part of the run look the same.

@@ -15,7 +15,7 @@ from shell_model.pictures.boom import BoomView, Instant, _rod, draw_boom
 from shell_model.pictures.deformation import DOWN, MASS, SPRING, Lug, MovingShell
 from shell_model.pictures.opengl import RenderingUnavailable
 from shell_model.pictures.overlap import draw_overlap
-from shell_model.pictures.rendering import render_snapshots, telling_instants
+from shell_model.pictures.rendering import render_film, render_stills, telling_instants
 from shell_model.pictures.still import draw_mesh, draw_sections
 from shell_model.pictures.stress import OVERLAP_PIXELS, StressScale, draw_stress
 from shell_model.pictures.theme import LETTERS, Camera, Scene, Sheet
@@ -109,7 +109,7 @@ def test_refuses_a_time_outside_the_run(
     fields: xr.Dataset, trajectories: xr.Dataset, tmp_path: Path
 ) -> None:
     with pytest.raises(ValueError, match=r"^time must be between 0 and 2 s, got 2\.5$"):
-        render_snapshots(fields, trajectories, "shell", tmp_path, [0.5, 2.5])
+        render_stills(fields, trajectories, "shell", tmp_path, [0.5, 2.5])
 
 
 @pytest.mark.slow
@@ -152,7 +152,11 @@ def pictures(
     folder = tmp_path_factory.mktemp("snapshots")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rendering, "FRAMES", FRAMES)
-        written = render_snapshots(fields, trajectories, "shell", folder)
+        written = [
+            path
+            for render in (render_stills, render_film)
+            for path in render(fields, trajectories, "shell", folder)
+        ]
     assert sorted(folder.iterdir()) == sorted(written)
     return written
 
@@ -345,7 +349,11 @@ def test_given_times_name_the_files(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(rendering, "FRAMES", 2)
-    written = render_snapshots(fields, trajectories, "shell", tmp_path, [0.05])
+    written = [
+        path
+        for render in (render_stills, render_film)
+        for path in render(fields, trajectories, "shell", tmp_path, [0.05])
+    ]
     names = [f"{kind}-0.05s.png" for kind in ("boom", "overlap", "stress")]
     assert [path.name for path in written] == [*names, "motion.gif"]
     overlap = picture_of(written, "overlap-0.05s.png")[190:800]

@@ -197,7 +197,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", refuse)
+    monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
     again = tmp_path / "out"
     shutil.copytree(whole, again)
     assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
@@ -221,7 +221,7 @@ def test_pictures_can_be_left_to_later(
     def refuse(*arguments: object) -> list[Path]:
         raise AssertionError("nobody asked for pictures")
 
-    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", refuse)
+    monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
     out = tmp_path / "out"
     assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "they were not asked for; protractile snapshot draws them"
@@ -243,7 +243,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         Image.new("RGB", (8, 8)).save(path)
         return [path]
 
-    monkeypatch.setattr("shell_model.pictures.rendering.render_snapshots", draw)
+    monkeypatch.setattr("runs.report.snapshots.RENDERED", (draw,))
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")

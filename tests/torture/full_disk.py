@@ -183,7 +183,7 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("shell_model.pictures.rendering.render_snapshots", refuse),
+                patch("runs.report.snapshots.RENDERED", (refuse,)),
                 patch("runs.report.snapshots.workers", at_once.workers),
                 patch("runs.process.workers.workers", at_once.workers),
                 patch.object(Sheet, "savefig", dot),
