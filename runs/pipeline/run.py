@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -155,16 +155,22 @@ def move_case(
     boom = build_boom(case)
     first_rank = comm is None or comm.rank == 0
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
+
+    def run_model(model: Model) -> Ran | None:
+        # What overflows is found where it matters, and said there.
+        with np.errstate(all="ignore"):
+            return _run_model(
+                boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
+            )
+
     ran: dict[str, Ran] = {}
     failures: dict[str, str] = {}
     first_failure = None
+    alone = comm is None or comm.size == 1
+    runs = (_beams_beside_shells if alone else _one_by_one)(case.models, run_model)
     for number, model in enumerate(case.models, start=1):
         try:
-            # What overflows is found where it matters, and said there.
-            with np.errstate(all="ignore"):
-                outcome = _run_model(
-                    boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
-                )
+            outcome = runs[model.name]()
         except _NUMERICS as error:
             failures[model.name] = why = _reason(error)
             first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")
@@ -211,6 +217,39 @@ def move_case(
 
 # What a model's numbers may lead to.
 _NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
+
+
+# Gives what a model leaves, or raises what has kept it from that.
+_Outcome = Callable[[], "Ran | None"]
+
+
+def _one_by_one(
+    models: Sequence[Model], run: Callable[[Model], Ran | None]
+) -> Mapping[str, _Outcome]:
+    """When asked for, by the model's name."""
+    return {model.name: partial(run, model) for model in models}
+
+
+def _beams_beside_shells(
+    models: Sequence[Model], run: Callable[[Model], Ran | None]
+) -> Mapping[str, _Outcome]:
+    """Of all, beams while shells are made: their compiled loops do not hold the interpreter."""
+    shells = [model for model in models if model.needs_shell]
+    if not shells:
+        return _one_by_one(models, run)
+    with ThreadPoolExecutor(1) as thread:
+        moving = {m.name: thread.submit(run, m).result for m in models if not m.needs_shell}
+        made = {model.name: _ended(run, model).result for model in shells}
+    return moving | made
+
+
+def _ended(run: Callable[[Model], Ran | None], model: Model) -> Future[Ran | None]:
+    ended: Future[Ran | None] = Future()
+    try:
+        ended.set_result(run(model))
+    except Exception as error:
+        ended.set_exception(error)
+    return ended
 
 
 class _SharedFailure(Exception):

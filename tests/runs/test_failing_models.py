@@ -5,17 +5,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from threading import Event, current_thread, main_thread
 from time import sleep
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from beam_model.segment_model import gap_system
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
 from runs.paper.rules import judge
+from runs.pipeline import run
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
@@ -151,3 +155,31 @@ def test_another_case_is_another_motion(moved: list[int]) -> None:
     Path("case.toml").write_text(text, "utf-8")
     assert protractile(*RUN) == 0
     assert moved == [4, 5, 4, 5]
+
+
+def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
+    """Reference: by hand. The shell is made where it is asked for, as PETSc wants it; beams are
+    another thread's, and what keeps one from its motion is told when that is asked for."""
+    beam, lost, shell = (
+        SimpleNamespace(name=name, needs_shell=name == "shell")
+        for name in ("beam", "lost", "shell")
+    )
+    at_work = Event()
+
+    def move(model: Any) -> Any:
+        if model is lost:
+            raise NumericsError("lost")
+        # Each waits for the other one: both are at it at a time.
+        if model is beam:
+            assert at_work.wait(10.0)
+        else:
+            at_work.set()
+        return model.name, current_thread() is main_thread()
+
+    runs = run._beams_beside_shells((beam, lost, shell), move)
+    assert runs["beam"]() == ("beam", False)
+    assert runs["shell"]() == ("shell", True)
+    with pytest.raises(NumericsError, match="lost"):
+        runs["lost"]()
+    asked = run._beams_beside_shells((beam, lost), move)
+    assert asked["beam"]() == ("beam", True)
