@@ -102,4 +102,5 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
     with TemporaryDirectory() as meshes:
         run = run_models(chosen, _CASE, comm, Path(meshes), silent, Cache.of_user())
     assert run is not None
+    run.answer()
     return run.results

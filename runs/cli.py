@@ -136,6 +136,7 @@ def run(
         ):
             finished = run_case(effective, case, comm, scratch, tell, cache, cache)
             assert finished is not None
+            finished.answer()
             verdicts = judge(finished.results)
             tell("report", "pictures and figures", 0.0)
             output.write(finished, verdicts, part, scratch, snapshots_now=not no_pictures)

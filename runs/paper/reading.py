@@ -19,7 +19,7 @@ from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.pipeline.results import Results
-from runs.pipeline.run import move_case, silent
+from runs.pipeline.run import run_case, silent
 from runs.report.verdict import Judgement
 
 Stiffness = Literal["restored", "literal"]
@@ -200,7 +200,7 @@ def _but_exponent(reading: Reading) -> Reading:
 
 
 def _results(case: Case) -> Results:
-    finished = move_case(case, "paper.toml", None, Path(), silent)
+    finished = run_case(case, "paper.toml", None, Path(), silent)
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")

@@ -92,41 +92,28 @@ class Run:
     beams: dict[str, BeamOutput]
     ran: dict[str, Ran]
 
+    def answer(self) -> None:
+        """Put what a designer asks, answered, into the summary.
+
+        A model that has moved and cannot be answered for is in ``failures``, too.
+        """
+        case, boom, summary = self.results.case, self.results.boom, self.results.summary
+        answers = {}
+        for name, ran in self.ran.items():
+            own = summary.models[name]
+            with ran.stages.stage("answers"), np.errstate(all="ignore"):
+                try:
+                    answers[name] = of_model(
+                        boom, case, ran.model, ran.built, ran.moved.trajectory, ran.shell
+                    )
+                except _NUMERICS as error:
+                    summary.failures[name], answers[name] = _reason(error), ModelAnswers()
+            own.seconds = ran.stages.seconds
+            own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
+        summary.answers = of_run(boom, case, summary, answers)
+
 
 def run_case(
-    case: Case,
-    file: str,
-    comm: MPI.Intracomm | None,
-    mesh_folder: Path,
-    progress: Progress,
-    cache: Cache | None = None,
-    kept: Cache | None = None,
-) -> Run | None:
-    """Run all models of a case, as :func:`move_case` does, and answer what a designer asks.
-
-    A model that has moved and cannot be answered for is in ``failures``, too.
-    """
-    run = move_case(case, file, comm, mesh_folder, progress, cache, kept)
-    if run is None:
-        return None
-    boom, summary = build_boom(case), run.results.summary
-    answers = {}
-    for name, ran in run.ran.items():
-        own, shell = summary.models[name], ran.shell
-        with ran.stages.stage("answers"), np.errstate(all="ignore"):
-            try:
-                answers[name] = of_model(
-                    boom, case, ran.model, ran.built, ran.moved.trajectory, shell
-                )
-            except _NUMERICS as error:
-                summary.failures[name], answers[name] = _reason(error), ModelAnswers()
-        own.seconds = ran.stages.seconds
-        own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
-    summary.answers = of_run(boom, case, summary, answers)
-    return run
-
-
-def move_case(
     case: Case,
     file: str,
     comm: MPI.Intracomm | None,

@@ -69,6 +69,7 @@ def answered() -> Answers:
         short = case.model_copy(update={"models": models, "time": time})
         run = run_case(short, "coarse.toml", MPI.COMM_SELF, Path(meshes), silent)
     assert run is not None
+    run.answer()
     assert run.results.summary.answers is not None
     return run.results.summary.answers
 

@@ -192,6 +192,7 @@ def run_point(
                 outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
                 continue
         assert finished is not None
+        finished.answer()
         outcome.models[model.name] = measure(finished.results, model.name)
         if reference is not None:
             runs[model.name] = finished.results

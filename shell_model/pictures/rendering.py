@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import xarray as xr
@@ -34,46 +33,23 @@ TITLES = {
 AT_A_STATION = ("largest-force", "first-contact")
 
 
-class Render(Protocol):
-    """:func:`render_stills` or :func:`render_film`."""
-
-    def __call__(
-        self,
-        fields: xr.Dataset,
-        trajectories: xr.Dataset,
-        model: str,
-        folder: Path,
-        times: Sequence[float] | None = None,
-    ) -> list[Path]: ...
+Times = Sequence[float] | None
+Render = Callable[[Sequence[MovingShell], Path, Times], list[Path]]
 
 
 def render_files(
-    render: Render,
-    fields: Path,
-    trajectories: Path,
-    folder: Path,
-    times: Sequence[float] | None = None,
+    render: Render, fields: Path, trajectories: Path, folder: Path, times: Times = None
 ) -> list[Path]:
     """What is drawn of netCDF files, ``model`` being the attribute of the fields."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
-    return render(shell, motion, shell.attrs["model"], folder, times)
+    return render(MovingShell.views(shell, motion.sel(model=shell.attrs["model"])), folder, times)
 
 
-def render_stills(
-    fields: xr.Dataset,
-    trajectories: xr.Dataset,
-    model: str,
-    folder: Path,
-    times: Sequence[float] | None = None,
-) -> list[Path]:
+def render_stills(views: Sequence[MovingShell], folder: Path, times: Times = None) -> list[Path]:
     """Draw a shell at some instants.
 
     Args:
-        fields: what ``shell_model.stress.fields`` gathers, the modal coordinates ``state`` (time,
-            mode), and the joints, see :meth:`MovingShell.views`.
-        trajectories: dims ``model``, ``time``, ``station``: ``tip`` in m, ``contact_force`` and
-            ``contact_force_peak`` in N.
-        model: the shell's name in ``trajectories``.
+        views: of its motion, see :meth:`MovingShell.views`.
         folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
             instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
             seen from above too (``boom-above-WHEN.png``).
@@ -85,7 +61,6 @@ def render_stills(
     Raises:
         ValueError: a time lies outside the run.
     """
-    views = MovingShell.views(fields, trajectories.sel(model=model))
     begin, end = _ends(views[0])
     when = _when(views[0].motion, times)
     for t in when.values():
@@ -118,15 +93,8 @@ def render_stills(
     return [folder / name for name in drawn]
 
 
-def render_film(
-    fields: xr.Dataset,
-    trajectories: xr.Dataset,
-    model: str,
-    folder: Path,
-    times: Sequence[float] | None = None,
-) -> list[Path]:
+def render_film(views: Sequence[MovingShell], folder: Path, times: Times = None) -> list[Path]:
     """Draw the first motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
-    views = MovingShell.views(fields, trajectories.sel(model=model))
     shell = views[0]
     film, (begin, _) = _film(shell), _ends(shell)
     with rc_context(LETTERS):

@@ -29,6 +29,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     short = case.model_copy(update={"models": models, "time": time})
     run = run_case(short, "", None, Path(tmp_path_factory.mktemp("meshes")), silent)
     assert run is not None
+    run.answer()
     # As a folder gives it back.
     found = Summary.model_validate_json(str(run.results.summary)).answers
     assert found is not None

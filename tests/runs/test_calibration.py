@@ -168,6 +168,7 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     folder.mkdir()
     run = run_models(alone, "", MPI.COMM_SELF, scratch, silent)
     assert run is not None
+    run.answer()
     write(run, [], folder, scratch, None)
     told = json.loads((folder / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration

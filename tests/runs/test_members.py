@@ -48,6 +48,7 @@ def run(
     folder = tmp_path_factory.mktemp("mesh")
     finished = run_case(case, "", None, folder, lambda *what: told.append(what))
     assert finished is not None
+    finished.answer()
     return finished
 
 
@@ -146,6 +147,7 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     )
     without = run_case(short, "", None, tmp_path, lambda *_: None)
     assert without is not None
+    without.answer()
     write(without, [], tmp_path, tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
     assert Results.load(tmp_path).ensembles is None

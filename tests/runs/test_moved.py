@@ -52,6 +52,7 @@ def answers(model: str, folder: Path) -> ModelAnswers:
     file.write_text(CASE.format(model=model), encoding="utf-8")
     run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
     assert run is not None
+    run.answer()
     found = Summary.model_validate_json(str(run.results.summary)).answers
     assert found is not None
     return found.models["one"]

@@ -19,6 +19,7 @@ from runs.case.messages import BadInput
 from runs.paper import readings
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
 from runs.paper.rules import judge
+from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
@@ -36,6 +37,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
     finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
     assert finished is not None
+    finished.answer()
     return finished
 
 
@@ -116,3 +118,26 @@ def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
     table = xr.Dataset(columns).to_dataframe(["model", "time"])
     table.to_csv(tmp_path / "theirs.csv", float_format="%.9g", lineterminator="\r\n")
     assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
+
+
+def test_a_model_that_nothing_answers_for_keeps_its_motion(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: its trajectory of before; the files and the report are written all the same."""
+
+    def singular(*_: object) -> ModelAnswers:
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr("runs.pipeline.run.of_model", singular)
+    again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
+    again.results.summary.failures = {}
+    again.answer()
+    write(again, [], tmp_path, tmp_path)
+    found = Results.load(tmp_path)
+    xr.testing.assert_identical(found.trajectories.load(), run.results.trajectories)
+    assert found.summary.failures == {
+        "kantorovich-4": "cannot be computed (Singular matrix); look for a number of the case that "
+        "is out of proportion, in another unit say"
+    }
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "cannot be computed (Singular matrix)" in page

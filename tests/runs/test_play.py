@@ -25,6 +25,7 @@ def run_of(names: list[str], meshes: Path, comm: MPI.Intracomm | None = None) ->
     models = tuple(model for model in case.models if model.name in names)
     run = run_case(case.model_copy(update={"models": models}), "", comm, meshes, silent)
     assert run is not None
+    run.answer()
     assert run.results.summary.answers is not None
     return run.results.summary.answers
 

@@ -65,6 +65,7 @@ def answers_of(text: str, folder: Path) -> Answers:
     file.write_text(text, encoding="utf-8")
     run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
     assert run is not None
+    run.answer()
     assert run.results.summary.answers is not None
     return run.results.summary.answers
 

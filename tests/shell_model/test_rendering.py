@@ -108,8 +108,9 @@ def test_missing_opengl_is_said(
 def test_refuses_a_time_outside_the_run(
     fields: xr.Dataset, trajectories: xr.Dataset, tmp_path: Path
 ) -> None:
+    views = MovingShell.views(fields, trajectories.sel(model="shell"))
     with pytest.raises(ValueError, match=r"^time must be between 0 and 2 s, got 2\.5$"):
-        render_stills(fields, trajectories, "shell", tmp_path, [0.5, 2.5])
+        render_stills(views, tmp_path, [0.5, 2.5])
 
 
 @pytest.mark.slow
@@ -150,12 +151,11 @@ def pictures(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> list[Path]:
     folder = tmp_path_factory.mktemp("snapshots")
+    views = MovingShell.views(fields, trajectories.sel(model="shell"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rendering, "FRAMES", FRAMES)
         written = [
-            path
-            for render in (render_stills, render_film)
-            for path in render(fields, trajectories, "shell", folder)
+            path for render in (render_stills, render_film) for path in render(views, folder)
         ]
     assert sorted(folder.iterdir()) == sorted(written)
     return written
@@ -349,10 +349,9 @@ def test_given_times_name_the_files(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(rendering, "FRAMES", 2)
+    views = MovingShell.views(fields, trajectories.sel(model="shell"))
     written = [
-        path
-        for render in (render_stills, render_film)
-        for path in render(fields, trajectories, "shell", tmp_path, [0.05])
+        path for render in (render_stills, render_film) for path in render(views, tmp_path, [0.05])
     ]
     names = [f"{kind}-0.05s.png" for kind in ("boom", "overlap", "stress")]
     assert [path.name for path in written] == [*names, "motion.gif"]

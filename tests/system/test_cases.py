@@ -34,6 +34,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
         case.model_copy(update={"time": short}), file, MPI.COMM_SELF, tmp_path, lambda *_: None
     )
     assert run is not None
+    run.answer()
     results = run.results
     figures = draw(results, tmp_path)
     page = render(results, [], figures, [])

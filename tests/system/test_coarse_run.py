@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,6 +18,7 @@ from PIL import Image
 from runs.case.build import build_boom
 from runs.pipeline.results import Results
 from shell_model.pictures import rendering
+from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.opengl import RenderingUnavailable, require_opengl
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests import at_once
@@ -236,9 +238,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 ) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-    def draw(
-        fields: xr.Dataset, data: xr.Dataset, model: str, folder: Path, times: None
-    ) -> list[Path]:
+    def draw(views: Sequence[MovingShell], folder: Path, times: None) -> list[Path]:
         path = folder / "boom-end.png"
         Image.new("RGB", (8, 8)).save(path)
         return [path]

@@ -52,6 +52,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
     finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
     assert finished is not None
+    finished.answer()
     finished.results.summary.models["kantorovich-5"].horizons = {
         "relatives": [1e-12, 1e-9, 1e-6, 1e-3],
         "shares": [0.01, 0.2],

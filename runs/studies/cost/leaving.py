@@ -37,6 +37,7 @@ def leaving(models: Sequence[str]) -> Table:
         meshes = Path(folder) / "meshes"
         run = run_case(case, str(CASE), comm, meshes, silent, Cache.of_user())
         assert run is not None
+        run.answer()
         rows = []
         for what, drawn in (("without snapshots", False), ("with snapshots", True)):
             out = Path(folder) / what
