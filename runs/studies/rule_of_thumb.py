@@ -29,14 +29,21 @@ from geometry.arrays import Array
 from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.case.sections import SectionTable
 from runs.folder.cache import Cache
 from runs.pipeline.cautions import static_tip
 from runs.pipeline.models import build, workshop
 from runs.report.tables import Cell, Table
 from runs.studies.calibrated_beams import EULER, PLAIN, SHELL, SPRUNG, Moved, calibrated
-from runs.studies.motions import friction_case, model_of, shell_of
-from runs.studies.pads import with_pads
+from runs.studies.motions import model_of, shell_of
+from runs.studies.proportions import (
+    BESIDE,
+    BOOMS,
+    HEIGHT,
+    INNER_WALL,
+    OUTER_WALL,
+    Proportions,
+    boom_case,
+)
 from runs.studies.study import Proof, Study
 from runs.studies.working_load import Point
 
@@ -48,52 +55,12 @@ PADS = 1.8
 FLANGES = 0.065
 # What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
 UNEVEN = 0.09
-_DENSITY = 7850.0
 # A mode of the shell is the beam's if its frequency is as near, as a part.
 _NEAR = 0.15
 # What is allowed of the geometric mean of measured errors over those of the rule, and of springs.
 MEAN_OFF, PEAK = 0.25, 0.005
 # Rules of more than this say no more than that the tip is lost.
 LOST = 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class Proportions:
-    """Of a boom of two boxes, the paper's unless given.
-
-    Args:
-        length: of each segment in m.
-        overlap: in m.
-        aspect: height over width of the outer box.
-        walls: thickness over the paper's.
-        pad: length and width of pads beside the webs in m; pressed near the webs without.
-    """
-
-    length: float = 10.0
-    overlap: float = 1.0
-    aspect: float = 1.634
-    walls: float = 1.0
-    pad: tuple[float, float] | None = None
-
-
-# The paper's boxes, mid-lines and walls in m, and the room of the inner one in them.
-_HEIGHT, _OUTER_WALL, _INNER_WALL = 0.4945, 6.64e-3, 4.87e-3
-_ROOM, _BESIDE = 0.0141, 0.17
-
-BOOMS: Mapping[str, Proportions] = {
-    "the paper's": Proportions(),
-    "half as long": Proportions(length=5.0, overlap=0.7),
-    "a third as long": Proportions(length=3.5, overlap=0.5),
-    "longer": Proportions(length=13.0),
-    "long overlap": Proportions(overlap=3.0),
-    "short overlap": Proportions(overlap=0.6),
-    "thin walls": Proportions(walls=0.6),
-    "thick walls": Proportions(walls=2.0),
-    "narrow": Proportions(aspect=2.5),
-    "wide": Proportions(aspect=1.0),
-    "pads": Proportions(pad=(0.1, 0.06)),
-    "pads, thick walls": Proportions(walls=2.0, pad=(0.1, 0.06)),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,41 +82,6 @@ class Sizes:
     plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)
     loads: Sequence[float] = (10.0,)
     periods: float = 8.0
-
-
-def boom_case(given: Proportions) -> Case:
-    """The paper's case with friction, of these proportions, under its weight at 1 m/s²."""
-    case = friction_case()
-    walls = given.walls * _OUTER_WALL, given.walls * _INNER_WALL
-    width = _HEIGHT / given.aspect
-    heights = _HEIGHT, _HEIGHT - sum(walls) - _ROOM
-    boxes = [
-        SectionTable.model_validate({"height": height, "width": wide, "flange": wall, "web": wall})
-        for height, wide, wall in zip(heights, (width, (1.0 - _BESIDE) * width), walls, strict=True)
-    ]
-    head = given.length
-    spans = (0.0, head), (head - given.overlap, 2.0 * head - given.overlap)
-    segments = []
-    for table, box, span in zip(case.segments, boxes, spans, strict=True):
-        supports = tuple(
-            support.model_copy(update={"x": 0.2 * head if number else 0.0})
-            for number, support in enumerate(table.supports)
-        )
-        # The box tells its own numbers.
-        of_box = "height_to_width", "mass_per_length", "second_moment_of_area", "rotary_inertia"
-        own = {"section": box, "span": span, "supports": supports}
-        own["load"] = _DENSITY * box.section().area
-        segments.append(table.model_copy(update=dict.fromkeys(of_box) | own))
-    # Friction as large a part of the weight as the paper's.
-    lighter = sum(table.load for table in segments) / sum(table.load for table in case.segments)
-    forces = tuple(
-        0.1 * head * lighter * force for joint in case.joints for force in joint.normal_forces
-    )
-    joint = case.joints[0].model_copy(
-        update={"stations": (head - given.overlap, head), "normal_forces": forces}
-    )
-    found = case.model_copy(update={"segments": tuple(segments), "joints": (joint,)})
-    return found if given.pad is None else with_pads(found, *given.pad)
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,14 +157,14 @@ def giving_way(given: Proportions, case: Case) -> float:
     material = case.material
     assert material is not None
     e = material.youngs_modulus
-    walls = given.walls * _OUTER_WALL, given.walls * _INNER_WALL
-    width = _HEIGHT / given.aspect
+    walls = given.walls * OUTER_WALL, given.walls * INNER_WALL
+    width = HEIGHT / given.aspect
     if given.pad is None:
         # A corner is pressed over a tenth of the overlap.
         spread = NEAR_WEBS[0] + NEAR_WEBS[1] * np.log(width / (0.1 * given.overlap))
         return float(spread / e * sum(1.0 / wall for wall in walls))
     # From the middle of the pad, which lies beside the inner web, to each web.
-    to_webs = 0.5 * (given.pad[1] + _BESIDE * width), 0.5 * given.pad[1]
+    to_webs = 0.5 * (given.pad[1] + BESIDE * width), 0.5 * given.pad[1]
     return PADS / e * sum(d**2 / wall**3 for d, wall in zip(to_webs, walls, strict=True))
 
 
@@ -341,8 +273,8 @@ def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
         rows.append(
             (
                 name,
-                given.length / _HEIGHT,
-                given.overlap / _HEIGHT,
+                given.length / HEIGHT,
+                given.overlap / HEIGHT,
                 *(100.0 * part / rule.deflection for part in (rule.shear, rule.pressed)),
                 *(100.0 * rule.lacking(beam) for beam in (EULER, PLAIN)),
                 *(100.0 * off for off in first),
