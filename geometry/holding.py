@@ -39,18 +39,11 @@ def check_held(boom: Boom) -> None:
         boom: with places that are on its segments.
 
     Raises:
-        BoomError: nothing holds a segment, or loads lift it off what does.
+        BoomError: nothing holds a segment.
     """
     _check_depths(boom)
-    bodies = [_RigidBody(boom, number) for number in range(len(boom.segments))]
-    always = list(_always(boom, bodies))
-    # The push of those that the segment meets from one side.
-    one_way = [
-        np.sign(stop.stiffness_below - stop.stiffness) * bodies[stop.segment].force(stop.x, "z")
-        for stop in boom.stops
-        if 0.0 in (stop.stiffness, stop.stiffness_below)
-    ]
-    left = _left([*always, *one_way], bodies)
+    bodies = _bodies(boom)
+    left = _left([*_always(boom, bodies), *_one_way(boom, bodies)], bodies)
     for body in _free(bodies, left):
         if np.abs(left[body.motions][:_FLAT]).max() > _ROUND_OFF:
             raise BoomError(
@@ -64,13 +57,25 @@ def check_held(boom: Boom) -> None:
             f"nothing holds {body.segment.name!r} sideways: give it two supports, one that is "
             "hinged or clamped, or a joint with two stations to a segment that is held",
         )
-    left = _left(always, bodies)
+
+
+def check_pressed(boom: Boom) -> None:
+    """Whether the loads of t = 0 press the stops that hold one way where nothing else does.
+
+    Args:
+        boom: that is held, under its own loads.
+
+    Raises:
+        BoomError: they lift a segment off what holds it.
+    """
+    bodies = _bodies(boom)
+    left = _left(_always(boom, bodies), bodies)
     if not left.size:
         return
     from scipy.optimize import nnls
 
     load = sum((body.load for body in bodies), np.zeros(len(left))) @ left
-    _, unbalanced = nnls((np.array(one_way) @ left).T, -load)
+    _, unbalanced = nnls((np.array(_one_way(boom, bodies)) @ left).T, -load)
     if unbalanced > _ROUND_OFF * np.linalg.norm(load):
         body = next(_free(bodies, left))
         raise BoomError(
@@ -158,6 +163,19 @@ def _check_depths(boom: Boom) -> None:
                     "of no use: only the first support of a segment with a cylinder has a depth; "
                     "leave it out",
                 )
+
+
+def _bodies(boom: Boom) -> list[_RigidBody]:
+    return [_RigidBody(boom, number) for number in range(len(boom.segments))]
+
+
+def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
+    """The push of the stops that a segment meets from one side."""
+    return [
+        np.sign(stop.stiffness_below - stop.stiffness) * bodies[stop.segment].force(stop.x, "z")
+        for stop in boom.stops
+        if 0.0 in (stop.stiffness, stop.stiffness_below)
+    ]
 
 
 def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:

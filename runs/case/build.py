@@ -22,6 +22,7 @@ from geometry.boom import (
     Segment,
     Support,
 )
+from geometry.holding import check_pressed
 from geometry.observation import Observation
 from geometry.section import (
     Section,
@@ -62,7 +63,7 @@ def build_boom(case: Case) -> Boom:
     )
     along = 0.0 if case.gravity is None else actions.along(case.gravity)
     segments = with_compression(segments, joints, actions.thrusts(case, segments), along)
-    return Boom(
+    boom = Boom(
         segments,
         joints,
         actions.loads(case, segments),
@@ -70,6 +71,8 @@ def build_boom(case: Case) -> Boom:
         _observations(case, segments),
         actions.cylinders(case, segments),
     )
+    check_pressed(boom)
+    return boom
 
 
 def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The shell that many booms share is that of each, whatever its loads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
+
+from dynamics.equilibrium import equilibrium
+from runs.case.build import build_boom
+from runs.case.reading import load
+from runs.pipeline.models import build, workshop
+from tests.runs.case_texts import STEEL, box
+
+RESTING = f"""
+title = "A boom that rests on a stop"
+[time]
+duration = 0.1
+[gravity]
+angle = 0.0
+{STEEL}
+{box("base", (0.0, 6.0), (0.4, 0.3, 0.008, 0.006), 'supports = [{ x = 0.0, kind = "hinged" }]')}
+[[stop]]
+segment = "base"
+x = 5.0
+play = 0.01
+stiffness = 0.0
+stiffness_below = 1e7
+[[model]]
+name = "shell"
+kind = "shell"
+mesh_size = 0.4
+contact_tolerance = "any"
+"""
+
+
+def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> None:
+    """Reference: analytic. The stop bears M g · 3/5 of a beam of 6 m over a lever of 5 m."""
+    path = tmp_path / "resting.toml"
+    path.write_text(RESTING, encoding="utf-8")
+    case = load(str(path))
+    boom = build_boom(case)
+    tools = workshop(MPI.COMM_SELF, tmp_path / "mesh")
+    system = build(case, boom, case.models[0], tools).system.gathered()
+    (gap,) = system.rows @ equilibrium(system, system.load)
+    weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
+    assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
