@@ -109,6 +109,8 @@ class Trajectory:
         belongs = np.equal.outer(system.station_of_row, stations)
         rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
+        # Rows of one side press together, those of the other at another moment.
+        up, down = np.maximum(row_peaks, 0.0) @ belongs, np.minimum(row_peaks, 0.0) @ belongs
 
         def read(seen: Observer) -> Array:
             values = (velocities if seen.derivative else states) @ seen.row
@@ -120,7 +122,7 @@ class Trajectory:
         }
         by_station = {
             "contact_force": row_forces @ belongs,
-            "contact_force_peak": row_peaks @ belongs,
+            "contact_force_peak": np.where(up >= -down, up, down),
             "friction_force": row_frictions @ rubs,
             "gap": row_gaps @ belongs / rows_at,
         }

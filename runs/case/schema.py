@@ -331,7 +331,9 @@ class LifeTable(Table):
     partial_factor: Annotated[Positive, In("1")] = Field(
         1.0, description="the factor gamma_Ff gamma_Mf by which stress ranges count larger"
     )
-    repeats: Count = Field(1, description="how often in a life the motion of the run comes")
+    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = Field(
+        1, description="how often in a life the motion of the run comes"
+    )
 
 
 if TYPE_CHECKING:

@@ -248,7 +248,8 @@ class Peak:
     Args:
         what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, where something
             acts along the boom also ``reaction along the boom`` and ``reaction, across and along``,
-            ``moment at the support`` or ``bending moment``.
+            ``moment at the support`` or ``bending moment``; in space those to the sides, called
+            ``lateral``, and ``torque at the support``.
         where: the place, as the results or the case name it.
         unit: of the SI.
         largest: of the motion; of contacts the mean over an output interval, which is what a pad

@@ -30,9 +30,15 @@ DECIDES: Mapping[str, str] = {
 }
 
 
-def rubs(case: Case) -> bool:
-    """Whether the segments rub on one another."""
-    return any(joint.friction > 0.0 for joint in case.joints)
+def regular(case: Case) -> bool:
+    """Whether dry friction keeps motions comparable from moment to moment.
+
+    It does under forces that are given, at each station; what contacts press does not.
+    """
+    return all(
+        joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
+        for joint in case.joints
+    )
 
 
 def reference_of(models: Iterable[Model]) -> str | None:
@@ -86,7 +92,7 @@ def compare_models(
             str(other["model"].item()): Levels.model_validate(compare(one, other, cutoff))
             for other in others
         }
-    if rubs(case):
+    if regular(case):
         found.whole = {
             name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
         }

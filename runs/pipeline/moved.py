@@ -15,6 +15,7 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment, Support
 from geometry.cylinder import forces
+from geometry.section import Direction
 from runs.pipeline.answers import (
     AtRest,
     Envelope,
@@ -27,6 +28,21 @@ from runs.pipeline.answers import (
 from runs.pipeline.fibres import Fibres
 from runs.pipeline.place_names import place_names
 from runs.pipeline.section_forces import borne_along, section_forces
+
+
+class _Plane(NamedTuple):
+    """What the section forces of a plane of bending are called."""
+
+    direction: Direction
+    name: str
+    shear: Quantity
+    moment: Quantity
+
+
+_PLANES = (
+    _Plane("z", "", "shear", "moment"),
+    _Plane("y", "lateral ", "lateral_shear", "lateral_moment"),
+)
 
 
 class Varying(NamedTuple):
@@ -165,12 +181,14 @@ def _observed(motions: Motions) -> Iterator[Peak]:
 
 
 def _section_peaks(motions: Motions, gone: _Gone) -> Iterator[Peak]:
-    """Of the bending moment, and of what supports bear."""
-    moments = gone.curves["moment"]
-    most = moments[:, np.abs(moments).max(axis=0).argmax()]
-    still = np.abs(gone.still["moment"]).max(axis=1).tolist()
-    bent = _Measured("bending moment", gone.segment.name, "N m", most, still)
-    yield _peak(bent, motions.trajectory.time)
+    """Of the bending moments, and of what supports bear."""
+    for plane in _PLANES:
+        if plane.moment in gone.curves:
+            moments = gone.curves[plane.moment]
+            most = moments[:, np.abs(moments).max(axis=0).argmax()]
+            still = np.abs(gone.still[plane.moment]).max(axis=1).tolist()
+            bent = _Measured(f"{plane.name}bending moment", gone.segment.name, "N m", most, still)
+            yield _peak(bent, motions.trajectory.time)
     for support in gone.segment.supports if motions.jumps else ():
         for borne in _borne(motions, gone, support):
             yield _peak(borne, motions.trajectory.time)
@@ -204,20 +222,27 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
 
 
 def _borne(motions: Motions, gone: _Gone, support: Support) -> Iterator[_Measured]:
-    """What a support bears: the jumps of the shear force, the normal force and the moment."""
+    """What a support bears: the jumps of the section forces."""
     segment, line = gone.segment, gone.line
     where = f"{segment.name} at {support.x:g} m"
-    across = _jump(motions, line, "shear", support.x)
-    yield _Measured("reaction", where, "N", *across)
+    forces = []
+    for plane in _PLANES:
+        if plane.shear not in line.rows:
+            continue
+        forces.append(_jump(motions, line, plane.shear, support.x))
+        yield _Measured(f"{plane.name}reaction", where, "N", *forces[-1])
+        if support.holds_slope(plane.direction) or support.rotation_stiffness:
+            held = _jump(motions, line, plane.moment, support.x)
+            yield _Measured(f"{plane.name}moment at the support", where, "N m", *held)
+    if "torque" in line.rows:
+        held = _jump(motions, line, "torque", support.x)
+        yield _Measured("torque at the support", where, "N m", *held)
     if support is segment.foot and (segment.compression or "normal" in line.rows):
         given = borne_along(segment, support)
         along = [given + each for each in _jump(motions, line, "normal", support.x)]
         yield _Measured("reaction along the boom", where, "N", *along)
-        both = [np.hypot(*parts) for parts in zip(across, along, strict=True)]
-        yield _Measured("reaction, across and along", where, "N", *both)
-    if support.kind == "clamped" or support.rotation_stiffness:
-        turned, still = _jump(motions, line, "moment", support.x)
-        yield _Measured("moment at the support", where, "N m", -turned, -still)
+        whole = [np.linalg.norm(parts, axis=0) for parts in zip(*forces, along, strict=True)]
+        yield _Measured("reaction, across and along", where, "N", *whole)
 
 
 def _jump(motions: Motions, line: Line, name: Quantity, x: float) -> tuple[Array, Array]:

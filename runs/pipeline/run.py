@@ -30,7 +30,7 @@ from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
 from runs.pipeline.card import card
 from runs.pipeline.cautions import static_tip
-from runs.pipeline.comparisons import compare_models
+from runs.pipeline.comparisons import compare_models, regular
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
 from runs.pipeline.models import build, workshop
@@ -345,8 +345,7 @@ def _move_at(
     with stages.stage("motion") as told:
         trajectory = plan.trajectory(told)
     summary = _summary(model, system, trajectory, num_dofs)
-    # Under prescribed forces friction makes the motion regular; what contacts press does not.
-    if system.frictions and not any(friction.pressed_by for friction in system.frictions):
+    if system.frictions and regular(case):
         with stages.stage("twice the step") as told:
             summary.step_doubling = plan.change_by_longer_steps(trajectory, told)
     if case.ensemble is None or not system.laws:

@@ -30,7 +30,7 @@ def tip(pen: Pen) -> list[Figure]:
         _members(pen, axes, name, "tip")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, pen.time[-1]))
     drawn_axis(pen, axes)
-    statements = (*(("S7",) if pen.rubs else ("S2", "S3")), *_many_segments(pen))
+    statements = (*(("S7",) if pen.regular else ("S2", "S3")), *_many_segments(pen))
     caption = f"Deflection of the tip, all models{_counterpart(pen, 'tip')}."
     title = f"Tip: {_reach(pen, 'tip')}"
     caption += _sampled(pen, "tip")
@@ -115,7 +115,7 @@ def _head(pen: Pen, place: str) -> Figure:
         + "."
         + dashed
     )
-    statements = ("S6", "S7") if pen.rubs else ("S6",)
+    statements = ("S6", "S7") if pen.regular else ("S6",)
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
     caption += _sampled(pen, place)
     chart = _chart(pen, place)
@@ -154,7 +154,7 @@ def _counterpart(pen: Pen, place: str) -> str:
     """Which figure of the paper shows the same."""
     if not pen.of_the_paper:
         return ""
-    number = {"tip": 6, "head": 7}[place] + (2 if pen.rubs else 0)
+    number = {"tip": 6, "head": 7}[place] + (2 if pen.regular else 0)
     return f": the counterpart of Fig. {number} of the paper"
 
 
@@ -195,7 +195,7 @@ def _sampled(pen: Pen, place: str) -> str:
     if not pen.with_play or pen.stays_pressed:
         return ""
     if pen.ensembles is None or place not in pen.ensembles:
-        if pen.rubs or pen.ensembles is not None:
+        if pen.regular or pen.ensembles is not None:
             return ""
         return (
             " After the first presses a curve with play may be one sample of a chaotic motion; an "
@@ -210,7 +210,7 @@ def _sampled(pen: Pen, place: str) -> str:
     if not any(time is not None for found in sampled for time in found.horizons.values()):
         return f"{band} They stay together to the end."
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
-    beyond = "" if pen.rubs else ", beyond which a curve is one sample of a chaotic motion"
+    beyond = "" if pen.regular else ", beyond which a curve is one sample of a chaotic motion"
     return (
         f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
         f"the tip's range around one another{beyond}."

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -41,8 +43,11 @@ def of_beam(boom: Boom, model: str, output: BeamOutput) -> MovingSurface:
         output: how it has.
     """
     largest = max(float(np.abs(moved.read["deflection"]).max()) for moved in output.segments)
-    corners = [_corners(boom, segment) for segment in boom.segments]
-    half = SECTION_DRAWN * max(float(np.abs(each[:, 1]).max()) for each in corners)
+    corners = [
+        np.array([_corners(boom, segment, x) for x in moved.x.tolist()])
+        for segment, moved in zip(boom.segments, output.segments, strict=True)
+    ]
+    half = SECTION_DRAWN * max(float(np.abs(each[..., 1]).max()) for each in corners)
     play = sum(joint.clearance for joint in boom.joints if not joint.tied)
     scale = round_scale(
         min(
@@ -81,10 +86,10 @@ def of_beam(boom: Boom, model: str, output: BeamOutput) -> MovingSurface:
     )
 
 
-def _corners(boom: Boom, segment: Segment) -> Array:
-    """(num_corners, 2) y and z in m, once around."""
+def _corners(boom: Boom, segment: Segment, x: float) -> Array:
+    """(num_corners, 2) y and z in m at x in m, once around."""
     if segment.section is not None:
-        return np.array([plate.start for plate in segment.section.plates])
+        return np.array([plate.start for plate in segment.section_at(x).plates])
     half = 0.5 * UNKNOWN * boom.length
     return half * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 
@@ -92,7 +97,7 @@ def _corners(boom: Boom, segment: Segment) -> Array:
 def _factors(boom: Boom, corners: list[Array], scale: float) -> list[float]:
     """By how much each section is drawn larger: inner ones make room for the play around them."""
     factors = [SECTION_DRAWN] * len(corners)
-    halves = [0.5 * float(np.ptp(each[:, 1])) for each in corners]
+    halves = [0.5 * float(np.ptp(each[..., 1])) for each in corners]
     for joint in boom.joints:
         room = scale * joint.clearance + SECTION_DRAWN * 2.0 * WALL_DRAWN * halves[joint.outer]
         around = factors[joint.outer] * halves[joint.outer]
@@ -103,30 +108,36 @@ def _factors(boom: Boom, corners: list[Array], scale: float) -> list[float]:
 def _tube(
     segment: Segment, moved: MovedSegment, corners: Array, factor: float, scale: float
 ) -> _Tube:
-    """Rings (place, corner) of a segment, joined by two triangles for each plate and stretch."""
+    """Rings (place, corner) of a segment, joined by two triangles for each plate and stretch.
+
+    ``corners`` (num_places, num_corners, 2) are the y and z of each ring in m.
+    """
     x, read = moved.x, moved.read
     none = np.zeros_like(read["deflection"])
     w, v, twist = read["deflection"], read.get("lateral", none), read.get("twist", none)
     slopes = [np.gradient(line, x, axis=1)[..., None] for line in (w, v)]
-    y, z = corners.T
+    y, z = np.moveaxis(corners, -1, 0)
     along = -factor * (z * slopes[0] + y * slopes[1])
     across = v[..., None] - factor * z * twist[..., None]
     up = w[..., None] + factor * y * twist[..., None]
     shape = (len(w), -1)
-    places = np.stack(
-        [np.repeat(x, len(y)), np.tile(factor * y, x.size), np.tile(factor * z, x.size)], axis=1
-    )
-    rings = np.arange(x.size * len(y)).reshape(x.size, len(y))
+    places = np.stack([np.repeat(x, y.shape[1]), factor * y.ravel(), factor * z.ravel()], axis=1)
+    rings = np.arange(y.size).reshape(y.shape)
     quads = [(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairwise(rings)]
     a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
+    there = [segment.local(place) for place in x.tolist()]
     # Rigid segments know no moments.
-    bending = read.get("moment", none)[..., None] * z / segment.second_moment_of_area
-    if segment.lateral is not None and "lateral_moment" in read:
-        sideways = read["lateral_moment"][..., None] * y
-        bending = bending + sideways / segment.lateral.second_moment_of_area
+    bending = _bent(read.get("moment", none), there, "second_moment_of_area") * z
+    if "lateral_moment" in read:
+        bending += _bent(read["lateral_moment"], there, "lateral.second_moment_of_area") * y
     return _Tube(
         points=places,
         triangles=np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]),
         moved=scale * np.stack([part.reshape(shape) for part in (along, across, up)], axis=-1),
         stress=np.abs(bending).reshape(shape),
     )
+
+
+def _bent(moments: Array, there: Sequence[Segment], number: str) -> Array:
+    """(num_frames, num_places, 1) curvature times Young's modulus, in Pa/m."""
+    return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]

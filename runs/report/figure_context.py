@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
-from runs.pipeline.comparisons import rubs
+from runs.pipeline.comparisons import regular
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve
@@ -71,7 +71,7 @@ class Pen:
         self.ensembles = results.ensembles
         self.summary = results.summary.models
         self.of_the_paper = bool(results.case.statements)
-        self.rubs = rubs(results.case)
+        self.regular = regular(results.case)
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
         self.models = [str(name) for name in self.data["model"].values]

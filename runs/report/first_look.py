@@ -74,6 +74,7 @@ def first_table(results: Results) -> Table | None:
     found = [one for each in (walls, fibres) for one in each.values() if one is not None]
     strong = [_stress(one) for one in found if (one.part or 0.0) >= NEAR]
     strong += [_pad(one) for one in pads.values() if (one.utilisation or 0.0) >= NEAR]
+    strong += [_damage(one) for one in own.values() if (_life_damage(one) or 0.0) >= NEAR]
     notes = " ".join(_notes(results, told))
     return Table("The answers", columns, [notes], "answers", strong=strong)
 
@@ -130,23 +131,32 @@ def play_sentence(results: Results) -> str:
 def strength_sentence(results: Results) -> str:
     """What part of what they bear steel and pads reach, in the model that is read first; or empty.
 
-    Where neither strengths nor allowable pressures are known there is nothing to be said.
+    Where neither strengths, allowable pressures nor a life are known there is nothing to be said.
     """
     answers, first = results.summary.answers, results.read_first[0]
     own = answers.models[first] if answers else ModelAnswers()
     pad = _hardest_pads(results).get(first)
-    used: list[tuple[float, str, str]] = []
+    used: list[tuple[float, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
-            used.append((most.part, what, f"their yield strength ({_place(most)})"))
+            bears = f"{number(PERCENT * most.part)} % of their yield strength ({_place(most)})"
+            used.append((most.part, f"{what} bear {bears}"))
     if pad is not None and pad.utilisation is not None:
-        used.append((pad.utilisation, "pads", "their allowable pressure"))
+        bears = f"{number(PERCENT * pad.utilisation)} % of their allowable pressure"
+        used.append((pad.utilisation, f"pads bear {bears}"))
+    if (damage := _life_damage(own)) is not None:
+        used.append((damage, f"{number(PERCENT * damage)} % of a life is used"))
     if not used:
         return ""
-    verdict = "Not strong enough" if max(used)[0] > 1.0 else "Strong enough without a safety factor"
     used.sort(reverse=True)
-    told = [f"{what} bear {number(PERCENT * part)} % of {bears}" for part, what, bears in used]
-    return f"{verdict}: {_listed(told)}."
+    unknown = [one.name for one in results.boom.segments if one.material.yield_strength is None]
+    if used[0][0] > 1.0:
+        verdict = "Not strong enough"
+    else:
+        verdict = "Of what is known all is" if unknown else "All is"
+        verdict += " strong enough without a safety factor"
+    told = f"{verdict}: {_listed(phrase for _, phrase in used)}."
+    return told + (f" No yield strength is given of {_listed(unknown)}." if unknown else "")
 
 
 _SAID = {
@@ -348,5 +358,11 @@ def _fading(case: Case, own: ModelAnswers) -> str:
 
 
 def _damage(own: ModelAnswers) -> str:
+    most = _life_damage(own)
+    return NONE if most is None else number(most)
+
+
+def _life_damage(own: ModelAnswers) -> float | None:
+    """The largest; None without a detail category."""
     found = [life.life_damage for life in own.life if life.life_damage is not None]
-    return number(max(found)) if found else NONE
+    return max(found, default=None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dynamics.predictability.horizon import SHARES
 from runs.case.build import contact_laws
-from runs.pipeline.comparisons import rubs
+from runs.pipeline.comparisons import regular
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import Cell, Column, Table
@@ -112,7 +112,7 @@ def step_table(results: Results) -> Table:
             "The paper names at most 2000 steps for the series and more than 4000 for beam "
             "elements, and 4375 for these with friction."
         )
-    statements = ("S8", "S10") if rubs(results.case) else ("S10",)
+    statements = ("S8", "S10") if regular(results.case) else ("S10",)
     return Table("Steps", columns, notes, "steps", statements)
 
 

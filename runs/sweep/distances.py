@@ -21,6 +21,7 @@ from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case, Model
+from runs.pipeline.comparisons import regular
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
@@ -145,7 +146,7 @@ def comparable_until(
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
-    if model.play_free or all(joint.friction and joint.normal_forces for joint in case.joints):
+    if model.play_free or regular(case):
         return end
     tools = None if comm is None else workshop(comm, meshes / model.name, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)

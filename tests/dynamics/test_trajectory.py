@@ -187,3 +187,22 @@ def test_rates_are_those_of_the_motion(
     np.testing.assert_allclose(data["rate"], rate, atol=1e-9)
     np.testing.assert_allclose(data["push"][1:], np.diff(rate) / 1.0e-2, atol=1e-7)
     assert float(data["push"][0]) == 0.0
+
+
+def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
+    one_mass: Callable[..., GapSystem],
+) -> None:
+    """Reference: analytic, v √(k m) of a free mass between two stops, each with a row of its own;
+    beside them the same stops in one row."""
+    both = one_mass(2.0, STOP)
+    apart = replace(
+        both,
+        rows=np.vstack([both.rows, both.rows]),
+        laws=[law for side in (1, -1) if (law := STOP.one_sided(side)) is not None],
+        station_of_row=np.array([0, 0]),
+    )
+    for system in (both, apart):
+        free = replace(system, omega2=np.zeros(1))
+        run = integrate(Motion(free, 2.0, output_step=0.5, velocity=[5.0 * np.sqrt(2.0)]))
+        peaks = np.abs(run.data["contact_force_peak"].values[1:, 0])
+        np.testing.assert_allclose(peaks, 5.0 * np.sqrt(1.0e4 * 2.0), rtol=1e-3)

@@ -11,7 +11,7 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, PlayAdds, Reaction, WallStress
+from runs.pipeline.answers import Added, Life, PlayAdds, Reaction, WallStress
 from runs.pipeline.life import COUNTS
 from runs.pipeline.results import Results
 from runs.report.answer_tables import (
@@ -147,11 +147,29 @@ def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
     """Reference: by hand, as above; without a yield strength nothing is told."""
     assert strength_sentence(results) == ""
     assert strength_sentence(with_stress(results, 300e6)) == (
-        "Strong enough without a safety factor: walls beside what presses bear 93 % of their yield "
-        "strength (outer, 10.0 m) and outer fibres bear 84.5 % of their yield strength (outer, 2.0 "
-        "m)."
+        "Of what is known all is strong enough without a safety factor: walls beside what presses "
+        "bear 93 % of their yield strength (outer, 10.0 m) and outer fibres bear 84.5 % of their "
+        "yield strength (outer, 2.0 m). No yield strength is given of outer and inner."
     )
     assert strength_sentence(with_stress(results, 340e6)).startswith("Not strong enough: ")
+
+
+def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
+    """Reference: by hand, a damage of 3.2."""
+    answers = results.summary.answers
+    assert answers is not None
+    own = answers.models[PLAYED]
+    life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
+    models = answers.models | {PLAYED: replace(own, life=[life])}
+    answers = replace(answers, models=models)
+    told = replace(results, summary=results.summary.model_copy(update={"answers": answers}))
+    assert strength_sentence(told) == (
+        "Not strong enough: 320 % of a life is used. No yield strength is given of outer and inner."
+    )
+    table = first_table(told)
+    assert table is not None
+    assert list(table.text.strong) == ["3.2"]
+    assert cells(table)["Damage of its life"][PLAYED] == "3.2"
 
 
 def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:

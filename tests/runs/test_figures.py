@@ -88,7 +88,8 @@ def draw_some(of: Callable[[Pen], list[Figure]], results: Results, folder: Path)
 
 def with_friction(results: Results) -> Results:
     """The same run, as if its segments had rubbed: 1 kN up at 9 m, nothing at 10 m."""
-    joints = tuple(j.model_copy(update={"friction": 0.2}) for j in results.case.joints)
+    rubbing = {"friction": 0.2, "normal_forces": (4500.0, 5000.0)}
+    joints = tuple(j.model_copy(update=rubbing) for j in results.case.joints)
     data = results.trajectories.copy(deep=True)
     data["friction_force"] = 0.0 * data["contact_force"].fillna(0.0)
     data["friction_force"][dict(station=0)] = 1000.0

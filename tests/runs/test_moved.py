@@ -46,10 +46,35 @@ name = "one"
 """
 
 
-def answers(model: str, folder: Path) -> ModelAnswers:
+# An arm of 6 m with another in it, in space.
+SIDEWAYS = CASE.replace("[0.0, 10.0]", "[0.0, 6.0]").replace(
+    "load = -1000.0",
+    """load = -1000.0
+lateral_load = 500.0
+
+[[segment]]
+name = "inner"
+span = [5.0, 10.0]
+section = {{ height = 0.35, width = 0.26, flange = 0.008, web = 0.006 }}
+load = -1000.0
+lateral_load = 500.0
+
+[[joint]]
+outer = "arm"
+inner = "inner"
+stations = ["tail", "head"]
+play = 0.004
+lateral_play = 0.004
+stiffness = 1e8
+exponent = 1.0
+""",
+)
+
+
+def answers(model: str, folder: Path, case: str = CASE) -> ModelAnswers:
     """Of a run, as a folder gives them back."""
     file = folder / "case.toml"
-    file.write_text(CASE.format(model=model), encoding="utf-8")
+    file.write_text(case.format(model=model), encoding="utf-8")
     run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
     assert run is not None
     run.answer()
@@ -94,6 +119,22 @@ def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
     assert (fibre.x, abs(fibre.z)) == (0.0, pytest.approx(0.204))
     assert fibre.utilisation == pytest.approx(abs(fibre.stress) / 3e8)
     assert found.moved.walls == []
+
+
+def test_what_is_borne_sideways_is_told(tmp_path: Path) -> None:
+    """Reference: by hand. On 6 and 5 m 1000 N/m across and 500 N/m from the side: 11 and 5.5 kN,
+    1000 (6 · 3 + 5 · 7.5) N m and half of that at the wall, no torque.
+    """
+    beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
+    found = answers(beam, tmp_path, SIDEWAYS)
+    assert found.moved is not None
+    wall = {p.what: p.at_rest for p in found.moved.peaks if "arm" in p.where}
+    assert wall["reaction"] == pytest.approx(1.1e4, rel=1e-6)
+    assert wall["lateral reaction"] == pytest.approx(5.5e3, rel=1e-6)
+    assert wall["moment at the support"] == pytest.approx(5.55e4, rel=1e-3)
+    assert wall["lateral moment at the support"] == pytest.approx(2.775e4, rel=1e-3)
+    assert wall["lateral bending moment"] == pytest.approx(2.775e4, rel=1e-3)
+    assert wall["torque at the support"] == pytest.approx(0.0, abs=1e-3)
 
 
 def test_outer_corners_lie_on_the_outer_surfaces() -> None:

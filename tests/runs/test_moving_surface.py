@@ -12,8 +12,9 @@ import xarray as xr
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
 from dynamics.travel import SCurve
-from geometry.boom import Boom
+from geometry.boom import Boom, Material, Segment, Support
 from geometry.drive import Drive
+from geometry.section import BoxSection
 from runs.pipeline.beam_output import BeamOutput, MovedSegment
 from runs.report.extruded import of_beam
 from runs.report.moving_surface import LEFT, few_shapes, packed
@@ -53,6 +54,22 @@ def test_bending_stress_is_that_of_the_curvature(paper_boom: Boom) -> None:
     highest = max(abs(z) for z in section.reach("z"))
     assert surface.colors[0].max() == 0.0
     assert surface.colors[-1].max() == pytest.approx(2.1e5 * 0.02 * highest, rel=1e-9)
+
+
+def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
+    """Reference: by hand, M z/J of boxes of 0.4 and 0.2 m at tail and head, 1 kN m in both."""
+    tail, head = (BoxSection(height, 0.2, 0.01, 0.008) for height in (0.4, 0.2))
+    steel, clamp = Material(2.1e11, 0.3, 7850.0), Support(0.0, "clamped")
+    arm = Segment.of_section("arm", 0.0, 8.0, steel, tail, head_section=head, supports=(clamp,))
+    x, one = np.linspace(0.0, 8.0, 5), np.ones((1, 5))
+    moved = MovedSegment(x, {"deflection": 0.0 * one, "moment": 1e3 * one})
+    surface = of_beam(Boom((arm,), (), ()), "beam", BeamOutput(np.zeros(1), [moved]))
+    for place, box in ((0.0, tail), (8.0, head)):
+        there = surface.points[:, 0] == place
+        half = 0.5 * box.height
+        assert np.ptp(surface.points[there, 2]) == pytest.approx(2.0 * half * surface.enlarged)
+        stress = 1e-6 * 1e3 * half / box.second_moment_of_area
+        assert surface.colors[0, there].max() == pytest.approx(stress, rel=1e-9)
 
 
 def test_play_stays_visible(paper_boom: Boom) -> None:
