@@ -4,6 +4,9 @@
 Within a part of a step rows go straight from where they were to where they will be, so that a gap
 changes by B̄ Δa + ΔB ā exactly, with the means of both ends: what the modes make of it and what the
 drive does. ΔB a over the time of the part is the convective rate of the gap.
+
+Loops run over slices from 0 on: at any other index numba asks whether it counts from the end, and
+no loop that asks is made of vector instructions.
 """
 
 from __future__ import annotations
@@ -71,11 +74,12 @@ def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
             else:
                 high = middle
         u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
-        piece = first + low - starts[travel]
-        for i in range(begin, end):
-            bent = coefficients[piece, 2, i] + u * coefficients[piece, 3, i]
-            straight = coefficients[piece, 1, i] + u * bent
-            rows[row, i] = coefficients[piece, 0, i] + u * straight
+        cubic = coefficients[first + low - starts[travel]]
+        c0, c1 = cubic[0, begin:end], cubic[1, begin:end]
+        c2, c3 = cubic[2, begin:end], cubic[3, begin:end]
+        entries = rows[row, begin:end]
+        for i in range(entries.size):
+            entries[i] = c0[i] + u * (c1[i] + u * (c2[i] + u * c3[i]))
 
 
 @njit(**SUMS)
@@ -94,9 +98,11 @@ def carry(
         j = moving[m, 0]
         if not first <= j < last:
             continue
+        begin, end = moving[m, 3:]
+        old, new, part = now[j, begin:end], then[j, begin:end], a[begin:end]
         total = 0.0
-        for i in range(moving[m, 3], moving[m, 4]):
-            total += (then[j, i] - now[j, i]) * a[i]
+        for i in range(part.size):
+            total += (new[i] - old[i]) * part[i]
         rates[j] = total / time
 
 
@@ -105,8 +111,10 @@ def average(now: Array, then: Array, moving: Indices, middle: Array) -> None:
     """Fill in the rows that move as they are in the mean."""
     for m in range(moving.shape[0]):
         j = moving[m, 0]
-        for i in range(moving[m, 3], moving[m, 4]):
-            middle[j, i] = 0.5 * (now[j, i] + then[j, i])
+        begin, end = moving[m, 3:]
+        old, new, mean = now[j, begin:end], then[j, begin:end], middle[j, begin:end]
+        for i in range(mean.size):
+            mean[i] = 0.5 * (old[i] + new[i])
 
 
 @njit(**SUMS)
@@ -114,8 +122,10 @@ def arrive(now: Array, then: Array, moving: Indices) -> None:
     """Set the rows that move to where they come."""
     for m in range(moving.shape[0]):
         j = moving[m, 0]
-        for i in range(moving[m, 3], moving[m, 4]):
-            now[j, i] = then[j, i]
+        begin, end = moving[m, 3:]
+        old, new = now[j, begin:end], then[j, begin:end]
+        for i in range(old.size):
+            old[i] = new[i]
 
 
 @njit(**SUMS)
