@@ -9,21 +9,27 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure as Sheet
+from numpy.typing import NDArray
 
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.sweep.distances import DISTANCES, LEVELS
-from runs.sweep.figures import RC, finish, in_shown_units, over_first_key, scale_axis
+from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
+from runs.sweep.figures import RC, at_ends, finish, in_shown_units, scale_axis
 from runs.sweep.quantities import Quantity
 
 # Below the first level, between them, beyond the last one.
 _SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
 # In percent: more is as bad, and less as good.
 _MOST, _LEAST = 100.0, 0.01
+# Inches of a map beside another one.
+_COLUMN = 3.6
 
 
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
-    """Draw them as PNG: over two keys a map of each distance, else a panel of lines.
+    """Draw them as PNG: over one key a panel of lines of each, over more maps of each.
 
     Args:
         data: of :func:`runs.sweep.output.gather`, without the reference.
@@ -33,14 +39,12 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     data = in_shown_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     with matplotlib.rc_context(RC):
-        if len(keys) == 2:
+        if len(keys) > 1:
             for quantity in _known(data):
-                _map(data, quantity, keys, reference, folder)
-            return
-        for part, where, number in over_first_key(data, keys):
-            if _known(part):
-                title = f"Distance from {reference} {where}"
-                _lines(part, keys[0], title, folder / f"sweep-distances{number}.png")
+                _maps(data, quantity, keys, reference, folder)
+        elif _known(data):
+            title = f"Distance from {reference} over {keys[0]}"
+            _lines(data, keys[0], title, folder / "sweep-distances.png")
 
 
 def _known(data: xr.Dataset) -> list[Quantity]:
@@ -73,27 +77,58 @@ def _lines(data: xr.Dataset, key: str, title: str, path: Path) -> None:
     finish(sheet, title, path)
 
 
-def _map(
+def _maps(
     data: xr.Dataset, quantity: Quantity, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
-    """One distance over two keys, a panel for each model that has it."""
-    values = quantity.factor * data[quantity.name].transpose("model", keys[1], keys[0])
+    """One distance over the last two keys, for each model that has it and, side by side, each
+    combination of the ends of the keys before them.
+    """
+    *before, x, y = keys
+    parts = [data.sel(there) for there in at_ends(data, before)]
+    values = quantity.factor * data[quantity.name]
     known = [name for name in values["model"].values if np.isfinite(values.sel(model=name)).any()]
-    places = data[keys[0]].values, data[keys[1]].values
-    sheet, panels = new_sheet(len(known), 1.4 + 2.2 * len(known))
-    for axes, name in zip(panels, known, strict=True):
-        scale_axis(axes, "x", data[keys[0]])
-        scale_axis(axes, "y", data[keys[1]])
-        off = values.sel(model=name).values
-        least, most = float(np.nanmin(off)), float(np.nanmax(off))
-        shade = axes.contourf(
-            *places, np.clip(off, 0.0, _MOST), levels=[0.0, *LEVELS, _MOST], colors=_SHADES
-        )
-        if least < LEVELS[-1] and most > LEVELS[0]:
-            lines = axes.contour(*places, off, levels=LEVELS, colors="black")
-            axes.clabel(lines, fmt="%g %%", fontsize=9.0)
-        axes.set(title=f"{name}: {least:.2g} to {most:.2g} %", facecolor=theme.RULE)
-        axes.label_outer()
-    sheet.colorbar(shade, ax=panels, label=f"{quantity.title} (%)", aspect=40)
+    sheet, grid = _sheet(len(known), len(parts))
+    for part, column in zip(parts, grid.T, strict=True):
+        for axes, name in zip(column, known, strict=True):
+            scale_axis(axes, "x", data[x])
+            scale_axis(axes, "y", data[y])
+            off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
+            shade = _shade(axes, off)
+            if quantity.name == TIP_OFF:
+                _say_until_when(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
+            axes.label_outer()
+        where = ", ".join(f"{key} {part[key].item():g}" for key in before)
+        column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
+    sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
     title = f"Distance from {reference}: {quantity.title}"
     finish(sheet, title, folder / f"sweep-{quantity.name.replace('_', '-')}.png")
+
+
+def _sheet(rows: int, columns: int) -> tuple[Sheet, NDArray[np.object_]]:
+    """A sheet with (rows, columns) panels that share their axes."""
+    width = theme.WIDTH + (columns - 1) * _COLUMN
+    sheet = Sheet(figsize=(width, 1.4 + 2.2 * rows))
+    theme.Canvas(sheet)
+    return sheet, sheet.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+
+
+def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
+    """A map in percent, with its levels and from where to where it goes."""
+    y, x = (off[dim].values for dim in off.dims)
+    least, most = float(off.min()), float(off.max())
+    levels = [0.0, *LEVELS, _MOST]
+    shade = axes.contourf(x, y, np.clip(off, 0.0, _MOST), levels=levels, colors=_SHADES)
+    if least < LEVELS[-1] and most > LEVELS[0]:
+        lines = axes.contour(x, y, off, levels=LEVELS, colors="black")
+        axes.clabel(lines, fmt="%g %%", fontsize=9.0)
+    name = off["model"].item()
+    axes.set(title=f"{name}: {least:.2g} to {most:.2g} %", facecolor=theme.RULE)
+    return shade
+
+
+def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
+    """The seconds up to which tips are compared, where these are fewer than elsewhere."""
+    y, x = (until[dim].values for dim in until.dims)
+    for row, column in np.argwhere(until.values < longest):
+        text = f"{until.values[row, column]:.1f} s"
+        axes.text(x[column], y[row], text, fontsize=7.0, ha="center", va="center")

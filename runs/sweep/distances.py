@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """How far the models of a point are from one of them, the reference.
 
-Motions are compared from moment to moment as long as that says anything: to the end where friction
-under given forces makes them regular, else until a small change of the loads parts the reference
-from itself. Stresses are the largest of the whole run.
+Tips are compared from moment to moment as long as that says anything: to the end where friction
+under given forces makes motions regular, else until a small change of the loads parts the reference
+from itself. All else is of the whole run.
 """
 
 from __future__ import annotations
@@ -32,14 +32,17 @@ if TYPE_CHECKING:
 
     from runs.folder.cache import Cache
 
+TIP_OFF = "tip_off"
 # Each as a part of the reference's.
 DISTANCES = (
     Quantity("first_peak_off", "1", "first peak off", 100.0, "%"),
     Quantity("slow_period_off", "1", "slow period off", 100.0, "%"),
     Quantity("pad_force_off", "1", "pad force off", 100.0, "%"),
     Quantity("stress_off", "1", "stress off", 100.0, "%"),
-    Quantity("tip_off", "1", "tip off", 100.0, "%"),
+    Quantity(TIP_OFF, "1", "tip off", 100.0, "%"),
 )
+# Up to when tips are compared, in s: of a point, and of all its models.
+UNTIL = "compared_until"
 # Contours in percent.
 LEVELS = (1.0, 5.0, 20.0)
 
@@ -56,7 +59,7 @@ class Seen:
     """What is compared of a model.
 
     Args:
-        tip: (num_times,) in m.
+        tip: (num_times,) in m, as long as it is compared.
         first_peak: in m.
         slow_period: mean time between the tip's outstanding peaks in s.
         pad_force: the largest mean over ``HELD`` at any station in N.
@@ -71,17 +74,16 @@ class Seen:
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Seen:
-        """Of a model of a run, up to a time in s."""
+        """Of a model of a run, whose tip is compared up to a time in s."""
         data = results.trajectories.sel(model=model)
         time = np.asarray(data["time"].values, dtype=float)
-        before = time <= until
-        tip = np.asarray(data["tip"].values, dtype=float)[before]
+        tip = np.asarray(data["tip"].values, dtype=float)
         _, height = results.summary.models[model].first_peak["tip"]
         return cls(
-            tip,
+            tip[time <= until],
             np.nan if height is None else height,
-            slow_period(time[before], tip),
-            held_force(time[before], np.asarray(data["contact_force"].values)[before]),
+            slow_period(time, tip),
+            held_force(time, np.asarray(data["contact_force"].values)),
             np.nan if stress is None else stress,
         )
 

@@ -76,11 +76,16 @@ def over_first_key(data: xr.Dataset, keys: Sequence[str]) -> Iterator[tuple[xr.D
     """The data at each combination of the ends of all keys but the first, where that is, in words,
     and the number behind the name of its file.
     """
-    ends = [(data[key].values[0], data[key].values[-1]) for key in keys[1:]]
-    for count, others in enumerate(product(*ends), start=1):
-        there = dict(zip(keys[1:], others, strict=True))
+    for count, there in enumerate(at_ends(data, keys[1:]), start=1):
         where = f"over {keys[0]}" + "".join(f", {k} {v:g}" for k, v in there.items())
-        yield data.sel(there), where, f"-{count}" if ends else ""
+        yield data.sel(there), where, f"-{count}" if there else ""
+
+
+def at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
+    """Each combination of the ends of some keys; one of nothing where there are none."""
+    ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
+    for values in product(*ends):
+        yield dict(zip(keys, values, strict=True))
 
 
 def _changing(data: xr.Dataset) -> list[Quantity]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,10 +17,10 @@ from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import TextTable
 from runs.report.theme import NONE, number
 from runs.sweep.distance_figures import draw_distances
-from runs.sweep.distances import DISTANCES
+from runs.sweep.distances import DISTANCES, UNTIL
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import QUANTITIES, Measured, Quantity
+from runs.sweep.quantities import DOUBLED, QUANTITIES, Measured, Quantity
 from runs.sweep.run import Outcome
 from runs.sweep.swings import said, swings
 
@@ -38,7 +39,8 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
     Returns:
         dims: the varied keys, in the unit of the case, and ``model``; the quantities of
         :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference those of
-        :mod:`runs.sweep.distances`; ``failed``, 1 where the numerics did.
+        :mod:`runs.sweep.distances`, and ``compared_until``, up to when tips are compared;
+        ``failed``, 1 where the numerics did.
     """
     keys = [variation.key for variation in plan.variations]
     models = [model.name for model in plan.points[0].case.models]
@@ -53,8 +55,10 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
     failed = np.array(
         [[name in outcome.failures for name in models] for outcome in outcomes], dtype=np.int8
     ).reshape(*shape, len(models))
+    compared = {} if plan.reference is None else _compared_until(keys, shape, outcomes)
     return xr.Dataset(
-        {
+        compared
+        | {
             quantity.name: (
                 [*keys, "model"],
                 values,
@@ -70,6 +74,13 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
         | {"model": models},
         attrs={"Conventions": CONVENTIONS, "title": plan.title},
     )
+
+
+def _compared_until(
+    keys: Sequence[str], shape: Sequence[int], outcomes: Sequence[Outcome]
+) -> dict[str, Any]:
+    ends = np.array([one.until for one in outcomes], dtype=float).reshape(shape)
+    return {UNTIL: (keys, ends, {"units": "s", "long_name": "tips compared until"})}
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
@@ -130,6 +141,19 @@ def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     ]
     headings = (f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES)
     TextTable(f"Distances from {reference}", ("model", *headings), rows).show(console)
+    for line in (_until_when(data[UNTIL]), _by_steps(data, reference)):
+        if line:
+            console.print(line, markup=False, highlight=False)
+
+
+def _until_when(until: xr.DataArray) -> str:
+    ends = _range(until, Quantity(UNTIL, "s", "", 1.0, "s"))
+    return "" if ends == NONE else f"tips are compared until {ends} s"
+
+
+def _by_steps(data: xr.Dataset, reference: str) -> str:
+    changed = _range(data[DOUBLED.name].sel(model=reference).round(DIGITS), DOUBLED)
+    return "" if changed == NONE else f"twice the step moves the tip of {reference} by {changed} %"
 
 
 def _range(values: xr.DataArray, quantity: Quantity) -> str:

@@ -46,6 +46,11 @@ class Quantity:
     charted: bool = True
 
 
+# Of the tip, as a part of its range, where friction makes motions regular.
+DOUBLED = Quantity(
+    "step_doubling", "1", "what twice the step changes", 100.0, "%", charted=False
+)
+
 # Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
     Quantity("tip_at_rest", "m", "tip at rest", 1.0e3, "mm"),
@@ -65,6 +70,7 @@ QUANTITIES = (
     Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
     Quantity("peak_contact_force", "N", "peak of a blow", 1.0e-3, "kN", charted=False),
     Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
+    DOUBLED,
 )
 
 
@@ -90,6 +96,7 @@ def measure(results: Results, model: str) -> Measured:
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,
+        DOUBLED.name: summary.step_doubling,
     }
 
 

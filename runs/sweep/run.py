@@ -54,11 +54,13 @@ class Outcome:
         models: the quantities of those that ran.
         failures: why the others could not be computed, a sentence each.
         off: how far they are from the reference, where there is one.
+        until: up to when tips are compared, in s; None where nothing is.
     """
 
     models: dict[str, Measured]
     failures: dict[str, str]
     off: dict[str, Measured] = field(default_factory=dict)
+    until: float | None = None
 
 
 def prepare(folder: Path, file: str) -> None:
@@ -175,7 +177,8 @@ def run_point(
     case: Case, scratch: Path, cache: Cache | None = None, reference: str | None = None
 ) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
-    outcome = Outcome({}, {})
+    models: dict[str, Measured] = {}
+    failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
     comm = None
     if any(model.needs_shell for model in case.models):
@@ -189,25 +192,24 @@ def run_point(
                 finished = run_case(alone, "", comm, Path(meshes), silent, cache)
             except NumericsError as error:
                 # The file, the point and the model's name stand before it where it is shown.
-                outcome.failures[model.name] = str(error).removeprefix(": model[1]: ")
+                failures[model.name] = str(error).removeprefix(": model[1]: ")
                 continue
         assert finished is not None
         finished.answer()
-        outcome.models[model.name] = measure(finished.results, model.name)
+        models[model.name] = measure(finished.results, model.name)
         if reference is not None:
             runs[model.name] = finished.results
-    if reference in runs:
-        (against,) = (model for model in case.models if model.name == reference)
-        with TemporaryDirectory(dir=scratch) as meshes:
-            until = comparable_until(case, against, runs[reference], comm, Path(meshes), cache)
-        seen = {
-            name: Seen.of(results, name, outcome.models[name]["stress"], until)
-            for name, results in runs.items()
-        }
-        outcome.off.update(
-            {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
-        )
-    return outcome
+    if reference not in runs:
+        return Outcome(models, failures)
+    (against,) = (model for model in case.models if model.name == reference)
+    with TemporaryDirectory(dir=scratch) as meshes:
+        until = comparable_until(case, against, runs[reference], comm, Path(meshes), cache)
+    seen = {
+        name: Seen.of(results, name, models[name]["stress"], until)
+        for name, results in runs.items()
+    }
+    off = {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
+    return Outcome(models, failures, off, until)
 
 
 def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:
@@ -231,6 +233,7 @@ def _read(case: Case, reference: str | None, files: Files) -> Outcome:
     distances = {distance.name for distance in DISTANCES}
     measured &= all(parts.keys() == distances for parts in outcome.off.values())
     measured &= outcome.off.keys() == compared
+    measured &= (outcome.until is None) == (reference not in outcome.models)
     if not measured or outcome.models.keys() | outcome.failures.keys() != models:
         raise ValueError(f"{_POINT} is not of the case's models")
     return outcome
