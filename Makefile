@@ -61,9 +61,10 @@ readings: $(READY) ## which readings of the data the paper's statements exclude,
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
 	$(BIN)/python -m runs.studies.convergence
 
-validity: $(READY) ## where a beam may stand for the shell, over play and load, into runs/out/validity
+validity: $(READY) ## where a beam may stand for the shell, over friction, play and load, into runs/out/validity
 	$(BIN)/protractile sweep runs/cases/beam-or-shell.toml --against shell --large \
-	    --vary joint.play=0:0.02:5 --vary gravity.acceleration=1,2,5,10 --out runs/out/validity
+	    --vary joint.friction=0,0.2 --vary joint.play=0:0.02:5 --vary gravity.acceleration=1,2,5,10 \
+	    --out runs/out/validity
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder

@@ -47,9 +47,7 @@ class Quantity:
 
 
 # Of the tip, as a part of its range, where friction makes motions regular.
-DOUBLED = Quantity(
-    "step_doubling", "1", "what twice the step changes", 100.0, "%", charted=False
-)
+DOUBLED = Quantity("step_doubling", "1", "what twice the step changes", 100.0, "%", charted=False)
 
 # Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
