@@ -32,6 +32,7 @@ from runs.sweep.distances import (
     slow_period,
 )
 from runs.sweep.points import Plan, plan
+from runs.sweep.quantities import Measured
 from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
 
@@ -122,27 +123,63 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
     ]
 
 
-def test_maps_have_levels(against: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: invented numbers on both sides of the levels; what no model has, has no map."""
-    sheets: list[Sheet] = []
+def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan) -> None:
+    """Reference: analytic, friction is compared to the end; other code, what a single run says."""
+    data = output.write(against, run(against), Path("out"))
+    assert data["compared_until"].dims == ("joint.play",)
+    assert data["compared_until"].values.tolist() == [0.9, 0.9]
+    single = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[1:2]))
+    doubled = single.summary.models["kantorovich-5"].step_doubling
+    assert doubled is not None
+    there = data["step_doubling"].sel({"joint.play": 0.014, "model": "kantorovich-5"})
+    assert float(there) == pytest.approx(doubled)
+    console = Console(file=io.StringIO(), width=80, legacy_windows=False)
+    output.show(data, "kantorovich-5", console)
+    assert isinstance(console.file, io.StringIO)
+    assert 0.0 < doubled < 5.0e-5
+    assert console.file.getvalue().splitlines()[-2:] == [
+        "tips are compared until 0.9 s",
+        "twice the step moves the tip of kantorovich-5 by 0 %",
+    ]
+
+
+def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
+    """Reference: analytic; what is cut off the tip is cut off nothing else."""
+    results = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[:1]))
+    whole, part = (Seen.of(results, MODELS[0], 1e6, until) for until in (0.9, 0.3))
+    assert (whole.tip.size, part.tip.size) == (901, 301)
+    np.testing.assert_array_equal(part.tip, whole.tip[:301])
+    for name in ("first_peak", "slow_period", "pad_force", "stress"):
+        assert getattr(part, name) == pytest.approx(getattr(whole, name), nan_ok=True)
+    force = np.abs(results.trajectories["contact_force"].sel(model=MODELS[0]).values)
+    assert np.flatnonzero(force.max(axis=1))[0] > 100
+    assert part.pad_force > 0.0
+
+
+@pytest.fixture
+def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
+    """The matplotlib figures behind the files that are saved."""
+    saved: list[Sheet] = []
     save = Sheet.savefig
     monkeypatch.setattr(
-        Sheet, "savefig", lambda sheet, path: (sheets.append(sheet), save(sheet, path))
+        Sheet, "savefig", lambda sheet, path: (saved.append(sheet), save(sheet, path))
     )
+    return saved
+
+
+def invented(factor: float, until: float = 0.9) -> Outcome:
+    """A model whose tip is so far off, and one of a tenth of that; their first peaks are alike."""
+    parts: Measured = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
+    tips = {"kantorovich-4": factor, "beam-fe-tied": 0.1 * factor}
+    return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
+
+
+def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
+    """Reference: invented numbers on both sides of the levels; what no model has, has no map."""
     keys = ["joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
-    parts = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
-    outcomes = [
-        Outcome(
-            {},
-            {},
-            {name: {**parts, "tip_off": part * factor} for name, factor in
-             (("kantorovich-4", 1.0), ("beam-fe-tied", 0.1))},
-        )
-        for part in (0.005, 0.03, 0.1, 0.5)
-    ]  # fmt: skip
-    (tmp_path / "out").mkdir()
-    output.write(sweeping, outcomes, Path("out"))
+    Path("out").mkdir()
+    output.write(sweeping, [invented(part) for part in (0.005, 0.03, 0.1, 0.5)], Path("out"))
     assert sorted(path.name for path in Path("out/figures").glob("*off.png")) == [
         "sweep-first-peak-off.png",
         "sweep-tip-off.png",
@@ -152,6 +189,30 @@ def test_maps_have_levels(against: Plan, tmp_path: Path, monkeypatch: pytest.Mon
     labels = {text.get_text() for text in sheets[-1].axes[0].texts}
     assert labels <= {"1 %", "5 %", "20 %"}
     assert labels
+
+
+def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sheet]) -> None:
+    """Reference: invented numbers; seconds stand where tips are compared no longer than those."""
+    keys = ["joint.friction=0.1,0.2", "joint.play=0.008,0.014", "segment.load=20,40"]
+    sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
+    outcomes = [invented(part) for part in (0.005, 0.03, 0.1, 0.5)]
+    outcomes += [invented(0.02), invented(0.03, 0.41), invented(0.02), invented(0.03)]
+    Path("out").mkdir()
+    output.write(sweeping, outcomes, Path("out"))
+    sheet = sheets[-1]
+    assert [axes.get_title(loc="left") for axes in sheet.axes[:4]] == [
+        "joint.friction 0.1\nkantorovich-4: 0.5 to 50 %",
+        "joint.friction 0.2\nkantorovich-4: 2 to 3 %",
+        "beam-fe-tied: 0.05 to 5 %",
+        "beam-fe-tied: 0.2 to 0.3 %",
+    ]
+    seconds = {
+        (number, text.get_text(), text.get_position())
+        for number, axes in enumerate(sheet.axes[:4])
+        for text in axes.texts
+        if text.get_text().endswith("s")
+    }
+    assert seconds == {(1, "0.4 s", (8.0, 40.0)), (3, "0.4 s", (8.0, 40.0))}
 
 
 @pytest.mark.parametrize(
