@@ -35,6 +35,24 @@ class History(Protocol):
         """Value at each time in s, any shape."""
 
 
+# Among so many even times, and so many in each swing of the fastest, no history does much; more
+# than the most are not kept.
+_TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
+
+
+def followed(histories: Sequence[History], duration: float) -> Array:
+    """(num_times,) times in s from 0 to ``duration``, rising, between which all do next to nothing.
+
+    >>> from dynamics.excitation import followed
+    >>> 0.01 in followed([pt.Ramp(0.01)], 1000.0)
+    True
+    """
+    kinks = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
+    number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
+    return np.union1d(np.linspace(0.0, duration, number), kinks)
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """1 from t = 0 on.

@@ -15,6 +15,7 @@ from dynamics.tied import tied_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
+from geometry.drawing import drawn
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import (
@@ -89,7 +90,7 @@ def of_model(
     if model.play_free or not boom.joints:
         return answers
     try:
-        return _beside_tied(answers, _tied(boom, model, played, resting), model, case)
+        return _beside_tied(answers, boom, _tied(boom, model, played, resting), model, case)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move, for one.
         return answers
@@ -122,10 +123,7 @@ def _resting(shown: Shown, duration: float) -> Resting:
 def _drawn(shown: Shown, duration: float) -> Resting:
     """Where drives have drawn it farthest; its modes there are left out."""
     found = drawn_positions(shown.system, duration)
-    rests = [
-        at_rest(shown.boom, shown.system.standing(time), shown.lines, time, position)
-        for time, position in found.items()
-    ]
+    rests = [at_rest(*shown, time, position) for time, position in found.items()]
     positions = np.array(list(found.values())).reshape(-1, shown.system.num_modes)
     return Resting(positions, rests, [])
 
@@ -150,23 +148,33 @@ def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:
     own = model.without_play(boom)
     if own is not None:
         return Shown.of(boom.play_free, own[0].gathered(), own[1])
-    system, basis = tied_system(played.system, list(resting.positions))
+    rests = zip(resting.rests, resting.positions, strict=True)
+    begun = [position for rest, position in rests if _as_begun(boom, rest.time)]
+    system, basis = tied_system(played.system.standing(0.0), begun)
     return Shown(boom.play_free, system, [line.on(basis) for line in played.lines])
 
 
-def _beside_tied(answers: ModelAnswers, tied: Shown, model: Model, case: Case) -> ModelAnswers:
+def _beside_tied(
+    answers: ModelAnswers, boom: Boom, tied: Shown, model: Model, case: Case
+) -> ModelAnswers:
     from dynamics.integrators import suited
 
     resting = _resting(tied, case.time.duration)
+    as_begun = [rest for rest in resting.rests if _as_begun(boom, rest.time)]
     # Their shapes are those of the pressed boom to the eye.
     tied_modes = [replace(mode, shapes=[]) for mode in resting.modes]
-    answers = replace(answers, tied=resting.rests, tied_modes=tied_modes)
+    answers = replace(answers, tied=as_begun, tied_modes=tied_modes)
     if any(joint.drive is not None for joint in case.joints):
         # Tied it cannot be drawn out.
         return answers
     motion, _ = asked(tied.system, case, model)
     moved, lives = _moving(tied, resting, suited(motion)(motion), model, case)
     return replace(answers, tied_moved=moved, tied_life=lives)
+
+
+def _as_begun(boom: Boom, time: float) -> bool:
+    """Whether drives have all segments where they were at t = 0, at a time in s."""
+    return not any(drawn(boom, segment, time) for segment in range(len(boom.segments)))
 
 
 def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:

@@ -103,7 +103,7 @@ class AtRest:
     """A model of the boom at rest.
 
     Args:
-        time: whose loads act, in s.
+        time: whose loads act, and as far drawn out as it is then, in s.
         tip: its deflection in m.
         tip_lateral: likewise along y, in space.
         diagrams: of each segment.
@@ -348,8 +348,9 @@ class ModelAnswers:
     Args:
         rests: under the loads of t = 0, and where these change also those of the instants at which
             they are largest; none where it has no rest.
-        drawn: where drives have drawn it farthest out or in, under the loads of then.
-        tied: as ``rests``, without play.
+        drawn: where drives have drawn it farthest out or in, under the loads of then and under the
+            largest while it is there.
+        tied: as ``rests``, without play; of the instants at which drives have it where it begins.
         modes: the first ones at rest under the loads of t = 0; none where it has no rest.
         tied_modes: of what ``tied`` is of, without their shapes.
         moved: over the run.
@@ -370,6 +371,11 @@ class ModelAnswers:
     life: list[Life] = field(default_factory=list)
     tied_life: list[Life] = field(default_factory=list)
     swing: Swing | None = None
+
+    @property
+    def farthest_rest(self) -> AtRest | None:
+        """That whose tip is farthest, wherever it is drawn to; None without any."""
+        return max([*self.rests, *self.drawn], key=lambda rest: abs(rest.tip), default=None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,17 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from itertools import count
 
 import numpy as np
 
 from dynamics.contact import ContactLaw
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation
+from dynamics.excitation import Excitation, followed
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
+from dynamics.travel import Travel
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment
 from geometry.cylinder import forces
@@ -25,8 +25,8 @@ from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
 from runs.pipeline.place_names import place_names
 from runs.pipeline.section_forces import section_forces
 
-# Among so many times between kinks the largest value of a load is looked for.
-_TIMES = 2001
+# A part of the farthest way that is none.
+_SAME_WAY = 1.0e-12
 
 # What numbers out of proportion lead to.
 NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
@@ -38,6 +38,15 @@ def load_at(system: GapSystem, time: float) -> Array:
     return sum(changing, system.load.copy())
 
 
+def rest_at(system: GapSystem, time: float) -> Array:
+    """(num_modes,) where it rests, drawn out as it is at a time in s and under the loads of then.
+
+    Raises:
+        NumericsError: it has no rest.
+    """
+    return equilibrium(system.standing(time), load_at(system, time))
+
+
 def instants(system: GapSystem, duration: float) -> list[float]:
     """0, and the times in s at which a load that changes is largest one way or the other.
 
@@ -45,15 +54,46 @@ def instants(system: GapSystem, duration: float) -> list[float]:
         system: all that stays constant is in its ``load``.
         duration: of the motion in s.
     """
-    histories = [excitation.history for excitation in system.excitations]
-    kinks = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
-    times = np.unique([*np.linspace(0.0, duration, _TIMES), *kinks])
-    values = np.array([history(times) for history in histories]).reshape(-1, times.size)
-    found = [0, *values.argmax(axis=1), *values.argmin(axis=1)]
-    distinct: dict[tuple[float, ...], float] = {}
-    for step in found:
-        distinct.setdefault(tuple(values[:, step]), float(times[step]))
-    return list(distinct.values())
+    times, values = _over_time(system.excitations, system, duration)
+    return _distinct(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
+
+
+def drawn_instants(system: GapSystem, duration: float) -> list[float]:
+    """The times in s at which it first is drawn out, or in, farthest, and those at which a load is
+    largest one way or the other while it is.
+
+    Args:
+        system: all that stays constant is in its ``load``.
+        duration: of the motion in s.
+    """
+    times, ways = _over_time(system.travels, system, duration)
+    _, loads = _over_time(system.excitations, system, duration)
+    found: list[int] = []
+    for way in ways:
+        for end in (way.max(), way.min()):
+            there = np.flatnonzero(np.abs(way - end) <= _SAME_WAY * abs(end))
+            of_loads = loads[:, there]
+            steps = [0, *of_loads.argmax(axis=1), *of_loads.argmin(axis=1)]
+            found += there[steps].tolist() if end else []
+    return _distinct(times, np.vstack([loads, ways]), found)
+
+
+def _over_time(
+    changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
+) -> tuple[Array, Array]:
+    """Times in s that follow all that changes, and (num_changes, num_times) of some of it."""
+    loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
+    times = followed([*loads, *ways], duration)
+    values = np.array([change.history(times) for change in changes])
+    return times, values.reshape(-1, times.size)
+
+
+def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
+    """The first time in s of each of the different values among some steps."""
+    found: dict[tuple[float, ...], float] = {}
+    for step in steps:
+        found.setdefault(tuple(values[:, step]), float(times[step]))
+    return list(found.values())
 
 
 def positions(system: GapSystem, duration: float) -> dict[float, Array]:
@@ -69,7 +109,7 @@ def positions(system: GapSystem, duration: float) -> dict[float, Array]:
     for time in instants(system, duration):
         try:
             with np.errstate(all="ignore"):
-                found[time] = equilibrium(system, load_at(system, time))
+                found[time] = rest_at(system, time)
         except NUMERICS:
             if not found:
                 return {}
@@ -83,15 +123,12 @@ def drawn_positions(system: GapSystem, duration: float) -> dict[float, Array]:
         system: of a model, all that stays constant in its ``load``.
         duration: of the motion in s.
     """
-    none = np.zeros(system.num_modes)
-    ways = [Excitation(none, travel.history) for travel in system.travels]
-    followed = replace(system, excitations=[*system.excitations, *ways])
     known = instants(system, duration)
     found: dict[float, Array] = {}
-    for time in instants(followed, duration) if ways else []:
+    for time in drawn_instants(system, duration):
         with suppress(*NUMERICS), np.errstate(all="ignore"):
             if time not in known:
-                found[time] = equilibrium(system.standing(time), load_at(system, time))
+                found[time] = rest_at(system, time)
     return found
 
 
@@ -102,11 +139,12 @@ def at_rest(
 
     Args:
         boom: with the play that the system has.
-        system: of the model; of one that is drawn out, as it stands then.
+        system: of the model.
         lines: along its segments.
-        time: whose loads act, in s.
+        time: whose loads act, and as far drawn out as it is then, in s.
         position: (num_modes,) of the rest.
     """
+    system = system.standing(time)
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
     stations = list(pressed(boom, system, position))
     return AtRest(

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from runs.pipeline.answers import Added, AtRest, ModelAnswers, Moved, Peak, PlayAdds
+from runs.pipeline.answers import Added, AtRest, Moved, Peak, PlayAdds
 from runs.pipeline.results import Results
+from runs.report.drawn_axis import of_rests
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
@@ -45,7 +46,9 @@ def rest_tables(results: Results) -> list[Table]:
     answers = results.summary.answers
     if answers is None:
         return []
-    rests = {name: _largest(own) for name, own in answers.models.items() if own.rests}
+    farthest = {name: own.farthest_rest for name, own in answers.models.items()}
+    rests = {name: rest for name, rest in farthest.items() if rest is not None}
+    as_drawn = of_rests(results.case, rests.values())
     tables = []
     tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
     if tilts:
@@ -59,13 +62,16 @@ def rest_tables(results: Results) -> list[Table]:
             Table(
                 "At rest under the largest loads: what joints give way",
                 columns,
-                ("By play and by what is pressed in: of a shell, also by its walls beside them.",),
+                (
+                    "By play and by what is pressed in: of a shell, also by its walls beside them."
+                    + as_drawn,
+                ),
                 "tilts",
             )
         )
     places = {pressed.place: pressed for rest in rests.values() for pressed in rest.stations}
     if places:
-        tables.append(_pressed_table(rests, list(places)))
+        tables.append(_pressed_table(rests, list(places), as_drawn))
     if answers.reactions:
         tied = {(one.segment, one.x): one for one in answers.tied_reactions}
         beside = [tied.get((one.segment, one.x)) for one in answers.reactions]
@@ -94,15 +100,17 @@ def _unless_none(heading: str, borne: Sequence[float], form: str) -> Iterator[Co
         yield Column(heading, told, form, PER_KILO)
 
 
-def _pressed_table(rests: dict[str, AtRest], places: Sequence[str]) -> Table:
+def _pressed_table(rests: dict[str, AtRest], places: Sequence[str], as_drawn: str) -> Table:
     columns = [Column("station", [f"x = {place} m" for place in places])]
     for name, rest in rests.items():
         forces = {one.place: one for one in rest.stations}
         if forces:
             cells = [forces[place].force if place in forces else None for place in places]
             columns.append(Column(f"{name}\nkN", cells, ".4g", PER_KILO))
-    notes = ("Forces of stations, positive where the inner segment presses up, or to larger y.",)
-    return Table("At rest under the largest loads: what presses", columns, notes, "pressed")
+    what = "Forces of stations, positive where the inner segment presses up, or to larger y."
+    return Table(
+        "At rest under the largest loads: what presses", columns, (what + as_drawn,), "pressed"
+    )
 
 
 def mode_table(results: Results) -> Table | None:
@@ -253,11 +261,6 @@ def _moved(results: Results) -> dict[str, Moved]:
         for name in results.read_first
         if name in own and (moved := own[name].moved) is not None
     }
-
-
-def _largest(own: ModelAnswers) -> AtRest:
-    """Under the loads that move the tip farthest."""
-    return max(own.rests, key=lambda rest: abs(rest.tip))
 
 
 def _peak_cell(peak: Peak | None) -> str:

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from matplotlib.axes import Axes
 
 from runs.case.schema import Case
+from runs.pipeline.answers import AtRest
 from runs.report import theme
 from runs.report.figure_context import Pen
 
@@ -43,3 +46,9 @@ def drawn_axis(pen: Pen, axes: Axes) -> None:
 def of_start(case: Case) -> str:
     """A sentence for what stands over x, or is named by it; empty where nothing is drawn out."""
     return " Places are those of t = 0, and go with their segments." if driven(case) else ""
+
+
+def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
+    """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
+    times = " and ".join(f"{time:g}" for time in sorted({rest.time for rest in rests}))
+    return f" Drawn out as it is at {times} s." if driven(case) else ""

@@ -13,7 +13,7 @@ from geometry.typography import signed
 from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
 from runs.report import theme
 from runs.report.charts import Chart, Curve
-from runs.report.drawn_axis import of_start
+from runs.report.drawn_axis import of_rests, of_start
 from runs.report.figure_context import MILLI, Figure, Pen, new_sheet
 
 # Quantity → heading of its panel, and the factor to its unit.
@@ -44,19 +44,28 @@ class _Line(NamedTuple):
 
 def at_rest(pen: Pen) -> list[Figure]:
     """The boom's line and its section forces at rest, with play and without."""
-    found = {name: own for name, own in _read_first(pen) if own.rests}
-    if not found:
+    found = dict(_read_first(pen))
+    farthest = {name: own.farthest_rest for name, own in found.items()}
+    rests = {name: rest for name, rest in farthest.items() if rest is not None}
+    if not rests:
         return []
-    rests = {name: max(own.rests, key=lambda rest: abs(rest.tip)) for name, own in found.items()}
     lines = {name: _rest_lines(rest, name, pen.strokes[name].color) for name, rest in rests.items()}
-    tied = next((own for name, own in found.items() if name in pen.with_play and own.tied), None)
-    if tied is not None and not set(found) & set(pen.play_free):
-        rest = max(tied.tied, key=lambda rest: abs(rest.tip))
-        lines["without play"] = _rest_lines(rest, "without play", theme.PLAY_FREE)
+    # None stands where drives draw it to.
+    tied = [
+        rest
+        for name in rests
+        if name in pen.with_play
+        for rest in found[name].tied
+        if rest.time == rests[name].time
+    ]
+    if tied and not rests.keys() & set(pen.play_free):
+        lines["without play"] = _rest_lines(tied[0], "without play", theme.PLAY_FREE)
     caption = (
         "At rest under the largest loads: the line of the boom, and what its sections carry. "
         "Normal forces pull where they are positive, moments where they are pull at the top; "
-        "where segments overlap each has its own." + of_start(pen.case)
+        "where segments overlap each has its own."
+        + of_start(pen.case)
+        + of_rests(pen.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     title = f"At rest under the largest loads: the tip at {signed(f'{MILLI * far:.1f}')} mm"

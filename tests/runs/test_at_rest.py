@@ -10,12 +10,23 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, History, Ramp, Sine
+from dynamics.excitation import Excitation, History, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem
+from dynamics.row_table import RowTable
+from dynamics.travel import Travel
 from runs import CASES
 from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import LoadTable
 from runs.pipeline.answers import Answers
-from runs.pipeline.at_rest import instants, positions
+from runs.pipeline.at_rest import (
+    at_rest,
+    drawn_instants,
+    drawn_positions,
+    instants,
+    positions,
+)
+from runs.pipeline.models import build
 from runs.pipeline.run import run_case, silent
 from runs.pipeline.summary import Summary
 
@@ -82,6 +93,50 @@ def test_loads_are_taken_where_they_are_largest() -> None:
     assert instants(ball(), 2.0) == [0.0]
     assert instants(ball(Ramp(0.3)), 2.0) == [0.0, 0.3]
     assert instants(ball(Sine(1.0)), 1.0) == pytest.approx([0.0, 0.25, 0.75], abs=1e-3)
+
+
+def test_no_swing_of_a_load_is_missed() -> None:
+    """Reference: by hand, of 1000 Hz; at every millisecond it is nothing."""
+    _, *peaks = instants(ball(Sine(1000.0)), 2.0)
+    assert Sine(1000.0)(np.array(peaks)) == pytest.approx([1.0, -1.0], rel=1e-3)
+
+
+def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
+    """Reference: by hand. Out from 1 s on, while the second of two peaks comes; in at 3 s."""
+    ways = Table([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
+    still = RowTable.of(lambda s: np.ones((1, 1)), [-1.0, 4.0])
+    drawn = [Travel(ways, still, (("rows", 0),), "")]
+    system = ball(Table([0.0, 0.5, 1.0, 1.5, 2.0], [0.0, 1.0, 0.2, 0.6, 0.3]))
+    assert instants(system, 4.0) == [0.0, 0.5]
+    assert drawn_instants(replace(system, travels=drawn), 4.0) == [1.0, 1.5, 3.0]
+    assert drawn_instants(system, 4.0) == []
+
+
+def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
+    """Reference: by hand. Drawn out to 19 m, 2 kN at the tip, 550.7 N at 14 m, 83.16 N/m beyond the
+    support at 2 m bend there; play of 14 mm over 1 m turns by 14 mrad, and what presses by more.
+    """
+    case = case_file.load(str(CASES / "drawn-out.toml"))
+    table = ((0.0, 0.0), (5.5, 0.0), (6.0, 1.0))
+    late = LoadTable.model_validate(
+        {"segment": "inner", "x": "head", "magnitude": 2e3, "table": table}
+    )
+    case = case.model_copy(update={"loads": (late,)})
+    boom, model = build_boom(case), case.models[1]
+    built = build(case, boom, model)
+    system, lines = built.system.gathered(), model.lines(boom, built)
+    found = positions(system, case.time.duration)
+    assert list(found) == [0.0, 6.0]
+    assert list(drawn_positions(system, case.time.duration)) == [5.0]
+    rest = at_rest(boom, system, lines, 6.0, found[6.0])
+    outer = rest.diagrams[0]
+    moment = np.interp(2.0, outer.x, outer.curves["moment"])
+    assert abs(moment) == pytest.approx(2e3 * 17.0 + 550.7 * 12.0 + 0.5 * 83.16 * 8.0**2, rel=1e-4)
+    # Of 1 m of overlap, 4.5 m before the middle and 9 m before the tip of the inner segment.
+    head = 550.7 * 5.0 + 2e3 * 10.0
+    pressed = (2.0 * head - 550.7 - 2e3) / 1e9
+    assert rest.tilts[0].rotation == pytest.approx(0.014 + pressed, abs=1e-7)
+    assert rest.stations[1].force == pytest.approx(head, rel=1e-4)
 
 
 def test_an_instant_without_rest_is_left_out() -> None:

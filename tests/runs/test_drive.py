@@ -24,6 +24,7 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report import theme
+from runs.report.answer_tables import rest_tables
 from runs.report.boom_drawing import boom_sheet
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
@@ -227,6 +228,14 @@ def _check_rests(results: Results) -> None:
     cells = dict(zip(table.columns[0].cells, table.columns[1].cells, strict=True))
     assert cells["Tip at rest, t = 0, mm"] == f"{1e3 * begun.tip:.1f}"
     assert cells["Tip at rest where it is drawn to, mm"] == f"{1e3 * ended.tip:.1f}"
+    # What the report shows at rest is the boom where its tip is farthest.
+    tilts, pressed, _ = rest_tables(results)
+    assert [column.cells for column in tilts.columns[2:]] == [
+        [ended.tilts[0].rotation],
+        [ended.tilts[0].tip],
+    ]
+    assert pressed.columns[1].cells == [one.force for one in ended.stations]
+    assert tilts.notes[0].endswith("beside them. Drawn out as it is at 0.2 s.")
     # Both stand for too short to swing farther than they start.
     standing = f"standing {1e3 * begun.tip:.1f} and {1e3 * ended.tip:.1f}"
     assert str(cells["Tip swings while it is drawn, mm"]).splitlines()[1] == standing
@@ -248,6 +257,9 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     """Reference: what a run with a drive draws beside the others."""
     drawn = {figure.path.stem: figure for figure in figures}
     assert drawn["drive"].path.stat().st_size > 10_000
+    # By hand, the play's lever, and elements: 7 mm of bending.
+    assert drawn["at-rest"].title == "At rest under the largest loads: the tip at 140.4 mm"
+    assert "Drawn out as it is at 0.2 s." in drawn["at-rest"].caption
     assert drawn["drive"].title.startswith("Drive of inner: up to ")
     assert "work of load and drive" in drawn["energies"].caption
     residual = drawn["energy-residual"].title
