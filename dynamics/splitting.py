@@ -11,7 +11,8 @@ friction acts in the middle of the flow (:mod:`dynamics.kernels.friction_step`);
 sliding row turns is made in two, so that it turns between them.
 
 While the gaps are so wide that none can shut for some steps, these are made at once: the flow is
-exact over any time.
+exact over any time. Dashpots act at the ends of such strides and hand speed from mode to mode, so
+that each stride asks anew what can shut.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
 from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, move, tabulate, travel
-from dynamics.kernels.strides import STRIDES, closing_bounds, safe_stride
+from dynamics.kernels.strides import STRIDES, closing_bounds, dragged_speeds, safe_stride
 from dynamics.motion import Motion
 from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
@@ -132,7 +133,7 @@ def _march(
     stiffness, preload, laws, touch = springs
     states, velocities, energies, gaps, means, peaks, frictions = out
     bounds, telling = np.zeros(y.size), strides
-    place, reach = np.zeros((2, a.size))
+    place, reach, speeds = np.zeros((3, a.size))
     piece, undamped = np.zeros((2, *flows[0].shape))
     faded, none = np.zeros(rates.size), np.zeros(a.size)
     tabulate(undamped, omega2, load, none, step)
@@ -165,15 +166,19 @@ def _march(
                 if not flying:
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
+                    fastest = v
+                    if dragging:
+                        dragged_speeds(v, directions, dragged[-1], speeds)
+                        fastest = speeds
                     closing_bounds(
-                        a, v, omega2, load, now, then, rows, substeps * step, reach, bounds
+                        a, fastest, omega2, load, now, then, rows, substeps * step, reach, bounds
                     )
                     telling = strides
                     if closed:
                         count = _telling(reach, omega2, rows, stiffness, pressed, step, strides)
                         telling = strides[:count]
                 stride = safe_stride(y, limits, bounds, step, until - done, telling)
-            flying = not (touching or lossy) and done + strides[stride] < until
+            flying = not (touching or lossy or dragging) and done + strides[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(
                     state, system, damping, dry, excitations, space, step,

@@ -20,15 +20,30 @@ def _reach(
 ) -> None:
     """Speeds that swinging modes do not exceed while nothing touches.
 
-    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow;
-    under one that goes straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more
-    than the change over ω.
+    A mode's amplitude √(v² + ω² s²) about its rest position under a constant load does not grow
+    unless dashpots hand it the speed of others (:func:`dragged_speeds`); under a load that goes
+    straight from ``load`` + ``now`` to ``load`` + ``then`` it grows by no more than the change
+    over ω.
     """
     for i in range(a.size):
         if omega2[i] > 0.0:
             off = a[i] - (load[i] + now[i]) / omega2[i]
             growth = abs(then[i] - now[i]) / np.sqrt(omega2[i])
             reach[i] = np.sqrt(v[i] * v[i] + omega2[i] * off * off) + growth
+
+
+@njit(**SUMS)
+def dragged_speeds(v: Array, directions: Array, kept: Array, speeds: Array) -> None:
+    """Fill in what no mode's |v| exceeds as dashpots leave ``kept`` of it or more along each."""
+    for i in range(v.size):
+        speeds[i] = abs(v[i])
+    for d in range(kept.size):
+        along = 0.0
+        for i in range(v.size):
+            along += directions[d, i] * v[i]
+        taken = abs(along) * (1.0 - kept[d])
+        for i in range(v.size):
+            speeds[i] += abs(directions[d, i]) * taken
 
 
 @njit(**SUMS)

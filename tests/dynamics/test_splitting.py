@@ -409,3 +409,36 @@ def test_steps_made_at_once_miss_no_contact(load: float) -> None:
     assert float(expected.max()) > 1.0
     np.testing.assert_allclose(force, expected, rtol=0.0, atol=1e-6)
     np.testing.assert_allclose(at_once.data["y"], one_by_one.data["y"], rtol=0.0, atol=1e-9)
+
+
+def test_a_dashpot_hands_one_mode_the_speed_of_another() -> None:
+    """Reference: other code, Runge and Kutta's method. A mass at 1 m/s drags one at rest by a
+    dashpot across 0.02 mm to its stop, where it comes with 0.06 m/s.
+    """
+    drag, stiffness, gap = 100.0, 1.0e8, 2.0e-5
+    system = GapSystem(
+        omega2=np.zeros(2),
+        load=np.zeros(2),
+        rows=np.array([[1.0, 0.0]]),
+        laws=[PowerContact(stiffness, 1.0, clearance=gap)],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"tip": Observer(np.array([1.0, 0.0]))},
+        dashpots=np.sqrt(drag) * np.ones((1, 2)),
+    )
+    start = np.array([0.0, 1.0])
+    run = integrate(Motion(system, 1.0e-3, output_step=1.0e-3, velocity=start))
+
+    def rates(_: float, state: Array) -> list[float]:
+        a, _, v, other = state
+        pull = drag * (v + other)
+        return [v, other, -pull + stiffness * max(-a - gap, 0.0), -pull]
+
+    times = np.linspace(0.0, 1.0e-3, 10_001)
+    exact = solve_ivp(rates, (0.0, 1.0e-3), [0.0, 0.0, *start], "DOP853", times, max_step=1e-6)
+    pressed = np.maximum(-exact.y[0] - gap, 0.0)
+    assert run.first_contact == pytest.approx(times[np.flatnonzero(pressed)[0]], abs=1e-6)
+    assert run.data["contact_force_peak"][1, 0] == pytest.approx(
+        -stiffness * pressed.max(), rel=2e-3
+    )
+    assert run.energy_residual < 1e-6
