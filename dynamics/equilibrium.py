@@ -24,8 +24,8 @@ from dynamics.contact import (
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Unbalanced force, as a part of the load, at which a system counts as at rest; the minimiser aims
-# at a hundredth of it.
+# Unbalanced force, as a part of the load or of what shims press, at which a system counts as at
+# rest; the minimiser aims at a hundredth of it.
 BALANCE = 1.0e-6
 
 
@@ -43,12 +43,16 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     Raises:
         NumericsError: nothing holds the system against the load.
     """
-    if not load.any():
+    pressed = [float(law.force(np.zeros(()))) for law in system.laws]
+    # What shims press where nothing has moved yet.
+    pushed = load - np.array(pressed) @ system.rows
+    if not pushed.any():
         return np.zeros(system.num_modes)
     terms = contact_terms(system.laws)
     # With each contact's spring at the force of the whole load in place, no direction is softer
     # or stiffer than another: L Lᵀ scales the unknowns.
-    force = np.linalg.norm(load) * np.sqrt(system.row_masses)
+    whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
+    force = whole * np.sqrt(system.row_masses)
     spring = np.array(
         [w.slope_where(ContactLaw.force, f) for w, f in zip(system.laws, force, strict=True)]
     )
@@ -61,7 +65,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     if not system.laws:
         return np.asarray(load / system.omega2)
     scaled_load = solve_triangular(factor, load, lower=True)
-    unit = float(np.linalg.norm(scaled_load))
+    scaled_push = solve_triangular(factor, pushed, lower=True)
+    unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
     scaled_load /= unit
     # Scaled, strain and springs add up to the unit matrix: all that the minimiser comes to lies in
     # the span of load and rows, far fewer unknowns than a shell has.

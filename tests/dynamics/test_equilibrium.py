@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,16 @@ def test_a_spring_carries_what_does_not_reach_the_stop() -> None:
     """Reference: analytic. 2 kg · 900 rad²/s² = 1800 N/m, 5 N."""
     system = mass_over_stop(1.0, 900.0)
     assert system.rows[0] @ equilibrium(system, 5.0 * system.rows[0]) == pytest.approx(5.0 / 1800.0)
+
+
+@pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
+def test_what_shims_press_moves_without_a_load(weight: float, expected: float) -> None:
+    """Reference: analytic. A shim 1 mm beyond the play below lifts a mass until it is free."""
+    below = PowerContact(3.0e6, 1.0, -1.0e-3).lower()
+    above = mass_over_stop(1.0, 0.0)
+    row, laws, places = above.rows[0], [*above.laws, below], np.zeros(2, dtype=np.int64)
+    system = replace(above, rows=np.vstack([row, row]), laws=laws, station_of_row=places)
+    assert row @ equilibrium(system, -weight * row) == pytest.approx(expected, abs=1e-8)
 
 
 def test_what_nothing_holds_has_no_equilibrium() -> None:

@@ -12,6 +12,7 @@ from rich.console import Console
 from dynamics.contact import PowerContact
 from protractile.cases import run_case
 from runs.case import reading as case_file
+from runs.case.actions import start
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.pipeline.inferred import print_inferred
@@ -204,3 +205,17 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
         )
     assert told["utilisation\n%"][1] == pytest.approx(told["pressure\nMPa"][1] / 2.0e7)
     assert told["utilisation\n%"][2] is None
+
+
+@pytest.mark.parametrize(("state", "lifted"), [("equilibrium", 0.001), ("rest", 0.0)])
+def test_shims_lift_a_boom_that_no_load_presses_yet(
+    tmp_path: Path, state: str, lifted: float
+) -> None:
+    """Reference: by hand. Of 2 mm of play below a shim of 3 mm leaves -1 mm, and nothing bends."""
+    pads = several(pad_on("above", 0.05, 0.02), pad_on("below", 0.05, 0.02, shim=0.003))
+    case = case_with(tmp_path, pads, play=0.004)
+    segments = tuple(s.model_copy(update={"load": 0.0}) for s in case.segments)
+    begun = case.start.model_copy(update={"state": state})
+    case = case.model_copy(update={"segments": segments, "start": begun})
+    system, position, _ = start(build(case, build_boom(case), case.models[0]).system, case)
+    np.testing.assert_allclose(system.rows @ position, lifted, atol=1e-8)
