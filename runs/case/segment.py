@@ -166,10 +166,12 @@ class SegmentTable(Table):
         "the section unless given",
     )
     collars: Annotated[tuple[CollarTable, ...], Few] = Field(
-        (), description="the doublers around the box, which only shells have, mass and all"
+        (),
+        description="the doublers around the box: stiffness of shells alone, mass of all models",
     )
     diaphragms: Annotated[tuple[DiaphragmTable, ...], Few] = Field(
-        (), description="the plates that close the box, which only shells have, mass and all"
+        (),
+        description="the plates that close the box: stiffness of shells alone, mass of all models",
     )
 
     @model_validator(mode="after")

@@ -152,6 +152,8 @@ def comparable_until(
         return end
     tools = None if comm is None else workshop(comm, meshes / model.name, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
+    for _ in results.summary.models[model.name].refused_steps:
+        plan = plan.finer()
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
         (run,) = run_members([Member(plan.motion, vary, CHANGE, plan.integrator, ("tip",))])

@@ -104,7 +104,7 @@ def _answered(own: ModelAnswers) -> Measured:
     fibres, walls = ((), ()) if own.moved is None else (own.moved.fibres, own.moved.walls)
     tip = next((peak for peak in peaks if peak.what == "deflection"), None)
     contacts = (peak.largest for peak in peaks if peak.what == "contact force")
-    damages = (one.life_damage for one in own.life if one.life_damage)
+    damages = (one.life_damage for one in own.life if one.life_damage is not None)
     return {
         "tip_at_rest": None if tip is None else tip.at_rest,
         "dynamic_factor": None if tip is None else tip.factor,

@@ -196,6 +196,8 @@ def run_point(
                 continue
         assert finished is not None
         finished.answer()
+        # Of what has moved and cannot be answered for.
+        failures.update(finished.results.summary.failures)
         models[model.name] = measure(finished.results, model.name)
         if reference is not None:
             runs[model.name] = finished.results

@@ -25,11 +25,11 @@ _ENDS = {
 
 
 class Swings(NamedTuple):
-    """Of one model over rising mean speeds in m/s: swings in m, and the level at each end."""
+    """Of one model over rising mean speeds in m/s: swings in m, and the levels at each end."""
 
     speed: Array
     swing: Array
-    levels: dict[str, float]
+    levels: dict[str, Array]
 
 
 def swings(data: xr.Dataset) -> dict[str, Swings]:
@@ -46,37 +46,37 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
         if one["swing"].ndim > 1 or np.unique(speed).size < 2:
             continue
         order = np.argsort(speed)
-        # Runs that last alike have one level; of others each has its own, and the largest counts.
-        levels = {end: float(np.nanmax(one[end].values[known])) for end in _ENDS}
+        ends = {end: one[end].values[known][order] for end in _ENDS}
+        levels = {end: level for end, level in ends.items() if np.isfinite(level).all()}
         found[str(name)] = Swings(speed[order], one["swing"].values[known][order], levels)
     return found
 
 
-def fastest_within(swings: Swings, level: float) -> float | None:
-    """Up to which speed in m/s no swing exceeds a level in m, linear between speeds; None at none.
+def fastest_within(swings: Swings, end: str) -> float | None:
+    """Up to which speed in m/s no swing exceeds its level, linear between speeds; None at none.
 
-    >>> one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {})
-    >>> fastest_within(one, 4.0), fastest_within(one, 6.0), fastest_within(one, 1.0)
-    (2.5, 3.0, None)
+    >>> speed, swing = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
+    >>> one = Swings(speed, swing, {"begun": 4.0 + 0.0 * speed, "ended": np.array([1.0, 2.0, 3.0])})
+    >>> fastest_within(one, "begun"), fastest_within(one, "ended")
+    (2.5, None)
     """
-    over = np.flatnonzero(swings.swing > level * (1.0 + _SAME))
+    beyond = swings.swing - swings.levels[end]
+    over = np.flatnonzero(beyond > _SAME * swings.levels[end])
     if not over.size:
         return float(swings.speed[-1])
     first = int(over[0])
     if first == 0:
         return None
     near = slice(first - 1, first + 1)
-    return float(np.interp(level, swings.swing[near], swings.speed[near]))
+    return float(np.interp(0.0, beyond[near], swings.speed[near]))
 
 
 def said(name: str, swings: Swings) -> Iterator[str]:
     """What a designer asks, a sentence for each end of the way."""
-    for end, (where, _) in _ENDS.items():
-        level = swings.levels[end]
-        if not np.isfinite(level):
-            continue
-        fastest = fastest_within(swings, level)
-        rest = f"at rest {where}, {theme.number(MILLI * level)} mm"
+    for end, level in swings.levels.items():
+        fastest = fastest_within(swings, end)
+        ends = dict.fromkeys(theme.number(MILLI * of) for of in (level.min(), level.max()))
+        rest = f"at rest {_ENDS[end][0]}, {' to '.join(ends)} mm"
         if fastest is None:
             slow, least = swings.speed[0], theme.number(MILLI * float(swings.swing[0]))
             yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
@@ -104,11 +104,12 @@ def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Pat
         axes.plot(
             one.speed, MILLI * one.swing, color=color, marker="o", markersize=4.0, label=label
         )
-        for end, (where, dashes) in _ENDS.items():
-            if np.isfinite(one.levels[end]):
-                level = MILLI * one.levels[end]
-                label = f"{name}, at rest {where}"
-                axes.axhline(level, color=color, linestyle=dashes, linewidth=1.0, label=label)
+        for end, level in one.levels.items():
+            where, dashes = _ENDS[end]
+            label = f"{name}, at rest {where}"
+            axes.plot(
+                one.speed, MILLI * level, color=color, linestyle=dashes, linewidth=1.0, label=label
+            )
     axes.set(xlabel="mean speed of the drive (m/s)", ylabel="swing of the tip (mm)")
     axes.set_ylim(bottom=0.0)
     handles, labels = axes.get_legend_handles_labels()

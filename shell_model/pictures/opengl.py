@@ -55,8 +55,10 @@ def require_opengl() -> None:
         name = signal.Signals(-probe.returncode).name
         raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
     if probe.returncode > 0:
-        why = probe.stderr.strip().splitlines()[-1].removeprefix("RuntimeError: ")
-        raise RenderingUnavailable(f"pyvista makes no picture: {why}")
+        *_, why = "it does not say why", *probe.stderr.strip().splitlines()
+        raise RenderingUnavailable(
+            f"pyvista makes no picture: {why.removeprefix('RuntimeError: ')}"
+        )
 
 
 def too_late() -> RenderingUnavailable:

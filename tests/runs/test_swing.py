@@ -118,8 +118,8 @@ def test_a_drive_that_the_run_does_not_see_the_end_of_has_no_swing(tmp_path: Pat
 )
 def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -> None:
     """Reference: by hand; what exceeds the level by less than a hundredth does not."""
-    one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {})
-    assert fastest_within(one, level) == pytest.approx(fastest)
+    one = Swings(np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)})
+    assert fastest_within(one, "end") == pytest.approx(fastest)
 
 
 def swept() -> xr.Dataset:
@@ -146,6 +146,12 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     tight = data.assign(swing_where_begun=0.1 * data["swing_where_begun"])
     assert next(said("beam", swings(tight)["beam"])) == (
         "beam: swings more than at rest where it begins, 3 mm, at 1 m/s already: 20 mm"
+    )
+    # Booms that are drawn to different places swing about as much as each does there, or less.
+    elsewhere = data.assign(swing_where_begun=data["swing"] + 0.01)
+    assert next(said("beam", swings(elsewhere)["beam"])) == (
+        "beam: swings no more than at rest where it begins, 30 to 60 mm, up to 2 m/s, the fastest "
+        "here"
     )
     saved: list[Sheet] = []
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))

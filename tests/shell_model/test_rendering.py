@@ -87,6 +87,7 @@ def test_motion_without_contact_or_peak_still_has_an_instant(trajectories: xr.Da
             60.0,
             "pyvista makes no picture: ModuleNotFoundError: No module named 'no_such_pyvista'",
         ),
+        ("raise SystemExit(3)", 60.0, "pyvista makes no picture: it does not say why"),
         (
             "import time; time.sleep(60.0)",
             1.0,
