@@ -38,6 +38,8 @@ class History(Protocol):
 # Among so many even times, and so many in each swing of the fastest, no history does much; more
 # than the most are not kept.
 _TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
+# Part of the duration between two times from which no slope can be told.
+_SAME_TIME = 1.0e-9
 
 
 def followed(histories: Sequence[History], duration: float) -> Array:
@@ -47,10 +49,14 @@ def followed(histories: Sequence[History], duration: float) -> Array:
     >>> 0.01 in followed([pt.Ramp(0.01)], 1000.0)
     True
     """
-    kinks = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    found = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    kinks = np.unique(np.array(found))
     swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
     number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
-    return np.union1d(np.linspace(0.0, duration, number), kinks)
+    even = np.linspace(0.0, duration, number)
+    nearest = np.rint(kinks / even[1]).astype(np.int64)
+    same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
+    return np.union1d(np.delete(even, nearest[same]), kinks)
 
 
 @dataclass(frozen=True, slots=True)

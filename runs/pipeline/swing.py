@@ -9,26 +9,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.equilibrium import equilibrium
+from dynamics.excitation import followed
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
-from geometry.arrays import Array
+from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Swing
-from runs.pipeline.at_rest import NUMERICS, load_at
+from runs.pipeline.at_rest import NUMERICS, rest_at
 from runs.pipeline.motion import asked
 
-# At so many places along all that changes rests are found, linear between them.
-_RESTS = 60
-# Among so many times beside its kinks what changes is followed.
-_TIMES = 2001
+# At so many places along all that changes rests are found, linear between them, and so many from
+# where something turns back to where the next does; none where they do more often than the most.
+_RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 2000
 
 _TIP = ("tip", "tip_lateral")
 
 
 def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -> Swing | None:
-    """Of a model that is drawn out; None where it is not, or has no rest.
+    """Of a model that is drawn out; None where it is not, or has no rest that can be followed.
 
     Args:
         system: of the model, all that stays constant in its load.
@@ -57,17 +57,15 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
         trajectory: its motion.
 
     Raises:
-        NumericsError: it has no rest.
+        NumericsError: it has no rest, or loads turn back too often to follow it.
     """
     time = trajectory.time
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
-    kinks = [kink for change in changes for kink in change.kinks if 0.0 < kink < time[-1]]
-    times = np.unique([*np.linspace(0.0, time[-1], _TIMES), *kinks])
-    values = np.array([change(times) for change in changes])
-    passed = _passed(values.reshape(len(changes), times.size))
-    steps = np.searchsorted(passed, np.linspace(0.0, passed[-1], _RESTS))
-    steps = np.unique(np.minimum(steps, times.size - 1))
-    rests = [equilibrium(system.standing(t), load_at(system, t)) for t in times[steps].tolist()]
+    times = followed(changes, float(time[-1]))
+    values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
+    passed = _passed(values)
+    steps = _rest_steps(values, passed)
+    rests = [rest_at(system, t) for t in times[steps].tolist()]
     off = np.zeros(time.size)
     for name in _TIP:
         if name in system.observers:
@@ -78,12 +76,33 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     return float(off[step]), float(time[step])
 
 
+def _rest_steps(values: Array, passed: Array) -> Indices:
+    """(num_rests,) steps at which rests are found, rising: even ones along all that has passed, and
+    between where one of the values (num_changes, num_times) turns back and where the next does."""
+    turns = sorted({step for change in values for step in _turns(change).tolist()})
+    if len(turns) > _MOST_TURNS:
+        raise NumericsError(f"loads turn back {len(turns)} times, too often")
+    ends = passed[[0, *turns, -1]]
+    parts = np.arange(_BETWEEN_TURNS) / _BETWEEN_TURNS
+    between = ends[:-1, None] + np.diff(ends)[:, None] * parts
+    even = np.linspace(0.0, passed[-1], _RESTS)
+    steps = np.searchsorted(passed, np.union1d(even, between))
+    return np.unique(np.array([*turns, *steps], dtype=np.int64))
+
+
+def _turns(values: Array) -> Indices:
+    """(num_turns,) steps at which something (num_times,) turns back, or begins to stand for it."""
+    ways = np.diff(values)
+    moves = np.flatnonzero(ways)
+    back = ways[moves[:-1]] * ways[moves[1:]] < 0.0
+    return np.union1d(moves[:-1][back] + 1, moves[1:][back])
+
+
 def _speed(travel: Travel) -> float:
     """The mean in m/s while it moves; 0 of several together, whose own travels are beside it."""
     if travel.suffix is None:
         return 0.0
-    kinks = travel.history.kinks
-    times = np.linspace(max(0.0, min(kinks)), max(kinks), _TIMES)
+    times = followed([travel.history], max(travel.history.kinks))
     ways = np.abs(np.diff(travel.history(times)))
     return float(ways.sum() / np.diff(times)[ways > 0.0].sum())
 

@@ -12,9 +12,12 @@ import xarray as xr
 from matplotlib.figure import Figure as Sheet
 
 from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, History, Ramp, Sine, Table
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrators import simulate
 from dynamics.row_table import RowTable
+from dynamics.trajectory import Trajectory
 from dynamics.travel import SCurve, Travel
 from protractile.cases import run_case
 from runs import CASES
@@ -79,6 +82,33 @@ def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
     )
     assert slow < 0.01 * way
     assert fast == pytest.approx(way, rel=1e-3)
+
+
+def of_follower(load: History) -> float:
+    """The swing in m of the tip that is drawn out under 2 N more by a load, and always rests."""
+    loads = [Excitation(np.full(1, 2.0), load)]
+    system = replace(lifted(1.0, 10.0), excitations=loads)
+    time = np.linspace(0.0, 10.0, 10001)
+    row = 1.0 - 0.5 * SCurve(1.0, 10.0)(time)
+    tip = (1.0 + 2.0 * load(time)) / (1.0 + 3.0 * row**2)
+    data = xr.Dataset({"tip": ("time", tip)}, {"time": time})
+    return farthest_from_rest(system, Trajectory(data, tip[:, None]))[0]
+
+
+WAVE = Table(np.arange(0.0, 10.0, 0.05).tolist(), [0.0, 1.0, 1.0, 0.0] * 50)
+
+
+@pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])
+def test_what_follows_its_loads_does_not_swing(load: History) -> None:
+    """Reference (analytic): F/(1 + 3 r²) of springs of 1 and 3 N/m, a row r; no swing at all, where
+    the load moves it by 0.5 m at least."""
+    assert of_follower(load) < 0.01 * 0.5
+
+
+def test_a_load_that_turns_too_often_has_no_swing() -> None:
+    """Reference: by hand, 150 Hz turn 3000 times in 10 s."""
+    with pytest.raises(NumericsError, match=r"^loads turn back 3000 times, too often$"):
+        of_follower(Sine(150.0))
 
 
 @pytest.mark.slow
