@@ -7,12 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from dynamics.excitation import followed
 from geometry.boom import Boom
 from geometry.drive import Drive
 from runs.case.units import System
-
-# So many times tell a drive's largest speed.
-_TIMES = 2001
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
@@ -50,5 +48,5 @@ def _span(drive: Drive) -> tuple[float, float]:
 
 def _fastest(drive: Drive) -> float:
     """Its largest speed in m/s."""
-    times = np.linspace(*_span(drive), _TIMES)
+    times = followed([drive.history], _span(drive)[1])
     return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())

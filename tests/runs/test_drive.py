@@ -20,6 +20,7 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.pipeline.drives import drive_lines
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
@@ -303,6 +304,14 @@ def test_a_check_tells_what_a_drive_does() -> None:
         "A drive draws 'inner' 4 m out of 'outer' from 0 to 5 s, at 1.6 m/s at most; 1 m of "
         "overlap are left.\n"
     ) in shown.getvalue()
+
+
+def test_the_largest_speed_is_that_of_the_steepest_line(tmp_path: Path) -> None:
+    """Reference: by hand, 0.1 m in 0.01 s."""
+    jerk = "drive = { table = [[0.0, 0.0], [20.0, 1.0], [20.01, 1.1], [40.0, 2.0]] }\n"
+    case = load(case_file(tmp_path, DRIVE, jerk))
+    (line,) = drive_lines(build_boom(case), case.system)
+    assert ", at 10 m/s at most; " in line
 
 
 def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
