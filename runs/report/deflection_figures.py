@@ -38,8 +38,11 @@ def tip(pen: Pen) -> list[Figure]:
 
 
 def close_up(pen: Pen) -> list[Figure]:
-    """The tip up to shortly after its first peak."""
+    """The tip up to shortly after its first peak; nothing where there is none and no contact."""
     end = pen.first_stretch
+    known = [pen.summary[name] for name in pen.models]
+    if not any(one.first_contact or one.first_peak["tip"].time for one in known):
+        return []
     shown = pen.time <= end
     sheet, (axes,) = new_sheet(1, 3.9)
     contacts, peakless = [], []

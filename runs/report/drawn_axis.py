@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import cycle
 
 from matplotlib.axes import Axes
 
@@ -25,16 +26,17 @@ def driven(case: Case) -> dict[str, str]:
 
 def drawn_axis(pen: Pen, axes: Axes) -> None:
     """How far segments are drawn out, on a second axis to the right."""
-    ways = {
-        inner: pen.of(pen.models[0], f"drawn_out{suffix}")
-        for suffix, inner in driven(pen.case).items()
-        if f"drawn_out{suffix}" in pen.data
-    }
-    if not ways:
+    # Segments that go together are one line.
+    together: dict[tuple[float, ...], list[str]] = {}
+    for suffix, inner in driven(pen.case).items():
+        if f"drawn_out{suffix}" in pen.data:
+            drawn = pen.of(pen.models[0], f"drawn_out{suffix}")
+            together.setdefault(tuple(drawn.tolist()), []).append(inner)
+    if not together:
         return
     beside = axes.twinx()
-    for (inner, way), dashes in zip(ways.items(), ("-", "--", "-.", ":") * len(ways), strict=False):
-        label = f"{inner} drawn out"
+    for (way, names), dashes in zip(together.items(), cycle(("-", "--", "-.", ":")), strict=False):
+        label = f"{', '.join(names)} drawn out"
         beside.plot(
             pen.time, way, color=theme.INK, linewidth=0.9, linestyle=dashes, alpha=0.5, label=label
         )

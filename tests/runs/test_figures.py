@@ -19,6 +19,7 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
+from runs.pipeline.summary import Peak
 from runs.report import theme
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
@@ -272,6 +273,17 @@ def test_what_is_pressed_from_the_start_has_no_first_contact(
     assert "impacts" in draw_some(first_contacts, results, tmp_path)[0].caption
     assert "first contact\ns" not in model_table(still).text.headings
     assert "first contact\ns" in model_table(results).text.headings
+
+
+def test_what_neither_peaks_nor_touches_has_no_close_up(results: Results, tmp_path: Path) -> None:
+    models = {
+        name: model.model_copy(
+            update={"first_contact": None, "first_peak": {"tip": Peak(None, None)}}
+        )
+        for name, model in results.summary.models.items()
+    }
+    summary = results.summary.model_copy(update={"models": models})
+    assert draw_some(close_up, replace(results, summary=summary), tmp_path) == []
 
 
 def test_energies_start_where_the_boom_does(
