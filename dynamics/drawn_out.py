@@ -73,20 +73,20 @@ def integrate_drawn(
     energies[0, 2] = sum(float(law.energy(y)) for law, y in zip(system.laws, gaps[0], strict=True))
 
     least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
-    chunk = max(1, outputs // 100)
-    for done in range(0, outputs, chunk):
-        made = min(chunk, outputs - done)
-        times = h * np.arange(done * substeps, (done + made) * substeps + 1)
+    done = 0
+    while done < outputs:
+        first, done = done, motion.until(done)
+        times = h * np.arange(first * substeps, done * substeps + 1)
         excitations, ways = _followed(system, times, h)
         straight = excitation_arrays(replace(system, travels=()), times, h)[4]
         strides = strides_over(strides, tables[3], straight, ways, h)
         march_drawn(
             state, still, rows, tables, ways, excitations, space, strides, h, substeps,
-            tuple(array[1 + done : 1 + done + made] for array in recorded),
+            tuple(array[1 + first : 1 + done] for array in recorded),
         )  # fmt: skip
-        check_energy(energies[: 1 + done + made], h, energy_bound, least)
+        check_energy(energies[: 1 + done], h, energy_bound, least)
         if progress is not None:
-            progress((done + made) / outputs)
+            progress(done / outputs)
     tally, time = state[6], output_step * np.arange(outputs + 1)
     found = Trajectory.record(
         system,

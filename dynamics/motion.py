@@ -10,6 +10,9 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 
+# Output intervals that are made at once, and the part of those made that may be.
+_AT_ONCE = 100
+
 
 @dataclass(frozen=True, slots=True)
 class Motion:
@@ -54,6 +57,13 @@ class Motion:
     def outputs(self) -> int:
         """How many output steps are made."""
         return max(1, round(self.duration / self.output_step))
+
+    def until(self, done: int) -> int:
+        """How many output steps are made before a motion that has ``done`` of them is looked at.
+
+        Whatever its duration, so that a short motion is the beginning of a longer one.
+        """
+        return min(self.outputs, done + max(_AT_ONCE, done // _AT_ONCE))
 
     @property
     def from_rest(self) -> bool:

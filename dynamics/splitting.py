@@ -340,7 +340,6 @@ def integrate(
 
     # What the loads give within one step.
     least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
-    chunk = max(1, outputs // 100)
     # Impacts keep their steps, which run back as they came.
     linear = closable(system) & pressing(system, y).any()
     known: dict[bytes, _Steps] = {}
@@ -349,7 +348,7 @@ def integrate(
         closed = linear & pressing(system, y)
         if closed.tobytes() not in known:
             known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), h)
-        out = tuple(array[1 + done : 1 + min(done + chunk, outputs)] for array in recorded)
+        out = tuple(array[1 + done : 1 + motion.until(done)] for array in recorded)
         steps = known[closed.tobytes()]
         done += steps.march(state, done * substeps, substeps, bool(linear.any()), out)
         check_energy(energies[: 1 + done], h, energy_bound, least)

@@ -20,8 +20,15 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
 from dynamics.integrators import Events, Integrator, Splitting
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import Vary, integrate_ensemble, perturbations
+from dynamics.predictability.ensemble import (
+    Member,
+    Vary,
+    integrate_ensemble,
+    perturbations,
+    run_members,
+)
 from dynamics.splitting import integrate
+from tests.dynamics.test_closed_contacts import boom
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 THROWN = np.array([0.5, -1.0])
@@ -101,6 +108,7 @@ from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
+from tests.dynamics.test_closed_contacts import boom
 from tests.dynamics.two_stops import CHAOTIC
 
 with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
@@ -194,3 +202,13 @@ def test_refuses_what_is_no_ensemble(
 ) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         integrate_ensemble(Motion(LINEAR, 1.0), members, relative, 1, vary)
+
+
+@pytest.mark.parametrize("part", [0.25, 0.7])
+def test_the_beginning_of_a_run_is_that_of_the_whole_run(part: float) -> None:
+    """Reference: the whole run. Its linear contacts press from the start, open and shut."""
+    whole = Member(boom(0.6), "load", 0.0, Splitting(1.0e-5), ("gap", "contact_force"))
+    some, all_ = run_members([whole.within(part), whole])
+    assert some.sizes["time"] == 1 + round(part * whole.motion.outputs)
+    for name in whole.kept:
+        assert np.array_equal(some[name], all_[name][: some.sizes["time"]]), name
