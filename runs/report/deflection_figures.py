@@ -38,11 +38,10 @@ def tip(pen: Pen) -> list[Figure]:
 
 
 def close_up(pen: Pen) -> list[Figure]:
-    """The tip up to shortly after its first peak; nothing where there is none and no contact."""
-    end = pen.first_stretch
-    known = [pen.summary[name] for name in pen.models]
-    if not any(one.first_contact or one.first_peak["tip"].time for one in known):
+    """The tip up to shortly after its first peak; nothing where none has one."""
+    if not any(pen.summary[name].first_peak["tip"].time for name in pen.models):
         return []
+    end = pen.first_stretch
     shown = pen.time <= end
     sheet, (axes,) = new_sheet(1, 3.9)
     contacts, peakless = [], []

@@ -316,7 +316,7 @@ def _swings(own: ModelAnswers) -> str:
     if (swing := own.swing) is None:
         return NONE
     ends = [fixed(end, 1, MILLI) for end in (swing.where_begun, swing.where_ended)]
-    return f"{fixed(swing.tip, 1, MILLI)}\nstanding {' and '.join(ends)}"
+    return f"{fixed(swing.tip, 1, MILLI)}\nstanding {ends[0]}\nand {ends[1]}"
 
 
 def _largest_of(own: ModelAnswers, what: str) -> str:

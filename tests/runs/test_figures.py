@@ -275,11 +275,9 @@ def test_what_is_pressed_from_the_start_has_no_first_contact(
     assert "first contact\ns" in model_table(results).text.headings
 
 
-def test_what_neither_peaks_nor_touches_has_no_close_up(results: Results, tmp_path: Path) -> None:
+def test_without_a_peak_there_is_no_close_up(results: Results, tmp_path: Path) -> None:
     models = {
-        name: model.model_copy(
-            update={"first_contact": None, "first_peak": {"tip": Peak(None, None)}}
-        )
+        name: model.model_copy(update={"first_peak": {"tip": Peak(None, None)}})
         for name, model in results.summary.models.items()
     }
     summary = results.summary.model_copy(update={"models": models})
