@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
 
 from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
+from beam_model.drawn_rows import moving_thrusts
+from dynamics.moving_thrust import MovingThrust
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.cylinder import GroundLine, ground_lines
+from geometry.drawing import places, stands
 
 # One component of one segment.
 _Part = tuple[int, Motion]
@@ -133,22 +136,41 @@ class BoomModes:
 def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     """Of the axial forces of the play-free boom, see :mod:`dynamics.second_order`.
 
-    Infinite without such forces; None where something moves that nothing holds.
+    Infinite without such forces; None where something moves that nothing holds. Of a boom that is
+    drawn out the smallest on its way.
     """
-    boom = boom.play_free
+    tied = boom.play_free
     smallest = np.inf
-    for group in _groups(boom):
+    for group in _groups(tied):
         components = [models[i].components[motion] for i, motion in group]
-        geometric = block_diag(*(component.softening for component in components))
-        if not geometric.any():
+        first = block_diag(*(component.softening for component in components))
+        bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
+        passing = _passing(boom, models, bodies)
+        if not (first.any() or any(passing.values())):
             continue
-        if (_group_modes(boom, group, components).omega2 == 0.0).any():
+        if (_group_modes(tied, group, components).omega2 == 0.0).any():
             return None
-        ties, pulled = _holds(boom, group, components)
-        stiffness, free = _held_stiffness(components, pulled), _free(ties, len(geometric))
-        factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
-        smallest = min(smallest, factor)
+        for ways in stands(boom):
+            drawn = (one.softening(ways[n]) for n, thrusts in passing.items() for one in thrusts)
+            geometric = sum(drawn, first)
+            moved = {n: places(boom.joints[n], way) for n, way in ways.items()}
+            ties, pulled = _holds(tied, group, components, moved)
+            stiffness, free = _held_stiffness(components, pulled), _free(ties, len(geometric))
+            factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
+            smallest = min(smallest, factor)
     return smallest
+
+
+def _passing(
+    boom: Boom, models: Sequence[SegmentModel], bodies: Sequence[_Body]
+) -> dict[int, list[MovingThrust]]:
+    """The axial forces that go along as joints are drawn out, on the components of a group."""
+
+    def reads(segment: int, x: float, direction: Direction) -> Array:
+        return bodies[segment].at(direction, x)
+
+    drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
+    return {number: moving_thrusts(boom, models, reads, number) for number in drives}
 
 
 def _groups(boom: Boom) -> list[list[_Part]]:
@@ -206,17 +228,23 @@ class _Body:
 
 
 def _holds(
-    boom: Boom, group: Sequence[_Part], components: Sequence[Component]
+    boom: Boom,
+    group: Sequence[_Part],
+    components: Sequence[Component],
+    moved: Mapping[int, Sequence[tuple[float, float]]],
 ) -> tuple[list[Array], list[GroundLine]]:
-    """Of a group: rows (num_dofs,) that ties keep at zero, and the cylinders that pull at it."""
+    """Of a group: rows (num_dofs,) that ties keep at zero, and the cylinders that pull at it.
+
+    Joints that are drawn out are tied where they have ``moved`` to, x in m on both segments.
+    """
     bodies = [_Body(group, components, number) for number in range(len(boom.segments))]
     ties = [
-        bodies[joint.inner].at(motion, x) - bodies[joint.outer].at(motion, x)
-        for joint in boom.joints
+        bodies[joint.inner].at(motion, on_inner) - bodies[joint.outer].at(motion, on_outer)
+        for number, joint in enumerate(boom.joints)
         if joint.tied
         for motion in dict.fromkeys(motion for _, motion in group)
         if (joint.outer, motion) in group
-        for x in joint.stations
+        for on_outer, on_inner in moved.get(number, [(x, x) for x in joint.stations])
     ]
     lines = ground_lines(boom, bodies)
     return ties, [line for line in lines if line.stiffness > 0.0 and line.push.any()]
@@ -238,7 +266,7 @@ def _free(ties: Sequence[Array], num_dofs: int) -> Array:
 def _group_modes(boom: Boom, group: Sequence[_Part], components: Sequence[Component]) -> Modes:
     """Modes of components side by side that keep ties at zero and pull at cylinders."""
     apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in components]
-    ties, pulled = _holds(boom, group, components)
+    ties, pulled = _holds(boom, group, components, {})
     if not ties and not pulled and len(apart) == 1:
         return apart[0]
     rigid = block_diag(

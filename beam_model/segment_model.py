@@ -80,7 +80,7 @@ def gap_system(
         ],
         modes.damping,
     )
-    return replace(system, travels=travels(boom, models, rows_at))
+    return replace(system, travels=travels(boom, models, rows_at, modes.displacement))
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:

@@ -4,7 +4,9 @@
 The splitting with the row of the time of the impulse. A gap's rate is ẏ = B ȧ + ṡ B′ a; friction
 and contact damping act on all of it. Contact forces do −F B ȧ on the modes and store F ẏ, and the
 rest, ∫ ṡ Σ F B′ a dt, is the work of the drive, negative where a boom slides out downhill. Pads rub
-along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels.
+along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels. What
+an axial force softens as its place moves along is a smooth force K_G(s) a beside the contacts', at
+both ends of a step, and −½ ṡ N (w′ a)² the power of the drive at it.
 """
 
 from __future__ import annotations
@@ -31,6 +33,7 @@ from dynamics.kernels.integrator_state import (
     initial_state,
 )
 from dynamics.kernels.moving_rows import row_tables, stacked_rows
+from dynamics.kernels.moving_thrusts import pushed_by, thrust_arrays
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
@@ -60,9 +63,11 @@ def integrate_drawn(
     h = output_step / substeps
     state = initial_state(system, motion.position.copy(), motion.velocity.copy())
     still, rows, space = _still(system), _rows(system), space_for(system)
-    tables, strides = row_tables(system), strides_for(system, h)
+    tables, strides, thrusts = row_tables(system), strides_for(system, h), thrust_arrays(system)
+    pushed = pushed_by(thrusts, state[1])
 
-    columns = (n, n if system.observes_rates else 0, len(DRAWN_ENERGIES), m, m, m, f, len(rows[0]))
+    rates = n if system.observes_rates else 0
+    columns = (n, rates, len(DRAWN_ENERGIES), m, m, m, f, len(rows[3][0]))
     recorded = tuple(np.zeros((outputs + 1, count)) for count in columns)
     states, velocities, energies, gaps, means, peaks, frictions, drives = recorded
     _, a, v, y, *_ = state
@@ -81,8 +86,8 @@ def integrate_drawn(
         straight = excitation_arrays(replace(system, travels=()), times, h)[4]
         strides = strides_over(strides, tables[3], straight, ways, h)
         march_drawn(
-            state, still, rows, tables, ways, excitations, space, strides, h, substeps,
-            tuple(array[1 + first : 1 + done] for array in recorded),
+            state, still, rows, tables, thrusts, pushed, ways, excitations, space, strides, h,
+            substeps, tuple(array[1 + first : 1 + done] for array in recorded),
         )  # fmt: skip
         check_energy(energies[: 1 + done], h, energy_bound, least)
         if progress is not None:
@@ -118,7 +123,8 @@ def _still(system: GapSystem) -> Still:
 
 def _rows(system: GapSystem) -> Rows:
     now = stacked_rows(system)
-    return now, now.copy(), now.copy(), np.zeros((3, len(now)))
+    thrusts = len(thrust_arrays(system)[0])
+    return now, now.copy(), now.copy(), np.zeros((3, len(now) + thrusts))
 
 
 def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations, Array]:
@@ -153,10 +159,13 @@ def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Ar
 
 def _work_of(system: GapSystem, drives: Array) -> list[Array]:
     """(num_times,) in J of each travel."""
-    moving, totals = row_tables(system)[3], []
-    for number in range(len(system.travels)):
-        totals.append(drives[:, moving[moving[:, 1] == number, 0]].sum(axis=1))
-    return totals
+    moving, of_thrust = row_tables(system)[3], thrust_arrays(system)[1][:, 0]
+    at_rows, at_thrusts = np.split(drives, [drives.shape[1] - len(of_thrust)], axis=1)
+    return [
+        at_rows[:, moving[moving[:, 1] == number, 0]].sum(axis=1)
+        + at_thrusts[:, of_thrust == number].sum(axis=1)
+        for number in range(len(system.travels))
+    ]
 
 
 def _rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:

@@ -57,12 +57,10 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
         [w.slope_where(ContactLaw.force, f) for w, f in zip(system.laws, force, strict=True)]
     )
     try:
-        factor = cholesky(
-            np.diag(system.omega2) + (system.rows.T * spring) @ system.rows, lower=True
-        )
+        factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
     except LinAlgError:
         raise NumericsError("nothing holds the boom: it has no static equilibrium") from None
-    if not system.laws:
+    if not (system.laws or system.softening.size):
         return np.asarray(load / system.omega2)
     scaled_load = solve_triangular(factor, load, lower=True)
     scaled_push = solve_triangular(factor, pushed, lower=True)
@@ -76,6 +74,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     unscaled = solve_triangular(factor, span, lower=True, trans=1)
     rows = system.rows @ unscaled
     stiffness = (unscaled.T * system.omega2) @ unscaled
+    if system.softening.size:
+        stiffness -= unscaled.T @ system.softening @ unscaled
 
     def energy(x: Array) -> float:
         contact = _of_rows(energy_of, unit * rows @ x, terms).sum() / unit**2

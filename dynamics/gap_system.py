@@ -22,6 +22,7 @@ from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
+from dynamics.second_order import softened
 from dynamics.travel import KINDS, Travel
 
 
@@ -84,6 +85,9 @@ class GapSystem:
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
         travels: what draws segments out while they move, and the rows that this changes; all rows
             stay what they are unless given.
+        softening: (num_modes, num_modes) what axial forces take from the stiffness besides, of a
+            boom that stands as it is drawn out; none unless given. Before such a system moves,
+            :meth:`in_own_modes`.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -106,6 +110,7 @@ class GapSystem:
     released: Array = field(default_factory=lambda: np.zeros(0))
     thrown: Array = field(default_factory=lambda: np.zeros(0))
     travels: Sequence[Travel] = ()
+    softening: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         n, m = self.omega2.size, len(self.laws)
@@ -121,6 +126,7 @@ class GapSystem:
             "load": (self.load, (n,)),
             **{name: (getattr(self, name), shape) for name, shape in of_modes.items()},
             "dashpots": (self.dashpots, (len(self.dashpots), n)),
+            "softening": (self.softening, (n, n) if self.softening.size else (0, 0)),
             "rows": (self.rows, (m, n)),
             "station_of_row": (self.station_of_row, (m,)),
             "friction_rows": (self.friction_rows, (len(self.frictions), n)),
@@ -148,7 +154,8 @@ class GapSystem:
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
         for number, travel in enumerate(self.travels):
-            if travel.table.coefficients.shape[3] != n:
+            tables = [travel.table, *(thrust.table for thrust in travel.thrusts)]
+            if any(table.coefficients.shape[3] != n for table in tables):
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
             if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moving):
                 raise ValueError(f"travel {number} must move rows of the system")
@@ -167,6 +174,12 @@ class GapSystem:
     def observes_rates(self) -> bool:
         """Whether velocities are read, and not coordinates alone."""
         return any(seen.derivative for seen in self.observers.values())
+
+    @property
+    def stiffness(self) -> Array:
+        """(num_modes, num_modes) in 1/s²."""
+        own = np.diag(self.omega2)
+        return own - self.softening if self.softening.size else own
 
     @property
     def damping_matrix(self) -> Array:
@@ -205,12 +218,45 @@ class GapSystem:
     def standing(self, time: float) -> GapSystem:
         """The system that stands still as it is drawn out at a time in s."""
         stands = {kind: getattr(self, kind).copy() for kind in KINDS}
+        softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
         for travel in self.travels:
-            rows = travel.table(float(travel.history(np.array(time))))
+            way = float(travel.history(np.array(time)))
+            rows = travel.table(way)
+            for thrust in travel.thrusts:
+                softening = softening + thrust.softening(way)
             for (kind, position), row in zip(travel.moving, rows, strict=True):
                 stands[kind][position] = row
         rows, friction_rows, dashpots = stands.values()
-        return replace(self, rows=rows, friction_rows=friction_rows, dashpots=dashpots, travels=())
+        return replace(
+            self,
+            rows=rows,
+            friction_rows=friction_rows,
+            dashpots=dashpots,
+            travels=(),
+            softening=softening if softening.any() else np.zeros((0, 0)),
+        )
+
+    def in_own_modes(self) -> GapSystem:
+        """The same motion in the modes that axial forces besides leave it, which may move."""
+        if not self.softening.size:
+            return self
+        omega2, turn = softened(self.omega2, self.softening)
+        return replace(
+            self,
+            omega2=omega2,
+            load=self.load @ turn,
+            rows=self.rows @ turn,
+            observers={
+                name: seen._replace(row=seen.row @ turn) for name, seen in self.observers.items()
+            },
+            damping=np.einsum("ki,k,ki->i", turn, self.damping, turn),
+            dashpots=self.dashpots @ turn,
+            friction_rows=self.friction_rows @ turn,
+            excitations=[replace(x, load=x.load @ turn) for x in self.excitations],
+            released=self.released @ turn,
+            thrown=self.thrown @ turn,
+            softening=np.zeros((0, 0)),
+        )
 
     def static_response(self, force: Array) -> Array:
         """(num_modes,) rest position under a modal force, for a system without rigid modes.

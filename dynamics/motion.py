@@ -30,7 +30,8 @@ class Motion:
         velocity: (num_modes,) initial ȧ in √kg·m/s, zero unless given.
 
     Raises:
-        ValueError: a time is not positive, a shape does not agree, or a number is not finite.
+        ValueError: a time is not positive, a shape does not agree, a number is not finite, or the
+            system is not in its own modes.
     """
 
     system: GapSystem
@@ -43,6 +44,8 @@ class Motion:
         for name in ("duration", "output_step"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)} s")
+        if self.system.softening.size:
+            raise ValueError("what is softened besides moves in_own_modes")
         n = self.system.num_modes
         for name in ("position", "velocity"):
             state = np.asarray(getattr(self, name), dtype=np.float64)

@@ -94,16 +94,17 @@ class RowTable:
 
     def __call__(self, s: float) -> Array:
         """(num_rows, num_modes) at s in m."""
-        piece, part, _ = self._at(s)
+        piece, part, _ = self.place(s)
         return _combined(part ** np.arange(4), self.coefficients[piece])
 
     def slope(self, s: float) -> Array:
         """(num_rows, num_modes) their change along s, per m."""
-        piece, part, length = self._at(s)
+        piece, part, length = self.place(s)
         powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
         return _combined(powers, self.coefficients[piece])
 
-    def _at(self, s: float) -> tuple[int, float, float]:
+    def place(self, s: float) -> tuple[int, float, float]:
+        """The piece in which s in m is, the part of it that s has passed, and its length in m."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
         length = float(self.knots[piece + 1] - self.knots[piece])

@@ -17,6 +17,7 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.excitation import History
+from dynamics.moving_thrust import MovingThrust
 from dynamics.row_table import RowTable
 
 # The rows of a gap system that may change with time, in the order in which loops stack them.
@@ -172,6 +173,7 @@ class Travel:
         table: (num_moving, num_modes) rows at each m of it.
         moving: kind and position of each of them in the gap system.
         suffix: behind the names of what results tell of it; nothing where it is None.
+        thrusts: axial forces that go along.
 
     Raises:
         ValueError: the table has not as many rows as move, or the history does not begin with 0.
@@ -181,6 +183,7 @@ class Travel:
     table: RowTable
     moving: tuple[tuple[Kind, int], ...]
     suffix: str | None = None
+    thrusts: Sequence[MovingThrust] = ()
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]
@@ -197,10 +200,11 @@ class Travel:
         table: RowTable,
         moving: Sequence[tuple[Kind, int]],
         suffix: str | None,
+        thrusts: Sequence[MovingThrust] = (),
     ) -> Travel:
         """What several histories move together, or one."""
         history = histories[0] if len(histories) == 1 else Together(tuple(histories))
-        return cls(history, table, tuple(moving), suffix)
+        return cls(history, table, tuple(moving), suffix, tuple(thrusts))
 
     @property
     def moves(self) -> bool:

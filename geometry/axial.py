@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from geometry.arrays import Array
 from geometry.compression import UNPRESSED, Compression
 from geometry.joint import Joint
 from geometry.segment import SAME_PLACE, Segment
@@ -78,6 +79,69 @@ def with_compression(
             held = max(held, locked)
         carrying[number] = replace(segment, compression=_compression(segment, held, points, spread))
     return tuple(carrying)
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A place on a segment at which an axial force goes along as another segment is drawn out.
+
+    Drawn out by s, P is larger by the force between x and where it has come to, x + direction · s;
+    drawn in, smaller.
+
+    Args:
+        segment: its position.
+        x: at the start, in m.
+        direction: 1 towards the head, −1 towards the tail.
+        force: N.
+    """
+
+    segment: int
+    x: float
+    direction: int
+    force: float
+
+    def more(self, x: Array, way: Array) -> Array:
+        """(..., num_places) in N at x in m, drawn out by ways (...) in m."""
+        passed = self.direction * (x - self.x)
+        far = np.asarray(way)[..., None]
+        out, back = (passed > 0.0) & (passed < far), (far < passed) & (passed < 0.0)
+        return np.asarray(self.force * (out.astype(float) - back))
+
+
+def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> Entry | None:
+    """What goes along as a joint is drawn out; None where no axial force changes its place.
+
+    What sits on the inner segment takes the force along the outer one; what sits on the outer one
+    takes it off the inner one ever nearer to its tail, but for a foot below the tail.
+    """
+    joint = joints[number]
+    inner = segments[joint.inner]
+    force = inner.compression.handed
+    if joint.drive is None or _lock(joints, joint.inner) is not joint or force == 0.0:
+        return None
+    locked = inner.start if joint.locked_at is None else joint.locked_at
+    if joint.drive.locked == "inner":
+        return Entry(joint.outer, locked, 1, force)
+    return Entry(joint.inner, locked, -1, force) if locked > inner.start else None
+
+
+def carried(
+    segments: Sequence[Segment], joints: Sequence[Joint], number: int, x: Array, time: Array
+) -> Array:
+    """P of a segment in N, (..., num_places) at x in m and times (...) in s.
+
+    Args:
+        segments: with what they carry at the start.
+        joints: some may be drawn out.
+        number: of the segment.
+        x, time: where and when; at a jump either of both.
+    """
+    total = np.broadcast_to(segments[number].compression(x), (*time.shape, x.size))
+    for position, joint in enumerate(joints):
+        found = entry(segments, joints, position)
+        if joint.drive is not None and found is not None and found.segment == number:
+            total = total + found.more(x, joint.drive.history(time))
+    return total
 
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
@@ -146,5 +210,5 @@ def _compression(
         hangs = everything if b <= held + near else 0.0
         pieces.append((first - hangs, last - hangs))
     if not any(force for piece in pieces for force in piece):
-        return UNPRESSED
-    return Compression(tuple(places), tuple(pieces))
+        return replace(UNPRESSED, handed=everything)
+    return Compression(tuple(places), tuple(pieces), everything)

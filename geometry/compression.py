@@ -21,10 +21,12 @@ class Compression:
     Args:
         places: (num_pieces + 1) ends of the pieces, rising x in m; none where P is 0 everywhere.
         ends: (num_pieces) P at both ends of each.
+        handed: all that presses the segment in N, which it hands on where it is held.
     """
 
     places: tuple[float, ...] = ()
     ends: tuple[tuple[float, float], ...] = ()
+    handed: float = 0.0
 
     def __bool__(self) -> bool:
         """Whether there is any."""

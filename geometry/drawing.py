@@ -18,6 +18,9 @@ from geometry.segment import SAME_PLACE, Segment
 if TYPE_CHECKING:
     from geometry.boom import Boom
 
+# At so many times a boom is looked at as it is drawn out.
+_STANDS = 9
+
 
 @dataclass(frozen=True, slots=True)
 class Course:
@@ -110,6 +113,16 @@ def farthest(boom: Boom, segment: int) -> float:
     return sum(high or low for low, high in reaches)
 
 
+def stands(boom: Boom) -> list[dict[int, float]]:
+    """Where drives draw a boom to: m by positions of joints, at the start, farthest and between."""
+    drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
+    times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
+    ways = np.array([drive.history(times) for drive in drives.values()]).reshape(-1, times.size)
+    between = np.linspace(0, times.size - 1, _STANDS).astype(int)
+    steps = np.unique([*between, *ways.argmin(axis=1), *ways.argmax(axis=1)])
+    return [dict(zip(drives, there.tolist(), strict=True)) for there in ways[:, steps].T]
+
+
 def places(joint: Joint, way: float) -> list[tuple[float, float]]:
     """x in m of each station on the outer and on the inner segment, drawn out by ``way`` in m."""
     carriers = () if joint.drive is None else joint.drive.carriers
@@ -132,16 +145,11 @@ def check_drives(boom: Boom) -> None:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         _check_way(f"joint[{number}].drive", joint, outer, inner)
         _check_taper(f"joint[{number}].drive", boom, outer, inner)
+        _check_lock(f"joint[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
     for segment in range(len(boom.segments)):
         if drives_below(boom.joints, segment):
             _check_free(boom, segment)
-    if boom.compressed:
-        raise BoomError(
-            f"joint[{driven[0][0]}].drive",
-            "axial forces change as the boom is drawn out, which no model knows; leave drive out, "
-            "or axial and the angle of gravity",
-        )
 
 
 def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
@@ -182,6 +190,31 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 where,
                 f"stations pass one another as {inner.name!r} is drawn by {way:g} m; make the "
                 "travel shorter, or move them",
+            )
+
+
+def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
+    """Axial force passes on both segments all the way, or from a foot below the inner one."""
+    drive, x = joint.drive, joint.locked_at
+    assert drive is not None
+    if x is None:
+        return
+    low, high = drive.reach
+    if drive.locked == "outer" and x < inner.start:
+        if x > inner.start + low:
+            raise BoomError(
+                where,
+                f"{inner.name!r} is drawn in by {-low:g} m, past {x:g} m, from where it is pushed; "
+                "make the travel shorter, or move the place",
+            )
+        return
+    for way in (low, high):
+        held = outer.holds(x + way) if drive.locked == "inner" else inner.holds(x - way)
+        if not held:
+            raise BoomError(
+                where,
+                f"{x:g} m leaves the overlap as {inner.name!r} is drawn by {way:g} m; make the "
+                "travel shorter, or move the place",
             )
 
 

@@ -9,6 +9,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from geometry.arrays import Array
+
 # On which segment of its joint a station sits, and goes with it.
 Carrier = Literal["outer", "inner"]
 
@@ -29,16 +31,23 @@ class Drive:
         history: in m since the start, 0 at t = 0; a history of the dynamics.
         carriers: the segment on which each station of the joint sits.
         least_overlap: in m, below which the overlap must not come.
+        locked: the segment on which the place sits where the inner one's axial force passes.
     """
 
     history: Any
     carriers: tuple[Carrier, ...]
     least_overlap: float = 0.0
+    locked: Carrier = "inner"
+
+    @cached_property
+    def times(self) -> Array:
+        """(num_times,) from t = 0 on, in s, with its kinks."""
+        kinks = np.array([0.0, *self.history.kinks])
+        times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
+        return np.asarray(times[times >= 0.0])
 
     @cached_property
     def reach(self) -> tuple[float, float]:
         """How far in, not above 0, and how far out, not below it, it comes in m."""
-        kinks = np.array([0.0, *self.history.kinks])
-        times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
-        ways = self.history(times[times >= 0.0])
+        ways = self.history(self.times)
         return min(0.0, float(ways.min())), max(0.0, float(ways.max()))

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from dynamics.integrators import Splitting as Splitting
     from dynamics.integrators import simulate as simulate
     from dynamics.motion import Motion as Motion
+    from dynamics.moving_thrust import MovingThrust as MovingThrust
     from dynamics.predictability.ensemble import integrate_ensemble as integrate_ensemble
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
     from dynamics.row_table import RowTable as RowTable
@@ -103,6 +104,7 @@ _HOMES = {
         "dynamics.gap_system": "GapSystem Observer",
         "dynamics.integrators": "Events Integrator Splitting simulate",
         "dynamics.motion": "Motion",
+        "dynamics.moving_thrust": "MovingThrust",
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.row_table": "RowTable",

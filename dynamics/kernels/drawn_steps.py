@@ -47,6 +47,7 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.modal_flow import drive, modal_energy, move, tabulate, travel
 from dynamics.kernels.moving_rows import Tables, arrive, average, carry, moving_drag, place_rows
+from dynamics.kernels.moving_thrusts import Pushed, Thrusts, kick, press_along
 
 # After so many steps apart it is worth the while to look how many more can be made at once.
 _APART = 8
@@ -60,7 +61,8 @@ _TOGETHER = 1.0e-9
 Still = tuple[Array, Array, Terms, Limits, Array, Array, Array]
 
 # All rows where a part of a step begins, where it ends, and in the mean (num_all, num_modes);
-# convective rates, what the drive has done at each row in this part and in all (3, num_all).
+# convective rates, what the drive has done at each row, and behind these at each thrust, in this
+# part and in all (3, num_all + num_thrusts).
 Rows = tuple[Array, Array, Array, Array]
 
 # Of a length of step (1,): the flow over its half (9, num_modes), what modes keep over a quarter,
@@ -102,6 +104,8 @@ def drawn_steps(
     still: Still,
     rows: Rows,
     tables: Tables,
+    thrusts: Thrusts,
+    pushed: Pushed,
     ways: Array,
     excitations: Excitations,
     space: Space,
@@ -130,6 +134,9 @@ def drawn_steps(
     push, y_ahead, force_ahead = middle
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
+    along, slope, along_then, slope_then = borrowed(pushed)
+    forces, of_thrust = thrusts[0], thrusts[1]
+    softened = forces.size > 0
     carried, driven, done = told
     fading, pressed, excited = rates.size > 0, pressing.any(), loads.shape[0] > 0
     rubbing = pressed or (given[0] * given[1]).any()
@@ -193,6 +200,8 @@ def drawn_steps(
                 driven[:] = 0.0
 
                 loss = 0.0
+                if softened:
+                    kick(v, along, 0.5 * time)
                 if touching:
                     if moves:
                         carry(now, then, moving, 0, m, a, time, carried)
@@ -257,6 +266,14 @@ def drawn_steps(
                         mean[j] += share * push[j]
                         if abs(push[j]) > abs(peak[j]):
                             peak[j] = push[j]
+                if softened:
+                    press_along(place, thrusts, a, along_then, slope_then)
+                    kick(v, along_then, 0.5 * time)
+                    for t in range(forces.size):
+                        n = of_thrust[t, 0]
+                        way = (ways[p + 1, n] - ways[p, n]) * time / span
+                        both = slope[t] ** 2 + slope_then[t] ** 2
+                        driven[now.shape[0] + t] -= 0.25 * forces[t] * both * way
                 tally[CONTACT] += loss
                 changed = False
                 if f > 0:
@@ -284,6 +301,9 @@ def drawn_steps(
                         grip[SLIDING, j] = 0.0
             for j in range(done.size):
                 done[j] += driven[j]
+            if softened:
+                along[:] = along_then
+                slope[:] = slope_then
             if moves:
                 arrive(now, then, moving)
             touching = pressed_then
@@ -303,6 +323,8 @@ def march_drawn(
     still: Still,
     rows: Rows,
     tables: Tables,
+    thrusts: Thrusts,
+    pushed: Pushed,
     ways: Array,
     excitations: Excitations,
     space: Space,
@@ -314,13 +336,13 @@ def march_drawn(
     """Advance by ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces, work
-    of the drive at each row), one row an interval; velocities may have no columns.
+    of the drive at each row and thrust), one row an interval; velocities may have no columns.
     """
     _, a, v, y, _, _, tally, mean, peak, friction, _, _ = state
     omega2, load, terms, limits, rates, given, pressing = still
     modal = omega2, load, rates
-    # What rubs or drags does so in every step.
-    dragged = len(rows[0]) > y.size + friction.size
+    # What rubs, drags or softens does so in every step.
+    dragged = len(rows[0]) > y.size + friction.size or thrusts[0].size > 0
     gliding = not (dragged or pressing.any() or (given[0] * given[1]).any())
     states, velocities, energies, gaps, means, peaks, frictions, drives = out
     done = rows[3][2]
@@ -340,8 +362,8 @@ def march_drawn(
                 k += made
             else:
                 k = drawn_steps(
-                    state, still, rows, tables, ways, excitations, space, step, k, end, substeps,
-                    gliding,
+                    state, still, rows, tables, thrusts, pushed, ways, excitations, space, step, k,
+                    end, substeps, gliding,
                 )  # fmt: skip
         tally[WORK] += np.dot(load, a - start)
         states[interval] = a
@@ -352,6 +374,7 @@ def march_drawn(
         frictions[interval] = friction
         drives[interval] = done
         energies[interval, 0], energies[interval, 1] = modal_energy(a, v, omega2)
+        energies[interval, 1] -= 0.5 * np.dot(a, pushed[0])
         energies[interval, 2] = contact_energy(y, terms)
         energies[interval, 3:7] = tally[WORK : WORK + 4]
         energies[interval, 7] = done.sum()

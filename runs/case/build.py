@@ -191,7 +191,9 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         locked_at=None if table.locked_at is None else at(table.locked_at, tail, head),
         drive=None
         if table.drive is None
-        else table.drive.drive(f"joint[{index + 1}]", table.stations, table.inner),
+        else table.drive.drive(
+            f"joint[{index + 1}]", table.stations, table.locked_at, (table.inner, tail)
+        ),
     )
 
 

@@ -266,7 +266,8 @@ class JointTable(Table):
         None,
         description="the x in m where the inner segment's axial force enters the outer one: of a "
         "locking pin, or, below the inner segment, of the foot of the cylinder that pushes its "
-        "tail; the tail unless given",
+        "tail; the tail unless given. With a drive what is at a distance from the tail goes with "
+        "the inner segment, all else stays on the outer one",
     )
     contact_length: Length | None = Field(
         None,

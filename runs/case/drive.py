@@ -118,21 +118,33 @@ class DriveTable(Table):
         return history
 
     def drive(
-        self, where: str, stations: tuple[float | PlaceTable, ...], inner: str
+        self,
+        where: str,
+        stations: tuple[float | PlaceTable, ...],
+        locked_at: float | PlaceTable | None,
+        inner: tuple[str, float],
     ) -> Drive | None:
         """None where it moves nothing.
 
         Args:
             where: the key of its joint.
-            stations: of the joint.
-            inner: the name of the segment that is drawn.
+            stations, locked_at: of the joint.
+            inner: the name of the segment that is drawn, and its tail's x in m.
 
         Raises:
             BoomError: as :meth:`history`, and where a station sits on no segment.
         """
         history = self.history(f"{where}.drive")
-        carriers = tuple(_carrier(where, place, inner) for place in stations)
-        drive = Drive(history, carriers, self.least_overlap)
+        name, tail = inner
+        goes = f"{where}.stations", "the station", name
+        carriers = tuple(_carrier(place, *goes) for place in stations)
+        locked: Carrier = "inner"
+        if isinstance(locked_at, float) and locked_at < tail:
+            # The foot of what pushes the tail.
+            locked = "outer"
+        elif locked_at is not None:
+            locked = _carrier(locked_at, f"{where}.locked_at", "the place", name)
+        drive = Drive(history, carriers, self.least_overlap, locked)
         low, high = drive.reach
         return drive if high - low > _NOWHERE else None
 
@@ -141,11 +153,11 @@ def _said(key: str) -> str:
     return str(DriveTable.model_fields[key].description)
 
 
-def _carrier(where: str, place: float | PlaceTable, inner: str) -> Carrier:
+def _carrier(place: float | PlaceTable, where: str, what: str, inner: str) -> Carrier:
     if not isinstance(place, PlaceTable):
         raise BoomError(
-            f"{where}.stations",
-            f"{place:g} m does not tell on which segment the station goes as {inner!r} is drawn; "
+            where,
+            f"{place:g} m does not tell on which segment {what} goes as {inner!r} is drawn; "
             "give 'tail' or 'head', or a distance from one",
         )
     return "inner" if place.head is None else "outer"

@@ -17,7 +17,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from dynamics.travel import Travel
 from geometry.arrays import Array
-from geometry.boom import Boom, Joint, Segment
+from geometry.boom import Boom, Joint
 from geometry.cylinder import forces
 from geometry.drawing import drawn, places
 from runs.case.contact import PADS_OF_SIDE
@@ -152,8 +152,7 @@ def at_rest(
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
         diagrams=[
-            _diagram(segment, line, position)
-            for segment, line in zip(boom.segments, lines, strict=True)
+            _diagram(boom, number, line, position, time) for number, line in enumerate(lines)
         ],
         tilts=list(tilts(boom, system, position, time)),
         stations=stations,
@@ -161,10 +160,10 @@ def at_rest(
     )
 
 
-def _diagram(segment: Segment, line: Line, position: Array) -> Diagram:
-    carried = section_forces(segment, line, position)
+def _diagram(boom: Boom, number: int, line: Line, position: Array, time: float) -> Diagram:
+    carried = section_forces(boom, number, line, position, np.array(time))
     curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}
-    return Diagram(segment.name, rounded(line.x), curves.pop("normal"), curves)
+    return Diagram(boom.segments[number].name, rounded(line.x), curves.pop("normal"), curves)
 
 
 def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:

@@ -87,10 +87,13 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
     """Of beams, or of a shell but for its walls, and the stress where it varies most."""
     envelopes, peaks = [], list(_observed(motions))
     fibres, varying = [], []
-    for segment, line in zip(motions.boom.segments, motions.lines, strict=True):
+    times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
+    states = motions.trajectory.states, motions.positions
+    for number, line in enumerate(motions.lines):
+        segment = motions.boom.segments[number]
         curves, still = (
-            section_forces(segment, line, states)
-            for states in (motions.trajectory.states, motions.positions)
+            section_forces(motions.boom, number, line, *one)
+            for one in zip(states, times, strict=True)
         )
         gone = _Gone(segment, line, curves, still)
         envelopes.append(_envelope(gone))

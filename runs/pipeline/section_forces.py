@@ -15,6 +15,7 @@ import numpy as np
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
+from geometry.axial import carried
 from geometry.boom import Boom, Segment
 from geometry.compression import Compression
 from geometry.cylinder import force_name
@@ -42,10 +43,19 @@ def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list
     return found
 
 
-def section_forces(segment: Segment, line: Line, states: Array) -> dict[Quantity, Array]:
-    """(..., num_places) of what a line reads of (..., num_modes), and N in N."""
+def section_forces(
+    boom: Boom, number: int, line: Line, states: Array, time: Array
+) -> dict[Quantity, Array]:
+    """(..., num_places) of what a line reads of (..., num_modes), and N in N.
+
+    Args:
+        boom: it may be drawn out.
+        number: of the line's segment.
+        line, states: of a model.
+        time: (...) of the states in s.
+    """
     read = line.read(states)
-    given = normal_force(segment.compression, line.x)
+    given = -carried(boom.segments, boom.joints, number, _on_their_sides(line.x), time)
     return {**read, "normal": given + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
 
 

@@ -44,7 +44,9 @@ def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -
         tip, time = farthest_from_rest(system, trajectory)
     except NUMERICS:
         return None
-    stands = [_standing(system.standing(when), case, model) for when in (0.0, max(ends))]
+    stands = [
+        _standing(system.standing(when).in_own_modes(), case, model) for when in (0.0, max(ends))
+    ]
     speed = max(_speed(travel) for travel in system.travels)
     return Swing(tip, time, speed, *stands)
 

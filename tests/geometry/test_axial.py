@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.axial import Thrust, with_compression
+from dynamics.excitation import Table
+from geometry.axial import Entry, Thrust, carried, entry, with_compression
 from geometry.boom import (
     Boom,
     BoomError,
@@ -21,6 +22,7 @@ from geometry.boom import (
     Support,
 )
 from geometry.compression import UNPRESSED
+from geometry.drive import Carrier, Drive
 from geometry.section import BoxSection
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
@@ -117,3 +119,44 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
         "joint[1].locked_at: 9 m is no place at which 'fly' is locked in 'arm'; it must be between "
         "0 and 8 m"
     )
+
+
+@pytest.mark.parametrize(
+    ("carrier", "locked", "entered"),
+    [
+        ("inner", None, Entry(0, 6.0, 1, 1000.0 + 40.0 * LIGHT)),
+        ("inner", 7.0, Entry(0, 7.0, 1, 1000.0 + 40.0 * LIGHT)),
+        ("outer", 8.0, Entry(1, 8.0, -1, 1000.0 + 40.0 * LIGHT)),
+        ("outer", 5.0, None),
+    ],
+)
+def test_drawn_out_a_force_goes_along(
+    carrier: Carrier, locked: float | None, entered: Entry | None
+) -> None:
+    """Reference: other code path, the forces of the boom whose fly lies 1 m farther out or in, in
+    the places of the material.
+    """
+    ways = Table([0.0, 1.0], [0.0, 1.0])
+    rope, drive = [Thrust(1, 14.0, 1000.0)], Drive(ways, ("inner", "outer"), 0.0, carrier)
+    joint = replace(JOINT, drive=drive, locked_at=locked)
+    own = with_compression(segments(), [joint], rope, gravity=5.0)
+    found = entry(own, [joint], 0)
+    if found is not None:
+        found = replace(found, force=round(found.force, 6))
+    assert found == (None if entered is None else replace(entered, force=round(entered.force, 6)))
+    arm, fly = segments()
+    for way in (1.0, -1.0):
+        along = locked
+        if carrier == "inner" and locked is not None:
+            along = locked + way
+        there = replace(JOINT, locked_at=along)
+        drawn = arm, replace(fly, start=6.0 + way, end=14.0 + way)
+        expected = with_compression(drawn, [there], [Thrust(1, 14.0 + way, 1000.0)], gravity=5.0)
+        for number, moved in ((0, 0.0), (1, way)):
+            x = np.linspace(own[number].start, own[number].end, 97)[1:-1] + 1e-3
+            here = own[number].compression(x)
+            if way > 0.0:
+                here = carried(own, [joint], number, x, np.array([0.3, way]))[1]
+            elif found is not None and found.segment == number:
+                here = here + found.more(x, np.array(way))
+            assert here == pytest.approx(expected[number].compression(x + moved), abs=1e-6)

@@ -166,9 +166,21 @@ kind = "finite-element"
         ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\ntied = true',
          "model[2]: 'beam-fe' is tied, and cannot be drawn out; leave the model out, or "
          "joint[1].drive"),
-        ("[[joint]]", "[gravity]\nangle = 45.0\n\n[[joint]]",
-         "joint[1].drive: axial forces change as the boom is drawn out, which no model knows; "
-         "leave drive out, or axial and the angle of gravity"),
+        ("[[joint]]", "[[axial]]\nforce = 7e5\n\n[[joint]]",
+         "model[2]: the boom of 'beam-fe' buckles under 0.789 times its axial forces, and has no "
+         "motion; it must bear more than all of them: make these smaller, or the sections larger"),
+        ("[[joint]]", "[[joint]]\nlocked_at = 7.0",
+         "joint[1].locked_at: 7 m does not tell on which segment the place goes as 'inner' is "
+         "drawn; give 'tail' or 'head', or a distance from one"),
+        ("[[joint]]", "[[joint]]\nlocked_at = { tail = 2.0 }",
+         "joint[1].locked_at: 7 m leaves the overlap as 'inner' is drawn by 4 m; make the travel "
+         "shorter, or move the place"),
+        ("[[joint]]", "[[joint]]\nlocked_at = { head = 4.5 }",
+         "joint[1].locked_at: 5.5 m leaves the overlap as 'inner' is drawn by 4 m; make the "
+         "travel shorter, or move the place"),
+        (DRIVE, "locked_at = 4.0\ndrive = { travel = -3.0, time = 5.0 }\n",
+         "joint[1].locked_at: 'inner' is drawn in by 3 m, past 4 m, from where it is pushed; make "
+         "the travel shorter, or move the place"),
     ],
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:

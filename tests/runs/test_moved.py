@@ -170,6 +170,7 @@ def test_fibres_of_a_taper_are_those_of_the_local_section() -> None:
         top = int(fibres.z[:, at].argmax())
         assert fibres.z[top, at] == pytest.approx(0.5 * height + 0.005, rel=1e-12)
         bending = (8.0 - x) * (0.5 * height + 0.005) / box.second_moment_of_area
-        found = fibres.stress(top, section_forces(arm, line, state))[at] + 1e4 / box.area
+        forces = section_forces(boom, 0, line, state, np.zeros(()))
+        found = fibres.stress(top, forces)[at] + 1e4 / box.area
         # Second order adds to the moment of the load.
         assert found == pytest.approx(bending, rel=0.02)

@@ -100,6 +100,15 @@ class ShellTable(ModelTable):
             )
         return super().not_drawn
 
+    def _check_drives(self, where: str, boom: Boom) -> None:
+        super()._check_drives(where, boom)
+        if boom.driven and boom.compressed:
+            raise BoomError(
+                where,
+                f"the shell {self.name!r} has the axial forces of the place where it rests; leave "
+                "the model out, or axial and the angle of gravity",
+            )
+
     def describe(self) -> str:
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 

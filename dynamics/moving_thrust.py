@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""An axial force whose place moves along a segment as another one is drawn out.
+
+Between where it was and where it is the segment is pressed by it, and what that takes from the
+stiffness is K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ of the slopes w′ at the place (physics of the second order,
+Timoshenko and Gere 1961). Of rows that are cubics in s it is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.row_table import RowTable
+
+# ∫₀¹ uⁱ uʲ du of the powers in slopes.
+_PRODUCTS = 1.0 / (1.0 + np.add.outer(np.arange(3), np.arange(3)))
+
+
+@dataclass(frozen=True, slots=True)
+class MovingThrust:
+    """A force that moves along with a travel, and softens what it has passed.
+
+    >>> thrust = pt.MovingThrust(2.0, pt.RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
+    >>> thrust.softening(0.5)
+    array([[9.]])
+
+    Args:
+        force: N in N, positive where it presses what is passed as s rises.
+        table: (num_planes, num_modes) rows of the deflections where it acts, at each s in m.
+    """
+
+    force: float
+    table: RowTable
+
+    @property
+    def slopes(self) -> Array:
+        """(num_pieces, 3, num_planes, num_modes) of w′ per m, of the powers of a part passed."""
+        factors = np.arange(1.0, 4.0)[:, None, None]
+        lengths = np.diff(self.table.knots)[:, None, None, None]
+        return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
+
+    def passed(self, plane: int) -> Array:
+        """(num_pieces, num_modes, num_modes) ∫ w′ᵀ w′ ds from s = 0 to where each piece begins."""
+        slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
+        within = np.einsum("p,ij,pik,pjl->pkl", lengths, _PRODUCTS, slopes, slopes, optimize=True)
+        upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
+        return np.asarray(upto[:-1] - self._upto(upto, slopes, 0.0))
+
+    def softening(self, s: float) -> Array:
+        """(num_modes, num_modes) K_G at s in m, less that at 0."""
+        modes = self.table.coefficients.shape[3]
+        total = np.zeros((modes, modes))
+        for plane in range(self.table.coefficients.shape[2]):
+            total += self._upto(self.passed(plane), self.slopes[:, :, plane], s)
+        return self.force * total
+
+    def _upto(self, upto: Array, slopes: Array, s: float) -> Array:
+        """What is passed at s, of what is where pieces begin."""
+        piece, part, length = self.table.place(s)
+        products = length * part ** (1.0 + np.add.outer(np.arange(3), np.arange(3))) * _PRODUCTS
+        return np.asarray(upto[piece] + slopes[piece].T @ products @ slopes[piece])

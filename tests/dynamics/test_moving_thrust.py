@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Axial forces whose place moves: what they soften, as matrices and in the loop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+from scipy.linalg import eigh
+
+from dynamics.contact import PowerContact
+from dynamics.equilibrium import equilibrium
+from dynamics.excitation import Table
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.kernels.moving_thrusts import press_along, thrust_arrays
+from dynamics.motion import Motion
+from dynamics.moving_thrust import MovingThrust
+from dynamics.row_table import RowTable
+from dynamics.splitting import integrate
+from dynamics.travel import SCurve, Travel
+
+# Sines of a beam of 10 m, from its middle on, in two planes that share no mode.
+WAVES = np.pi * np.arange(1, 4) / 10.0
+FORCE = 100.0
+
+
+def slope(s: float) -> np.ndarray:
+    """(2, 6) of both planes at a way in m."""
+    own = WAVES * np.cos(WAVES * (5.0 + s))
+    return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
+
+
+def thrust() -> MovingThrust:
+    def rows(s: float) -> np.ndarray:
+        own = np.sin(WAVES * (5.0 + s))
+        return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
+
+    return MovingThrust(FORCE, RowTable.of(rows, [-1.0, 0.5, 2.0]))
+
+
+def softer(s: float) -> np.ndarray:
+    """N ∫ w′ᵀ w′ dσ by Gauss's rule over all of the way."""
+    points, weights = np.polynomial.legendre.leggauss(30)
+    slopes = [slope(0.5 * s * (point + 1.0)) for point in points]
+    total = sum(w * one.T @ one for w, one in zip(weights, slopes, strict=True))
+    return np.asarray(0.5 * s * FORCE * total)
+
+
+def system(history: SCurve | Table) -> GapSystem:
+    """Six modes on a soft contact, whose row stays where it is."""
+    row = np.array([[0.1, -0.2, 0.3, 0.2, 0.1, -0.3]])
+    table = RowTable(np.array([-1.0, 2.0]), np.array([[row, 0 * row, 0 * row, 0 * row]]))
+    return GapSystem(
+        omega2=np.array([200.0, 300.0, 900.0, 400.0, 2000.0, 5000.0]),
+        load=np.array([1.0, -2.0, 0.5, 1.0, 0.2, 0.1]),
+        rows=row,
+        laws=[PowerContact(1e4, 1.0, 1e-4)],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"tip": Observer(row[0])},
+        damping=np.array([0.1, 0.2, 0.3, 0.1, 0.2, 0.3]),
+        travels=[Travel(history, table, (("rows", 0),), "", (thrust(),))],
+    )
+
+
+@pytest.mark.parametrize("s", [-1.0, -0.3, 0.0, 0.5, 1.7])
+def test_what_is_passed_is_softened(s: float) -> None:
+    """Reference: analytic, the integral along the way by Gauss's rule."""
+    assert thrust().softening(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
+
+
+@pytest.mark.parametrize("s", [-0.7, 0.2, 1.9])
+def test_the_loop_pushes_as_the_matrix(s: float) -> None:
+    """Reference: analytic, K_G a and w′ a."""
+    a = np.array([0.3, -0.2, 0.1, 0.5, 0.4, -0.6])
+    force, slopes = np.zeros(6), np.zeros(2)
+    thrusts = thrust_arrays(system(SCurve(2.0, 1.0)))
+    press_along(np.array([s]), thrusts, a, force, slopes)
+    assert force == pytest.approx(thrust().softening(s) @ a, rel=1e-12)
+    assert slopes == pytest.approx(slope(s) @ a, rel=1e-6)
+
+
+def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
+    """Reference: analytic, the eigenvalues of diag(ω²) − K_G, and the same rest in both."""
+    stands = system(SCurve(2.0, 1.0)).standing(1.0)
+    own = stands.in_own_modes()
+    expected = eigh(np.diag(stands.omega2) - softer(2.0), eigvals_only=True)
+    assert own.omega2 == pytest.approx(expected, rel=1e-6)
+    assert (np.abs(own.omega2 - np.sort(stands.omega2)) > 10.0).any()
+    rests = [float(one.observers["tip"].row @ equilibrium(one, one.load)) for one in (stands, own)]
+    assert rests[0] == pytest.approx(rests[1], rel=1e-8)
+    assert own.in_own_modes() is own
+    with pytest.raises(ValueError, match=r"^what is softened besides moves in_own_modes$"):
+        Motion(stands, 1.0)
+
+
+def by_runge_kutta(drawn: GapSystem, history: SCurve, times: np.ndarray) -> np.ndarray:
+    """(num_times, 2) tip in m and work of the drive in J, without a table and without modes."""
+    (row,) = drawn.rows
+    integral = [softer(s) for s in np.linspace(0.0, 2.0, 401)]
+    spline = CubicSpline(np.linspace(0.0, 2.0, 401), integral)
+
+    def change(time: float, state: np.ndarray) -> np.ndarray:
+        a, v = state[:6], state[6:12]
+        part = time / history.duration
+        s = history.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi))
+        speed = history.travel / history.duration * (1.0 - np.cos(2.0 * np.pi * part))
+        y = row @ a
+        force = 1e4 * np.sign(y) * max(abs(y) - 1e-4, 0.0)
+        pull = drawn.load - drawn.omega2 * a + spline(s) @ a - row * force
+        return np.concatenate([v, pull, [-0.5 * FORCE * speed * ((slope(s) @ a) ** 2).sum()]])
+
+    found = solve_ivp(
+        change, (0.0, times[-1]), np.zeros(13), "DOP853", times, rtol=1e-10, atol=1e-13,
+        max_step=2e-3,
+    )  # fmt: skip
+    return np.array([row @ found.y[:6], found.y[12]]).T
+
+
+def test_a_motion_by_an_integration_of_its_own() -> None:
+    """Reference: other code, Runge and Kutta's method (DOP853) on all of the matrix; the tip and
+    the work of the drive, the order of both, and the ledger.
+    """
+    history = SCurve(2.0, 1.0)
+    drawn = replace(system(history), damping=np.zeros(6))
+    runs = [integrate(Motion(drawn, 1.0, 1e-2), step) for step in (1e-3, 5e-4, 2.5e-4)]
+    expected = by_runge_kutta(drawn, history, runs[0].time)
+    found = [np.array([run.data["tip"].values, run.data["drive_work"].values]).T for run in runs]
+    errors = [np.abs(one - expected).max(axis=0) / np.ptp(expected, axis=0) for one in found]
+    assert (errors[2] < 1e-4).all()
+    assert np.array(errors[:2]) / np.array(errors[1:]) == pytest.approx(4.0, abs=0.6)
+    assert runs[2].energy_residual < 1e-5
+    put_in = float(np.abs(runs[2].data["work"]).max())
+    assert float(np.abs(expected[:, 1]).max()) > 0.02 * put_in
+    plain = replace(drawn, travels=[replace(drawn.travels[0], thrusts=())])
+    off = integrate(Motion(plain, 1.0, 1e-2), 5e-4).data["tip"].values - expected[:, 0]
+    assert np.abs(off).max() > 0.05 * np.ptp(expected[:, 0])
+
+
+def test_what_has_not_moved_yet_moves_as_the_softened_boom() -> None:
+    """Reference: analytic, the same without a drive: to round-off before it begins, and to the
+    last bit where it never does.
+    """
+    later, never = (
+        replace(system(history), damping=np.zeros(6))
+        for history in (SCurve(2.0, 1.0, start=5.0), Table([0.0, 1.0], [0.0, 0.0]))
+    )
+    later, never, rest = (
+        integrate(Motion(one, 0.3, 1e-2), 1e-3)
+        for one in (later, never, replace(later, travels=()))
+    )
+    np.testing.assert_array_equal(never.states, rest.states)
+    assert later.states == pytest.approx(rest.states, abs=1e-10 * np.abs(rest.states).max())
