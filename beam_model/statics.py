@@ -43,11 +43,13 @@ class Rest(NamedTuple):
     """A boom at rest under the loads of t = 0.
 
     Args:
+        boom: what rests.
         system: of its beams.
         position: (num_modes,) of the system in √kg·m.
         holds: by segment, from its start to its end.
     """
 
+    boom: Boom
     system: GapSystem
     position: Array
     holds: list[Hold]
@@ -81,7 +83,7 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
         for number in range(len(boom.segments))
         for hold in _holds(boom, number, theory, modes, position)
     ]
-    return Rest(system, position, holds)
+    return Rest(boom, system, position, holds)
 
 
 def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:

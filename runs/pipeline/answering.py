@@ -190,8 +190,8 @@ def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelA
     ran = [model for model in case.models if model.name in models]
     answers = Answers(
         models=dict(models),
-        reactions=[] if found is None else reactions(boom, found.played),
-        tied_reactions=[] if found is None else reactions(boom.play_free, found.tied),
+        reactions=[] if found is None else reactions(found.played),
+        tied_reactions=[] if found is None else reactions(found.tied),
         modes=_beside(boom, ran, models),
         play=added(ran, models) if boom.joints else [],
     )

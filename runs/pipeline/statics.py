@@ -29,7 +29,10 @@ ROUND_OFF = 1.0e-9
 
 
 class Statics(NamedTuple):
-    """The boom at rest under the loads of t = 0, as beam elements, and the same without play."""
+    """The boom at rest under the loads of t = 0, as beam elements, and the same without play.
+
+    Both are without play where no model of the case has any.
+    """
 
     played: Rest
     tied: Rest
@@ -47,9 +50,9 @@ def statics(case: Case, boom: Boom) -> Statics | None:
         return None
 
 
-def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
+def reactions(rest: Rest) -> list[Reaction]:
     """What holds the boom to the ground."""
-    deep, along = _depths(boom, rest), _along(boom, rest)
+    boom, deep, along = rest.boom, _depths(rest), _along(rest)
     return [
         Reaction(
             boom.segments[number].name,
@@ -59,7 +62,7 @@ def reactions(boom: Boom, rest: Rest) -> list[Reaction]:
             deep.get((number, x)),
             along[number, x],
         )
-        for number, x, force, moment in _told(boom, rest)
+        for number, x, force, moment in _told(rest)
         if (number, x) not in _stands(boom)
     ]
 
@@ -69,8 +72,9 @@ def _stands(boom: Boom) -> set[tuple[int, float]]:
     return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
 
 
-def _told(boom: Boom, rest: Rest) -> list[Hold]:
+def _told(rest: Rest) -> list[Hold]:
     """Holds of the ground and of joints, each once and without round-off."""
+    boom = rest.boom
     grounded = {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
     grounded |= {(stop.segment, stop.x) for stop in boom.stops}
     grounded |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
@@ -86,11 +90,11 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     if found is None:
         console.print("No rest under the loads of t = 0 is found.")
         return
-    console.print(_holds(boom, found.played, case.system))
+    console.print(_holds(found.played, case.system))
     if boom.cylinders:
-        console.print(_cylinders(boom, found.played, case.system))
+        console.print(_cylinders(found.played, case.system))
     console.print(_line(found), highlight=False)
-    for tilt in tilts(boom, found.played.system, found.played.position):
+    for tilt in tilts(found.played.boom, found.played.system, found.played.position):
         console.print(
             f"Play turns {tilt.inner!r} by {tilt.rotation / MILLI:.4g} mrad in {tilt.outer!r}, "
             f"which moves the tip by {tilt.tip / MILLI:.4g} mm.",
@@ -101,8 +105,9 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
         console.print(caution, markup=False, highlight=False)
 
 
-def _along(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
+def _along(rest: Rest) -> dict[tuple[int, float], float]:
     """What feet and cylinders push along the boom in N, by the segment and x in m; else 0."""
+    boom = rest.boom
     found: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
         if segment.foot is not None:
@@ -116,8 +121,9 @@ def _along(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
     return found
 
 
-def _depths(boom: Boom, rest: Rest) -> dict[tuple[int, float], float]:
+def _depths(rest: Rest) -> dict[tuple[int, float], float]:
     """How far in m stations along z are pressed in, by the inner segment and x in m."""
+    boom = rest.boom
     inner = [
         joint.inner
         for _ in boom.directions
@@ -156,16 +162,16 @@ def _masses(boom: Boom, system: System) -> Table:
     return table
 
 
-def _holds(boom: Boom, rest: Rest, system: System) -> Table:
+def _holds(rest: Rest, system: System) -> Table:
     """Forces on the segments where something holds them, and how deep contacts are pressed."""
     x = f"x ({system.label('m')})"
     headings = ["force (kN)", "moment (kN m)", "pressed in (mm)"]
-    along = _along(boom, rest)
+    along = _along(rest)
     if any(along.values()):
         headings.insert(1, "along (kN)")
     table = Table("holds at rest", x, *headings)
-    deep = _depths(boom, rest)
-    for hold in _told(boom, rest):
+    deep = _depths(rest)
+    for hold in _told(rest):
         moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
         depth = f"{deep[hold[:2]] / MILLI:.3g}" if hold[:2] in deep else ""
         cells = [f"{hold.force / KILO:.4g}", moment, depth]
@@ -173,16 +179,16 @@ def _holds(boom: Boom, rest: Rest, system: System) -> Table:
             here = along.get(hold[:2])
             cells.insert(1, f"{here / KILO:.4g}" if here else "")
         where = f"{system.of(hold.x, 'm'):g}"
-        table.add_row(boom.segments[hold.segment].name, where, *cells)
+        table.add_row(rest.boom.segments[hold.segment].name, where, *cells)
     return table
 
 
-def _cylinders(boom: Boom, rest: Rest, system: System) -> Table:
+def _cylinders(rest: Rest, system: System) -> Table:
     """Their lines, and the forces along them: of two side by side together."""
     lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
     table = Table("cylinder of", *lengths, "force (kN)")
-    for number, cylinder in enumerate(boom.cylinders, start=1):
-        segment = boom.segments[cylinder.segment]
+    for number, cylinder in enumerate(rest.boom.cylinders, start=1):
+        segment = rest.boom.segments[cylinder.segment]
         force = cylinder_force(rest, number)
         arm = None if segment.foot is None else cylinder.arm(segment.foot)
         table.add_row(

@@ -12,7 +12,7 @@ from rich.console import Console
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.schema import Case
+from runs.case.schema import Case, StopTable
 from runs.pipeline.models import build
 from runs.pipeline.statics import print_statics
 
@@ -61,6 +61,24 @@ def test_unequal_plays_are_not_pressed_in(capsys: pytest.CaptureFixture[str]) ->
     assert [float(value) for value in rows["inner", "10"]] == pytest.approx(
         [-2.7535, 0.0166], rel=2e-3
     )
+
+
+def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
+    case = case_file.load(str(CASES / "coarse.toml"))
+    tied = tuple(model for model in case.models if model.play_free)
+    stop = StopTable.model_validate(
+        {"segment": "inner", "x": "head", "play": 0.01, "stiffness": 10.0, "exponent": 1.0}
+    )
+    lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}), capsys)
+    assert not any("nan" in line or line.startswith("Play turns") for line in lines)
+    rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
+    assert [float(value) for value in rows["inner", "19"]] == pytest.approx(
+        [-4.916e-5, 4.92], rel=2e-3
+    )
+    assert len(rows["inner", "9"]) == len(rows["inner", "10"]) == 1
 
 
 STIFFENED = """
