@@ -322,14 +322,15 @@ def export(
     from runs.case import reading
     from runs.case.messages import BadInput
     from runs.folder.cache import Cache
-    from runs.report.opensees import write
+    from runs.report.opensees import exported, write
 
     if to != "opensees":
         raise BadInput(case, "--to", f"must be 'opensees', got {to!r}")
     checked = reading.load(case)
-    chosen = reading.select(checked, case, None if model is None else [model])
+    chosen = reading.select(checked, case, [exported(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.py")
-    write(chosen, case, _enter_mpi(chosen, case), path, Cache.of_user())
+    comm = _enter_mpi(chosen, case, "export another one with --model")
+    write(chosen, case, comm, path, Cache.of_user())
     print(printable(str(path)))
     return 0
 
@@ -399,7 +400,9 @@ def _names(models: str | None) -> list[str] | None:
     return None if models is None else [name.strip() for name in models.split(",")]
 
 
-def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
+def _enter_mpi(
+    case: Case, file: str, without: str = "run the other models with --models"
+) -> MPI.Intracomm | None:
     """The ranks that share the shells, None for a case without one.
 
     Raises:
@@ -417,8 +420,7 @@ def _enter_mpi(case: Case, file: str) -> MPI.Intracomm | None:
                     file,
                     f"model[{number}].kind",
                     f"a shell needs FEniCSx, which cannot be imported ({error}); install "
-                    "python3-dolfinx (Debian) or fenics-dolfinx (conda), or run the other models "
-                    "with --models",
+                    f"python3-dolfinx (Debian) or fenics-dolfinx (conda), or {without}",
                 ) from None
             return MPI.COMM_WORLD
     return None

@@ -30,7 +30,7 @@ from runs.case.build import build_boom
 from runs.case.build import joined as joined_as_seen_by
 from runs.case.kinds.finite_element import FiniteElementTable
 from runs.case.kinds.model import Joined, of_kind
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, choices
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.folder.files import whole
@@ -297,10 +297,30 @@ def _nearest(nodes: Array, x: float) -> int:
     return int(np.argmin(np.abs(nodes - x)))
 
 
+def exported(case: Case, file: str, name: str | None = None) -> FiniteElementTable:
+    """The model of a name, or the last of beam elements with play.
+
+    Args:
+        case: a checked one.
+        file: how messages call it.
+        name: of the model.
+
+    Raises:
+        BadInput: there is no such model.
+    """
+    of = {m.name: m for m in of_kind(FiniteElementTable, case.models) if not m.tied}
+    if not of:
+        raise BadInput(file, "--model", "must be beam elements with play, and there are none")
+    if name is not None and name not in of:
+        known = choices(list(of))
+        raise BadInput(file, "--model", f"{name!r} is no beam elements with play; give {known}")
+    return of[name or [*of][-1]]
+
+
 def write(
     case: Case, file: str, comm: MPI.Intracomm | None, path: Path, cache: Cache | None
 ) -> None:
-    """Write the script of the last model of beam elements with play.
+    """Write the script of the model that :func:`exported` has.
 
     Args:
         case: a checked one.
@@ -312,11 +332,8 @@ def write(
     Raises:
         BadInput: there is no such model, or it has something that the script does not.
     """
-    elements = [model for model in of_kind(FiniteElementTable, case.models) if not model.tied]
-    if not elements:
-        raise BadInput(file, "--model", "must be beam elements with play, and there are none")
     # No beam of another program has the fields of the section.
-    model = elements[-1].model_copy(update={"section_fields": False})
+    model = exported(case, file).model_copy(update={"section_fields": False})
     boom = build_boom(case)
     calibration = None
     if model.needs_shell:

@@ -257,6 +257,25 @@ def test_a_shell_without_fenicsx_is_one_line(
     assert not Path("out").exists()
 
 
+def test_a_beam_is_exported_without_fenicsx(
+    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: by hand, the last model of beam elements with play; a shell calibrates another."""
+    for name in [name for name in sys.modules if name.startswith("shell_model.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "dolfinx", None)
+    monkeypatch.setitem(sys.modules, "mpi4py", None)
+    assert protractile("export", "case.toml", "--to", "opensees") == (0, "case.py\n", "")
+    edit('name = "beam-fe"\n', 'name = "beam-fe"\ncalibrated_by = "shell"\n')
+    to = "export", "case.toml", "--to", "opensees", "--model"
+    status, _, err = protractile(*to, "beam-fe")
+    assert (status, err.count("\n")) == (2, 1)
+    assert err.endswith(" (conda), or export another one with --model\n")
+    line = "'shell' is no beam elements with play; give 'beam-fe' or 'timoshenko'"
+    expected = 2, "", f"protractile: case.toml: --model: {line}\n"
+    assert protractile(*to, "shell") == expected
+
+
 def test_beams_need_no_fenicsx(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
     program = """
