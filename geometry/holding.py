@@ -136,15 +136,25 @@ class _RigidBody(Member):
         return (end - start) * self.force(0.5 * (start + end), direction)
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.segment.length * self.force(self.segment.mass_middle, direction)
+        segment, acceleration = self.segment, force / self.segment.mass_per_length
+        plain = force * segment.length * self.force(segment.mass_middle, direction)
+        added = (
+            acceleration * one.mass * self.force(one.x, direction)
+            for one in segment.stiffener_masses
+        )
+        return sum(added, plain)
 
     def turning(self, direction: Direction) -> Array:
         segment = self.segment if direction == "z" else self.segment.turned()
         mass, middle = segment.mass_per_length * segment.length, segment.mass_middle
         inertia = mass * segment.length**2 / 12.0 + segment.rotary_inertia * segment.length
-        return mass * middle * self.force(middle, direction) + inertia * self.moment(
+        plates = mass * middle * self.force(middle, direction) + inertia * self.moment(
             middle, direction
         )
+        added = (
+            one.mass * one.x * self.force(one.x, direction) for one in segment.stiffener_masses
+        )
+        return sum(added, plates)
 
     def _row(self, first: int, *values: float) -> Array:
         row = np.zeros(len(self.boom.segments) * (self.motions.stop - self.motions.start))

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 
 from dynamics.excitation import Ramp, Released, Step
-from geometry.boom import Boom, BoomError, Cylinder, Load, Segment, Stop, Support
+from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
 from geometry.holding import check_pressed
 from geometry.observation import Observation
+from geometry.section import BoxSection
 from tests.space import in_space
 
 HINGE = Support(0.0)
@@ -80,6 +81,20 @@ def test_a_stop_that_no_load_presses_holds_nothing(
     with pytest.raises(BoomError) as caught:
         check_pressed(lifted)
     assert (caught.value.where, caught.value.what) == ("segment[1]", LIFTED)
+
+
+def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
+    """Reference: by hand. Beyond the hinge at 4 m weigh 75.36 kg/m · 10 m · 1 m, before it a collar
+    of 7850 kg/m³ · 1.4 m · 1 m · 30 mm on a lever of 3.5 m: 754 and 1154 kg m.
+    """
+    box = BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
+    assert steel.density * box.area == pytest.approx(75.36)
+    arm = Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(Support(4.0),))
+    weight = Load(0, "z", -9.81 * arm.mass_per_length, None, Step(), inertial=True)
+    rest = replace(BELOW, x=0.0)
+    check_pressed(Boom((replace(arm, collars=(Collar(0.0, 1.0, 0.03),)),), (), (weight,), (rest,)))
+    with pytest.raises(BoomError, match="the loads of t = 0 lift 'arm'"):
+        check_pressed(Boom((arm,), (), (weight,), (rest,)))
 
 
 UNHELD: Mapping[str, tuple[str, str, Mapping[str, Any]]] = {
