@@ -160,8 +160,9 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
     low, high = drive.reach
     if low == high:
         raise BoomError(where, f"draws {inner.name!r} nowhere; leave it out")
+    near = SAME_PLACE * outer.length
     overlap = min(outer.end, inner.end) - inner.start - high
-    if not overlap > 0.0 or overlap < drive.least_overlap:
+    if not overlap > 0.0 or overlap < drive.least_overlap - near:
         least = f"at least {drive.least_overlap:g}" if drive.least_overlap else "above 0"
         raise BoomError(
             where,
@@ -169,13 +170,12 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
             f"must leave {least} m",
         )
     room = min(inner.start - outer.start, inner.end - outer.end)
-    if -low > room:
+    if -low > room + near:
         raise BoomError(
             where,
             f"draws {inner.name!r} in by {-low:g} m; it must be at most {room:g} m, where it is "
             f"wholly in {outer.name!r}",
         )
-    near = SAME_PLACE * outer.length
     for way in (low, high):
         there = places(joint, way)
         for x, (on_outer, on_inner) in zip(joint.stations, there, strict=True):

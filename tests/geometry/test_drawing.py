@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far a drive may draw a segment. Reference: lengths by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from dynamics.travel import SCurve
+from geometry.boom import Boom, Joint, Material, Segment, Support
+from geometry.drive import Drive
+from geometry.section import BoxSection
+
+BASE = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
+FLY = BoxSection(height=0.34, width=0.24, flange=0.006, web=0.005)
+
+
+def drawn(
+    steel: Material,
+    start: float,
+    end: float,
+    travel: float,
+    least: float = 0.0,
+    base: dict[str, Any] | None = None,
+    fly: dict[str, Any] | None = None,
+    **joint: Any,
+) -> Boom:
+    """A base of 6.5 m, and a fly from start to end in m that touches at the ends of the overlap."""
+    held = (Support(0.0, "clamped"),)
+    segments = (
+        Segment.of_section("base", 0.0, 6.5, steel, BASE, supports=held, **(base or {})),
+        Segment.of_section("fly", start, end, steel, FLY, **(fly or {})),
+    )
+    drive = Drive(SCurve(travel, 2.0), ("inner", "outer"), least)
+    joint = {"clearance": 1.5e-3, **joint}
+    return Boom(segments, (Joint(0, 1, (start, 6.5), drive=drive, **joint),))
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "travel", "least"),
+    [(6.5 + 4.8 - 6.0, 11.3, 0.7, 0.5), (0.5, 6.8, -0.3, 0.0)],
+    ids=["out", "in"],
+)
+def test_all_of_the_way_may_be_used(
+    steel: Material, start: float, end: float, travel: float, least: float
+) -> None:
+    """1.2 - 0.7 = 0.5 m of overlap are left; 0.3 m of the fly are out. In binary it is less."""
+    assert drawn(steel, start, end, travel, least).driven
