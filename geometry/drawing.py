@@ -176,6 +176,13 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
             f"draws {inner.name!r} in by {-low:g} m; it must be at most {room:g} m, where it is "
             f"wholly in {outer.name!r}",
         )
+    for plate in outer.diaphragms:
+        if inner.start + low <= plate.x + near:
+            raise BoomError(
+                where,
+                f"draws {inner.name!r} in by {-low:g} m, and the diaphragm of {outer.name!r} at "
+                f"{plate.x:g} m is in its way; it must be less than {inner.start - plate.x:g} m",
+            )
     for way in (low, high):
         there = places(joint, way)
         for x, (on_outer, on_inner) in zip(joint.stations, there, strict=True):

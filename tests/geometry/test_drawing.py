@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from dynamics.travel import SCurve
-from geometry.boom import Boom, Joint, Material, Segment, Support
+from geometry.boom import Boom, BoomError, Diaphragm, Joint, Material, Segment, Support
 from geometry.drive import Drive
 from geometry.section import BoxSection
 
@@ -47,3 +47,16 @@ def test_all_of_the_way_may_be_used(
 ) -> None:
     """1.2 - 0.7 = 0.5 m of overlap are left; 0.3 m of the fly are out. In binary it is less."""
     assert drawn(steel, start, end, travel, least).driven
+
+
+def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
+    """From 2.5 to 1.5 m, with a plate at 2 m; 0.4 m leave it alone."""
+    plated = {"diaphragms": (Diaphragm(2.0, 0.008),)}
+    assert drawn(steel, 2.5, 9.0, -0.4, base=plated)
+    with pytest.raises(BoomError) as caught:
+        drawn(steel, 2.5, 9.0, -1.0, base=plated)
+    assert (caught.value.where, caught.value.what) == (
+        "joint[1].drive",
+        "draws 'fly' in by 1 m, and the diaphragm of 'base' at 2 m is in its way; it must be less "
+        "than 0.5 m",
+    )
