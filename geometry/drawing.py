@@ -12,6 +12,7 @@ import numpy as np
 
 from geometry.drive import Drive
 from geometry.fault import BoomError
+from geometry.fit import check_drawn_room
 from geometry.joint import Joint
 from geometry.segment import SAME_PLACE, Segment
 
@@ -198,6 +199,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
                 f"stations pass one another as {inner.name!r} is drawn by {way:g} m; make the "
                 "travel shorter, or move them",
             )
+        check_drawn_room(where, joint, outer, inner, way)
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:

@@ -45,15 +45,35 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         )
 
 
-def room(joint: Joint, outer: Segment, inner: Segment) -> tuple[float, float]:
+def check_drawn_room(where: str, joint: Joint, outer: Segment, inner: Segment, way: float) -> None:
+    """Whether the inner segment of a flat joint still has its play where it is drawn by ``way``.
+
+    Raises:
+        BoomError: it has not; at a key of the drive ``where``.
+    """
+    if outer.section is None or inner.section is None:
+        return
+    near = SAME_PLACE * outer.length
+    height, width = room(joint, outer, inner, way)
+    if height < 2.0 * joint.clearance - near or width < 0.0:
+        raise BoomError(
+            where,
+            f"draws {inner.name!r} by {way:g} m to where it does not fit in {outer.name!r}: "
+            f"{height:.6g} m of height and {width:.6g} m of width are free there, and a play of "
+            f"{2.0 * joint.clearance:.6g} m is asked for; make the travel or the taper smaller",
+        )
+
+
+def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tuple[float, float]:
     """How far the inner segment can move along z, and then along y, where that is least, in m.
 
-    At the stations and the ends of the overlap, of segments whose sections are known.
+    At the stations and the ends of the overlap, drawn out by ``way`` in m, of segments whose
+    sections are known.
     """
-    ends = max(outer.start, inner.start), min(outer.end, inner.end)
+    first, last = max(outer.start, inner.start + way), min(outer.end, inner.end + way)
     found = [
-        free_room(outer.section_at(x), inner.section_at(x), 2.0 * joint.clearance)
-        for x in (*joint.stations, *ends)
+        free_room(outer.section_at(x), inner.section_at(x - way), 2.0 * joint.clearance)
+        for x in (*(min(max(x, first), last) for x in joint.stations), first, last)
     ]
     heights, widths = zip(*found, strict=True)
     return min(heights), min(widths)

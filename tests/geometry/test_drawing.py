@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from dynamics.travel import SCurve
 from geometry.boom import Boom, BoomError, Diaphragm, Joint, Material, Segment, Support
 from geometry.drive import Drive
+from geometry.fit import room
 from geometry.section import BoxSection
 
 BASE = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
@@ -59,4 +61,35 @@ def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
         "joint[1].drive",
         "draws 'fly' in by 1 m, and the diaphragm of 'base' at 2 m is in its way; it must be less "
         "than 0.5 m",
+    )
+
+
+def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
+    """Of 0.40 to 0.36 m over 10 m, and 0.34 to 0.30 m over 10 m from 5 m on, less walls, are free
+    26 mm at first; with the tail at 9 m 4 mm/m · 4 m less.
+    """
+    sections = (
+        BoxSection(height, width, flange, web=0.006)
+        for height, width, flange in (
+            (0.40, 0.30, 0.008), (0.36, 0.30, 0.008), (0.34, 0.24, 0.006), (0.30, 0.24, 0.006),
+        )
+    )  # fmt: skip
+    tail, head, *inner = sections
+    held = (Support(0.0, "clamped"),)
+    base = Segment.of_section("base", 0.0, 10.0, steel, tail, supports=held, head_section=head)
+    fly = Segment.of_section("fly", 5.0, 15.0, steel, inner[0], head_section=inner[1])
+    joint = Joint(0, 1, (5.0, 10.0), clearance=0.007)
+    assert room(joint, base, fly)[0] == pytest.approx(0.026)
+    assert room(joint, base, fly, 4.0)[0] == pytest.approx(0.010)
+    for travel, clearance in ((3.0, 0.007), (4.0, 0.005)):
+        drive = Drive(SCurve(travel, 2.0), ("inner", "outer"))
+        assert Boom((base, fly), (replace(joint, clearance=clearance, drive=drive),)).driven
+    drive = Drive(SCurve(4.0, 2.0), ("inner", "outer"))
+    with pytest.raises(BoomError) as caught:
+        Boom((base, fly), (replace(joint, drive=drive),))
+    assert (caught.value.where, caught.value.what) == (
+        "joint[1].drive",
+        "draws 'fly' by 4 m to where it does not fit in 'base': 0.01 m of height and 0.048 m of "
+        "width are free there, and a play of 0.014 m is asked for; make the travel or the taper "
+        "smaller",
     )
