@@ -299,6 +299,4 @@ def _patch(boom: Boom, joint: Joint, size: PadSize | None, x: float) -> Patch | 
     """
     if size is None or boom.segments[joint.inner].section is None:
         return None
-    first, last = boom.overlap(joint)
-    start = min(max(x - 0.5 * size.length, first), last - size.length)
-    return Patch(start, start + size.length, size.offset, size.width)
+    return Patch(*size.span(x, boom.overlap(joint)), size.offset, size.width)

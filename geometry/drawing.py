@@ -14,6 +14,7 @@ from geometry.drive import Drive
 from geometry.fault import BoomError
 from geometry.fit import check_drawn_room
 from geometry.joint import Joint
+from geometry.pad_checks import check_drawn_pads
 from geometry.segment import SAME_PLACE, Segment
 
 if TYPE_CHECKING:
@@ -145,6 +146,7 @@ def check_drives(boom: Boom) -> None:
     for number, joint in driven:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         _check_way(f"joint[{number}].drive", joint, outer, inner)
+        check_drawn_pads(f"joint[{number}]", joint, boom)
         _check_taper(f"joint[{number}].drive", boom, outer, inner)
         _check_lock(f"joint[{number}].locked_at", joint, outer, inner)
     _check_order(boom)

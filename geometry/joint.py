@@ -34,6 +34,12 @@ class PadSize:
     width: float
     offset: float = 0.0
 
+    def span(self, x: float, overlap: tuple[float, float]) -> tuple[float, float]:
+        """The x in m between which it lies: centred at x, but moved inwards where overlap ends."""
+        first, last = overlap
+        start = min(max(x - 0.5 * self.length, first), last - self.length)
+        return start, start + self.length
+
 
 @dataclass(frozen=True, slots=True)
 class SlidePad(PadSize):

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from geometry.fault import BoomError
 from geometry.joint import SIDES, Joint, PadSize, SlidePad
+from geometry.segment import SAME_PLACE
 
 if TYPE_CHECKING:
     from geometry.boom import Boom
@@ -35,6 +36,39 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
             raise BoomError(f"{where}.pads", f"none is {side}; give each side one at least")
         for one, other in combinations(pads, 2):
             _check_apart(f"{where}.pads", one, other)
+
+
+def check_drawn_pads(where: str, joint: Joint, boom: Boom) -> None:
+    """Whether all pads of a joint with a drive stay on both of its segments.
+
+    Raises:
+        BoomError: one is longer than the least overlap, or leaves it; at a key of ``where``.
+    """
+    sizes = {f"{where}.contact_length": joint.contact_length}
+    pads = {} if joint.pad is None else {f"{where}.pad": joint.pad}
+    pads |= {f"{where}.pads[{number}]": pad for number, pad in enumerate(joint.pads, start=1)}
+    sizes |= {f"{key}.length": pad.length for key, pad in pads.items()}
+    assert joint.drive is not None
+    start, end = boom.overlap(joint)
+    inner, outer = boom.segments[joint.inner], boom.segments[joint.outer]
+    out, near = joint.drive.reach[1], SAME_PLACE * outer.length
+    for key, length in sizes.items():
+        if length is not None and length > end - start - out + near:
+            raise BoomError(
+                key,
+                f"must not be above the overlap of {end - start - out:g} m that is left where "
+                f"{inner.name!r} is drawn out by {out:g} m, got {length:g} m",
+            )
+    for key, pad in pads.items():
+        for x, carrier in zip(joint.stations, joint.drive.carriers, strict=True):
+            for way, edge in product(joint.drive.reach, pad.span(x, boom.overlap(joint))):
+                slides, by = (outer, way) if carrier == "inner" else (inner, -way)
+                if not slides.holds(edge + by):
+                    raise BoomError(
+                        f"{key}.length",
+                        f"the pad at {x:g} m leaves {slides.name!r} as {inner.name!r} is drawn by "
+                        f"{way:g} m; make it shorter, or move the station",
+                    )
 
 
 def _check_apart(where: str, one: SlidePad, other: SlidePad) -> None:

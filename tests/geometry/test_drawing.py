@@ -9,7 +9,17 @@ from typing import Any
 import pytest
 
 from dynamics.travel import SCurve
-from geometry.boom import Boom, BoomError, Diaphragm, Joint, Material, Segment, Support
+from geometry.boom import (
+    Boom,
+    BoomError,
+    Diaphragm,
+    Joint,
+    Material,
+    PadSize,
+    Segment,
+    SlidePad,
+    Support,
+)
 from geometry.drive import Drive
 from geometry.fit import room
 from geometry.section import BoxSection
@@ -35,8 +45,8 @@ def drawn(
         Segment.of_section("fly", start, end, steel, FLY, **(fly or {})),
     )
     drive = Drive(SCurve(travel, 2.0), ("inner", "outer"), least)
-    joint = {"clearance": 1.5e-3, **joint}
-    return Boom(segments, (Joint(0, 1, (start, 6.5), drive=drive, **joint),))
+    joint = {"clearance": 1.5e-3, "stations": (start, 6.5), **joint}
+    return Boom(segments, (Joint(0, 1, drive=drive, **joint),))
 
 
 @pytest.mark.parametrize(
@@ -93,3 +103,33 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
         "width are free there, and a play of 0.014 m is asked for; make the travel or the taper "
         "smaller",
     )
+
+
+LEFT = "must not be above the overlap of 0.1 m that is left where 'fly' is drawn out by 1.1 m, got "
+PAD = PadSize(0.12, 0.05)
+PADS = SlidePad(0.08, 0.05, side="above"), SlidePad(0.11, 0.05, side="below")
+
+
+@pytest.mark.parametrize(
+    ("joint", "key", "message"),
+    [
+        ({"pad": PAD}, "pad.length", LEFT + "0.12 m"),
+        ({"contact_length": 0.15}, "contact_length", LEFT + "0.15 m"),
+        ({"pads": PADS}, "pads[2].length", LEFT + "0.11 m"),
+        (
+            {"pad": replace(PAD, length=0.08), "stations": (5.38, 6.5)},
+            "pad.length",
+            "the pad at 5.38 m leaves 'base' as 'fly' is drawn by 1.1 m; make it shorter, or move "
+            "the station",
+        ),
+    ],
+)
+def test_pads_stay_on_both_segments(
+    steel: Material, joint: dict[str, Any], key: str, message: str
+) -> None:
+    """1.2 m of overlap at first. A pad at 5.38 m ends at 5.42 m, and 0.02 m beyond the base."""
+    place = 6.5 + 4.8 - 6.0
+    assert drawn(steel, place, 11.3, 1.0, **joint).driven
+    with pytest.raises(BoomError) as caught:
+        drawn(steel, place, 11.3, 1.1, **joint)
+    assert (caught.value.where, caught.value.what) == (f"joint[1].{key}", message)
