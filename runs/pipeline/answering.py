@@ -31,7 +31,7 @@ from runs.pipeline.at_rest import NUMERICS, at_rest, drawn_positions, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
-from runs.pipeline.motion import asked
+from runs.pipeline.motion import Plan
 from runs.pipeline.moved import Motions, gone_through, wall_stresses
 from runs.pipeline.play import added
 from runs.pipeline.section_forces import with_cylinders
@@ -90,10 +90,12 @@ def of_model(
     if model.play_free or not boom.joints:
         return answers
     try:
-        return _beside_tied(answers, boom, _tied(boom, model, played, resting), model, case)
+        tied = _tied(boom, model, played, resting)
+        tied_rests = _resting(tied, case.time.duration)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move, for one.
         return answers
+    return _beside_tied(answers, tied, tied_rests, boom, model, case)
 
 
 class Shown(NamedTuple):
@@ -155,20 +157,23 @@ def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:
 
 
 def _beside_tied(
-    answers: ModelAnswers, boom: Boom, tied: Shown, model: Model, case: Case
+    answers: ModelAnswers, tied: Shown, resting: Resting, boom: Boom, model: Model, case: Case
 ) -> ModelAnswers:
-    from dynamics.integrators import suited
-
-    resting = _resting(tied, case.time.duration)
-    as_begun = [rest for rest in resting.rests if _as_begun(boom, rest.time)]
-    # Their shapes are those of the pressed boom to the eye.
-    tied_modes = [replace(mode, shapes=[]) for mode in resting.modes]
-    answers = replace(answers, tied=as_begun, tied_modes=tied_modes)
-    if any(joint.drive is not None for joint in case.joints):
+    answers = replace(
+        answers,
+        tied=[rest for rest in resting.rests if _as_begun(boom, rest.time)],
+        # Their shapes are those of the pressed boom to the eye.
+        tied_modes=[replace(mode, shapes=[]) for mode in resting.modes],
+    )
+    if boom.driven:
         # Tied it cannot be drawn out.
         return answers
-    motion, _ = asked(tied.system, case, model)
-    moved, lives = _moving(tied, resting, suited(motion)(motion), model, case)
+    try:
+        motion = Plan.of(tied.system, case, model).moved()
+        moved, lives = _moving(tied, resting, motion, model, case)
+    except NUMERICS:
+        # What rests is known all the same.
+        return answers
     return replace(answers, tied_moved=moved, tied_life=lives)
 
 

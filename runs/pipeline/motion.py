@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from dynamics.integrators import Events, Splitting
 
 Progress = Callable[[float], None]
+_Found = TypeVar("_Found")
+
+# How often a step that leaves energy unaccounted for is halved.
+HALVINGS = 2
 
 # Days of computing: what asks for more is a slip of the pen.
 MOST_STEPS = 1.0e10
@@ -58,6 +62,29 @@ class Plan:
     def finer(self) -> Plan:
         """The same in half the step."""
         return replace(self, integrator=self.integrator.finer())
+
+    def halved(self, compute: Callable[[Plan], _Found]) -> tuple[_Found, list[str]]:
+        """What is computed of it; where energy leaves its bound, in half the step, and a quarter.
+
+        Returns:
+            It, and why steps were refused.
+
+        Raises:
+            StepTooLong: a quarter of the step is too long, too.
+        """
+        plan, refused = self, list[str]()
+        while True:
+            try:
+                return compute(plan), refused
+            except StepTooLong as error:
+                if len(refused) == HALVINGS:
+                    raise
+                refused.append(str(error))
+                plan = plan.finer()
+
+    def moved(self) -> Trajectory:
+        """The motion, in steps as short as it needs."""
+        return self.halved(lambda plan: plan.integrator(plan.motion))[0]
 
     def warm(self) -> None:
         """One output compiles the time loop, so that a wall time is the motion's own."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError, StepTooLong
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
@@ -48,10 +48,6 @@ Progress = Callable[[str, str, float], None]
 
 def silent(model: str, stage: str, part: float) -> None:
     """A :data:`Progress` that nobody watches."""
-
-
-# How often a step that leaves energy unaccounted for is halved.
-HALVINGS = 2
 
 
 class Stages:
@@ -313,21 +309,13 @@ def _move(
     executor: Executor | None,
     stages: Stages,
 ) -> Finished:
-    """The motion of a model; where its energy leaves its bound, in half the step, and a quarter."""
-    plan = Plan.of(built.system, case, model)
-    refused: list[str] = []
-    while True:
-        try:
-            moved = _move_at(plan, built.num_dofs, model, case, cutoff, executor, stages)
-        except StepTooLong as error:
-            if len(refused) == HALVINGS:
-                raise
-            refused.append(str(error))
-            plan = plan.finer()
-        else:
-            moved.summary.refused_steps = refused
-            moved.summary.seconds = stages.seconds
-            return moved
+    """The motion of a model, in steps as short as it needs."""
+    moved, refused = Plan.of(built.system, case, model).halved(
+        lambda plan: _move_at(plan, built.num_dofs, model, case, cutoff, executor, stages)
+    )
+    moved.summary.refused_steps = refused
+    moved.summary.seconds = stages.seconds
+    return moved
 
 
 def _move_at(

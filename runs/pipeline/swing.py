@@ -18,7 +18,7 @@ from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Swing
 from runs.pipeline.at_rest import NUMERICS, rest_at
-from runs.pipeline.motion import asked
+from runs.pipeline.motion import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
 # where something turns back to where the next does; none where they do more often than the most.
@@ -118,13 +118,11 @@ def _passed(values: Array) -> Array:
 
 def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
     """The swing of the same boom that stands, in m."""
-    from dynamics.integrators import by_splitting
-
     try:
-        motion, _ = asked(system, case, model)
-        changes = system.excitations or system.released.any() or motion.velocity.any()
+        plan = Plan.of(system, case, model)
+        changes = system.excitations or system.released.any() or plan.motion.velocity.any()
         if case.start.state == "equilibrium" and not changes:
             return 0.0
-        return farthest_from_rest(system, by_splitting(motion)(motion))[0]
+        return farthest_from_rest(system, plan.moved())[0]
     except NUMERICS:
         return None
