@@ -23,13 +23,13 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
     if joint.pad is not None:
         _check_pad(f"{where}.pad", joint, joint.pad, boom)
     for number, pad in enumerate(joint.pads, start=1):
-        _check_pad(f"{where}.pads[{number}]", joint, pad, boom)
         if SIDES[pad.side][0] not in boom.directions:
             raise BoomError(
                 f"{where}.pads[{number}].side",
                 "the boom is flat, and nothing presses to the sides; leave the pad out, or give "
                 "the joints lateral_play",
             )
+        _check_pad(f"{where}.pads[{number}]", joint, pad, boom)
     for side, (direction, _) in SIDES.items():
         pads = [pad for pad in joint.pads if pad.side == side]
         if joint.pads and not pads and direction in boom.directions:
@@ -98,6 +98,7 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
         for x in joint.stations
         for face in inner.section_at(x).faces
         if face.direction in boom.directions
+        and (not isinstance(pad, SlidePad) or pad.touches(face.direction, face.side))
     )
     if not 0.0 < pad.width <= room - pad.offset:
         beside = f" less the offset of {pad.offset:g} m" if pad.offset else ""
