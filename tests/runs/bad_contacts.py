@@ -206,4 +206,12 @@ CONTACTS = {
         "model[6].surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and "
         "2; leave it out, or give the model its own contact",
     ),
+    "stiffness of a surface of a measured contact": (
+        "stiffness = 1e13\n" + FROM_EXPONENT,
+        FROM_EXPONENT.replace("exponent = 2.0", "force_table = [[1e-3, 1e4], [2e-3, 4e4]]")
+        .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
+        .replace(CONTACT, "", 3),
+        "model[6].surface_stiffness: is one number, and a force_table has as many as lines; leave "
+        "it out, or give the model its own contact",
+    ),
 }

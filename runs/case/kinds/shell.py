@@ -219,7 +219,7 @@ class ShellTable(ModelTable):
                 )
 
     def _check_surface(self, where: str, joined: Joined) -> None:
-        """Too many points, one stiffness for several laws."""
+        """Too many points, one stiffness for several laws, or for one that is no power."""
         if self.surface_points is not None:
             along, across = self.surface_points
             if along * across > MOST_POINTS:
@@ -235,6 +235,13 @@ class ShellTable(ModelTable):
                 f"{where}.surface_stiffness",
                 f"its unit depends on the exponent, and the joints have {exponents[0]:g} and "
                 f"{exponents[-1]:g}; leave it out, or give the model its own contact",
+            )
+        sides = [[term.side for term in law.terms] for law in laws]
+        if self.surface_stiffness is not None and any(len({*s}) < len(s) for s in sides):
+            raise BoomError(
+                f"{where}.surface_stiffness",
+                "is one number, and a force_table has as many as lines; leave it out, or give the "
+                "model its own contact",
             )
 
 
