@@ -98,6 +98,10 @@ class ContactLaw(ABC):
     def behind(self, clearance: float) -> ContactLaw:
         """The same law behind another clearance in m."""
 
+    def scaled(self, factor: float) -> ContactLaw:
+        """The same law behind so many times its clearance, on each side its own."""
+        return self.behind(factor * self.clearance)
+
     @property
     def play(self) -> float:
         """From one side to the other in m; twice the clearance where there is but one."""

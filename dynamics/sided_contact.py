@@ -61,5 +61,8 @@ class SidedContact(ContactLaw):
         laws = (law.behind(law.clearance + more) for law in (self.above, self.below))
         return SidedContact(*laws)
 
+    def scaled(self, factor: float) -> SidedContact:
+        return SidedContact(self.above.scaled(factor), self.below.scaled(factor))
+
     def __str__(self) -> str:
         return f"{self.above} above, {self.below} below"

@@ -69,7 +69,7 @@ def changed(motion: Motion, vary: Vary, factor: float) -> Motion:
         load = factor * system.load
         return replace(motion, system=replace(system, load=load, excitations=excitations))
     if vary == "clearance":
-        laws = [law.behind(factor * law.clearance) for law in system.laws]
+        laws = [law.scaled(factor) for law in system.laws]
         return replace(motion, system=replace(system, laws=laws))
     return replace(motion, velocity=factor * motion.velocity)
 
@@ -81,10 +81,11 @@ def check_varied(motion: Motion, vary: Vary) -> None:
         ValueError: what is to vary is zero.
     """
     system = motion.system
+    sides = [law.one_sided(side) for law in system.laws for side in (1, -1)]
     loads = [system.load, *(x.load for x in system.excitations)]
     varied: dict[Vary, bool] = {
         "load": any(load.any() for load in loads),
-        "clearance": any(law.clearance > 0.0 for law in system.laws),
+        "clearance": any(law is not None and law.clearance > 0.0 for law in sides),
         "velocity": bool(motion.velocity.any()),
     }
     if not varied[vary]:

@@ -23,10 +23,13 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import (
     Member,
     Vary,
+    changed,
+    check_varied,
     integrate_ensemble,
     perturbations,
     run_members,
 )
+from dynamics.sided_contact import SidedContact
 from dynamics.splitting import integrate
 from tests.dynamics.test_closed_contacts import boom
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
@@ -73,6 +76,19 @@ def test_all_loads_vary_and_nothing_else() -> None:
     unloaded = replace(system, load=0.0 * system.load)
     spread = integrate_ensemble(Motion(unloaded, 2.0, 1e-2), 2, 1e-3, 7, "load")["tip"]
     assert np.ptp(spread.values, axis=0).max() > 1e-6
+
+
+@pytest.mark.parametrize(("above", "expected"), [(0.002, 0.002002), (0.0, 0.0)])
+def test_plays_that_differ_vary_each_by_its_part(above: float, expected: float) -> None:
+    """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm, and nothing stays so."""
+    (law,) = CHAOTIC.laws
+    sided = SidedContact(law.behind(above), law.behind(0.012))
+    motion = Motion(replace(CHAOTIC, laws=[sided]), 1.0)
+    check_varied(motion, "clearance")
+    (found,) = changed(motion, "clearance", 1.001).system.laws
+    assert isinstance(found, SidedContact)
+    assert found.above.clearance == pytest.approx(expected, rel=1e-12)
+    assert found.below.clearance == pytest.approx(0.012012, rel=1e-12)
 
 
 def test_members_move_from_contact_to_contact() -> None:
