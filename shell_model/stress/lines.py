@@ -52,14 +52,14 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     reaches = _reaches(corners, part)
     forces = _forces(shell, number, triangles, band, part, np.diff(cuts), reaches)
     forces = forces @ fields[f"coordinates_{number + 1}"].values
-    rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[1], "moment": forces[2]}
+    rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[0], "moment": forces[1]}
     if boom.spatial:
         rows |= {
             "lateral": moved[0],
-            "lateral_shear": forces[3],
-            "lateral_moment": forces[4],
+            "lateral_shear": forces[2],
+            "lateral_moment": forces[3],
             "twist": moved[2],
-            "torque": forces[5],
+            "torque": forces[4],
         }
     return Line(0.5 * (cuts[1:] + cuts[:-1]), rows, paired=False)
 
@@ -130,7 +130,7 @@ def _forces(
     lengths: Array,
     reaches: tuple[Array, Array],
 ) -> Array:
-    """(6, num_bands, num_own) N, V, M, lateral V and M, torque for a unit of each coordinate."""
+    """(5, num_bands, num_own) V, M, lateral V and M, torque for a unit of each coordinate."""
     strength = shell.thickness[triangles] * shell.areas[triangles] / lengths[band]
     y, z = shell.centroids[triangles, 1:].T
     slope, across, up = shell.outward[triangles].T
@@ -141,7 +141,6 @@ def _forces(
         _within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
     )
     weights = (
-        {0: strength},
         {2: s_z * strength, 0: -slope * up * strength},
         {0: strength * z + within_z, 3: up * own},
         {2: s_y * strength, 0: -slope * across * strength},
