@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The rows of a boom of beams over all of the way that its joints are drawn out.
 
-Between the nodes that pass a station rows are the shape functions of an element: cubics, which
-tables hold exactly, or polynomials of a series, within a tolerance.
+Between the nodes that pass a station rows are the shape functions of an element: of a plain one
+cubics, which tables hold exactly; of a tapered one they are of the fifth degree, and of a series
+polynomials of any, which tables hold within a tolerance.
 """
 
 from __future__ import annotations
