@@ -4,9 +4,10 @@
 The splitting with the row of the time of the impulse. A gap's rate is ẏ = B ȧ + ṡ B′ a; friction
 and contact damping act on all of it. Contact forces do −F B ȧ on the modes and store F ẏ, and the
 rest, ∫ ṡ Σ F B′ a dt, is the work of the drive, negative where a boom slides out downhill. Pads rub
-along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels. What
-an axial force softens as its place moves along is a smooth force K_G(s) a beside the contacts', at
-both ends of a step, and −½ ṡ N (w′ a)² the power of the drive at it.
+along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels, and
+what a drive of a given stiffness draws against it may stick and slip (:mod:`dynamics.stick_slip`).
+What an axial force softens as its place moves along is a smooth force K_G(s) a beside the
+contacts', at both ends of a step, and −½ ṡ N (w′ a)² the power of the drive at it.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from dynamics.kernels.integrator_state import (
 from dynamics.kernels.moving_rows import row_tables, stacked_rows
 from dynamics.kernels.moving_thrusts import pushed_by, thrust_arrays
 from dynamics.motion import Motion
+from dynamics.stick_slip import FOLLOWED, follow
 from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
 
@@ -140,12 +142,12 @@ def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations
 
 def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Array) -> Trajectory:
     """With what drives do, of contact forces (num_times, num_rows), and work at all rows in J."""
-    added = {}
+    added, told = {}, {}
     for travel, work in zip(system.travels, _work_of(system, drives), strict=True):
         if travel.suffix is None:
             continue
-        way = travel.history(found.time)
-        rubbed = np.sign(np.diff(way, prepend=way[0])) * _rubbing(system, travel, forces)
+        way, friction = travel.history(found.time), rubbing(system, travel, forces)
+        rubbed = np.sign(np.diff(way, prepend=way[0])) * friction
         power = np.diff(work + np.cumsum(rubbed * np.diff(way, prepend=way[0])), prepend=0.0)
         power[1:] /= np.diff(found.time)
         for name, (values, unit, said) in {
@@ -154,7 +156,13 @@ def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Ar
             "drive_power": (power, "W", "power of the drive against contacts and friction"),
         }.items():
             added[f"{name}{travel.suffix}"] = ("time", values, {"units": unit, "long_name": said})
-    return Trajectory(found.data.assign(added), found.states)
+        if travel.pulled is not None:
+            followed = follow(travel.pulled, travel.history, found.time, friction)
+            told[f"drive_force{travel.suffix}"] = followed.told
+            for name, of in FOLLOWED.items():
+                added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
+    data = found.data.assign(added).assign_attrs({"stick_slip": told} if told else {})
+    return Trajectory(data, found.states)
 
 
 def _work_of(system: GapSystem, drives: Array) -> list[Array]:
@@ -168,10 +176,13 @@ def _work_of(system: GapSystem, drives: Array) -> list[Array]:
     ]
 
 
-def _rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:
+def rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:
     """(num_times,) μ Σ|N| in N of the pads that a travel moves.
 
-    N is the contact force in the mean of each output interval, and what is prescribed besides.
+    Args:
+        system: whose friction prescribes N besides.
+        travel: one of its.
+        forces: (num_times, num_rows) of contacts in N; of a motion means of output intervals.
     """
     coefficients = {friction.station: friction.coefficient for friction in system.frictions}
     total = np.zeros(len(forces))

@@ -19,6 +19,7 @@ from dynamics.arrays import Array
 from dynamics.excitation import History
 from dynamics.moving_thrust import MovingThrust
 from dynamics.row_table import RowTable
+from dynamics.stick_slip import Pulled
 
 # The rows of a gap system that may change with time, in the order in which loops stack them.
 Kind = Literal["rows", "friction_rows", "dashpots"]
@@ -174,6 +175,7 @@ class Travel:
         moving: kind and position of each of them in the gap system.
         suffix: behind the names of what results tell of it; nothing where it is None.
         thrusts: axial forces that go along.
+        pulled: what a drive of a given stiffness draws, in place of a stiff one.
 
     Raises:
         ValueError: the table has not as many rows as move, or the history does not begin with 0.
@@ -184,6 +186,7 @@ class Travel:
     moving: tuple[tuple[Kind, int], ...]
     suffix: str | None = None
     thrusts: Sequence[MovingThrust] = ()
+    pulled: Pulled | None = None
 
     def __post_init__(self) -> None:
         rows = self.table.coefficients.shape[2]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from dynamics.contact import ContactLaw
 from dynamics.energy import DRAWN_ENERGIES
+from dynamics.stick_slip import FOLLOWED
 from dynamics.trajectory import OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (
@@ -36,11 +37,21 @@ from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.messages import choices
 from runs.case.places import at, spans
+from runs.case.pulled import check_pulled
 from runs.case.schema import Case, Model
 from runs.case.segment import SegmentTable, SupportTable
 
 # What trajectories hold of every boom.
-_TAKEN = {*OF_STATIONS, *DRAWN_ENERGIES, "time", "station", "direction", "place", "model"}
+_TAKEN = {
+    *OF_STATIONS,
+    *DRAWN_ENERGIES,
+    *FOLLOWED,
+    "time",
+    "station",
+    "direction",
+    "place",
+    "model",
+}
 
 # A beam's numbers and its plates' may differ by this part, for the rounding of data sheets.
 SAME_SECTION = 0.01
@@ -72,6 +83,7 @@ def build_boom(case: Case) -> Boom:
         actions.cylinders(case, segments),
     )
     check_pressed(boom)
+    check_pulled(case, boom)
     return boom
 
 

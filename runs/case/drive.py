@@ -61,6 +61,19 @@ class DriveTable(Table):
     least_overlap: Annotated[NotNegative, In("m")] = Field(
         0.0, description="the overlap in m that must be left; more than none unless given"
     )
+    stiffness: Annotated[Positive, In("N/m")] | None = Field(
+        None,
+        description="the stiffness in N/m of the rope, chain or cylinder that draws, on which the "
+        "segment may stick and slip against friction; stiff unless given",
+    )
+    dashpot: Annotated[NotNegative, In("N s/m")] = Field(
+        0.0, description="the damping in N s/m beside that stiffness"
+    )
+    static_friction: Annotated[Positive, In("1")] | None = Field(
+        None,
+        description="the coefficient of friction that has to be overcome where the segment stands; "
+        "the joint's unless given",
+    )
 
     def history(self, where: str) -> History:
         """How far it is drawn out in m.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dynamics.excitation import followed
-from geometry.boom import Boom
+from geometry.boom import Boom, Joint
 from geometry.drive import Drive
 from runs.case.units import System
 
@@ -31,13 +31,20 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         begin, end = _span(joint.drive)
         low, high = joint.drive.reach
         ways = [f"{said(way)} {word}" for way, word in ((high, "out"), (-low, "in")) if way > 0.0]
-        left = min(outer.end, inner.end) - inner.start - high
-        speed = system.of(_fastest(joint.drive), "m/s")
+        speed = system.of(fastest(joint.drive), "m/s")
         yield (
             f"A drive draws {inner.name!r} {' and '.join(ways)} of {outer.name!r} from {begin:g} "
-            f"to {end:g} s, at {speed:.4g} {system.label('m/s')} at most; {said(left)} of overlap "
+            f"to {end:g} s, at {speed:.4g} {system.label('m/s')} at most; "
+            f"{said(least_overlap(boom, joint))} of overlap "
             "are left."
         )
+
+
+def least_overlap(boom: Boom, joint: Joint) -> float:
+    """What is left of it in m where a drive has drawn a joint out farthest."""
+    outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+    farthest = 0.0 if joint.drive is None else joint.drive.reach[1]
+    return min(outer.end, inner.end) - inner.start - farthest
 
 
 def _span(drive: Drive) -> tuple[float, float]:
@@ -46,7 +53,7 @@ def _span(drive: Drive) -> tuple[float, float]:
     return max(0.0, min(kinks)), max(kinks)
 
 
-def _fastest(drive: Drive) -> float:
+def fastest(drive: Drive) -> float:
     """Its largest speed in m/s."""
     times = followed([drive.history], _span(drive)[1])
     return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())

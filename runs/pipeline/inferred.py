@@ -24,6 +24,7 @@ from runs.pipeline.cautions import slips
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
+from runs.pipeline.slipping import slip_cautions, slip_lines
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
@@ -43,7 +44,7 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(stiffeners)
     if boom.joints:
         console.print(_joints(case, boom))
-    for line in drive_lines(boom, case.system):
+    for line in (*drive_lines(boom, case.system), *slip_lines(case, boom)):
         console.print(line, markup=False, highlight=False)
     console.print(_models(case))
     if boom.compressed:
@@ -54,7 +55,7 @@ def print_inferred(case: Case, console: Console) -> None:
     print_statics(case, boom, console)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
-    for slip in slips(case, boom):
+    for slip in (*slips(case, boom), *slip_cautions(case, boom)):
         console.print(slip, markup=False, highlight=False)
     console.print(f"A run may take {of_run(case)}.", highlight=False)
 

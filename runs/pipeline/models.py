@@ -15,6 +15,7 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from runs.case.build import joined
 from runs.case.kinds.model import Built, Workshop
+from runs.case.pulled import with_pulled
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
     Raises:
         BoomError: the boom lacks what the model needs.
     """
-    return model.build(joined(case, boom, model), workshop)
+    built = model.build(joined(case, boom, model), workshop)
+    return replace(built, system=with_pulled(built.system, case, boom))
 
 
 def workshop(

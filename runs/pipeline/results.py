@@ -27,6 +27,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.cautions import of_buckling, of_tip, slips
 from runs.pipeline.comparisons import leading, reference_of
 from runs.pipeline.place_names import place_names
+from runs.pipeline.slipping import lag_cautions, slip_cautions
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -165,6 +166,8 @@ class Results:
         ]
         return (
             slips(self.case, boom)
+            + slip_cautions(self.case, boom)
+            + lag_cautions(boom, self.trajectories)
             + failed
             + bent
             + far

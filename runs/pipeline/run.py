@@ -37,7 +37,7 @@ from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
-from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
+from runs.pipeline.summary import Ensembles, ModelSummary, Peak, StickSlips, Summary
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -333,6 +333,10 @@ def _move_at(
     with stages.stage("motion") as told:
         trajectory = plan.trajectory(told)
     summary = _summary(model, system, trajectory, num_dofs)
+    if stick_slip := trajectory.data.attrs.get("stick_slip"):
+        summary.stick_slip = {
+            name: StickSlips.model_validate(of) for name, of in stick_slip.items()
+        }
     if system.frictions and regular(case):
         with stages.stage("twice the step") as told:
             summary.step_doubling = plan.change_by_longer_steps(trajectory, told)

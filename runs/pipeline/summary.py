@@ -155,6 +155,19 @@ class CalibrationCard(Entry):
     springs: list[StationSpring]
 
 
+class StickSlips(Measured):
+    """Of :class:`dynamics.stick_slip.StickSlip`, in N, m, m/s and m/s²."""
+
+    mean: float
+    peak: float
+    sticks: int
+    slip: float
+    speed: float
+    acceleration: float
+    behind: float
+    energy_residual: float
+
+
 class ModelSummary(Entry):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
@@ -164,9 +177,10 @@ class ModelSummary(Entry):
     the step changes at the tip, as a part of its range; ``refused_steps`` says why steps were
     halved;
     ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
-    of the axial forces at which the boom with its joints pressed buckles. The last four are a
-    shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N, ``mesh_error`` as a
-    part of it.
+    of the axial forces at which the boom with its joints pressed buckles; ``stick_slip`` is what
+    drives of a given stiffness do, by the names of what trajectories hold of their forces. Four are
+    a shell's: ``reduction_errors`` by their kind, ``local_compliance`` in m/N, ``mesh_error`` as a
+    part of it, ``stress``.
     """
 
     kind: str
@@ -194,6 +208,7 @@ class ModelSummary(Entry):
     mesh_error: Known = None
     stress: StressSummary | None = None
     calibration: CalibrationCard | None = None
+    stick_slip: dict[str, StickSlips] = {}
 
 
 class PointwiseLevel(Measured):

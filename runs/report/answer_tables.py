@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from runs.pipeline.answers import Added, AtRest, Moved, Peak, PlayAdds
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
-from runs.report.drive_tables import drive_table, swing_table
+from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, number
@@ -232,6 +232,7 @@ def answer_tables(results: Results) -> list[Table]:
         mode_table(results),
         peak_table(results),
         drive_table(results),
+        stick_slip_table(results),
         swing_table(results),
         *pad_tables(results),
         stress_table(results),

@@ -11,12 +11,40 @@ from runs.report.figure_context import KILO, MILLI, Figure, Pen, farthest, new_s
 
 
 def drives(pen: Pen) -> list[Figure]:
-    """Force and power of each drive."""
+    """Force and power of each drive; of one that gives way its own force, and how it follows."""
     return [
-        _drive(pen, suffix, inner)
+        draw(pen, suffix, inner)
         for suffix, inner in driven(pen.case).items()
-        if f"drive_power{suffix}" in pen.data
+        for name, draw in (("drive_power", _drive), ("drive_force", _stick_slip))
+        if f"{name}{suffix}" in pen.data
     ]
+
+
+def _stick_slip(pen: Pen, suffix: str, inner: str) -> Figure:
+    sheet, panels = new_sheet(2, 5.2)
+    headings = "force of the drive (kN)", "speed (m/s)"
+    curves = []
+    for panel, (axes, name, unit) in enumerate(
+        zip(panels, ("drive_force", "drawn_speed"), (KILO, 1.0), strict=True)
+    ):
+        for model in pen.models:
+            values = pen.of(model, f"{name}{suffix}") / unit
+            pen.line(axes, model, pen.time, values, linewidth=1.0)
+            curves.append(pen.curve(model, values, panel))
+        axes.set(ylabel=headings[panel], xlim=(0.0, pen.time[-1]))
+        drawn_axis(pen, axes)
+    panels[-1].set_xlabel("time (s)")
+    told = [
+        of for own in pen.summary.values() if (of := own.stick_slip.get(f"drive_force{suffix}"))
+    ]
+    sticks, slip = max(one.sticks for one in told), max(one.slip for one in told)
+    caption = (
+        f"Above the force of the drive of {inner!r} on its own stiffness, with friction and what "
+        "speeds up; below the speed at which the segment moves along, which is 0 where it sticks."
+    )
+    title = f"Drive of {inner}: sticks {sticks} times, slips by up to {MILLI * slip:.2g} mm"
+    chart = Chart(pen.time, "force (kN), speed (m/s)", curves, list(headings))
+    return pen.finish(sheet, panels[0], f"stick-slip{suffix}", title, caption, chart=chart)
 
 
 def _drive(pen: Pen, suffix: str, inner: str) -> Figure:

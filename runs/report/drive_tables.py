@@ -45,6 +45,36 @@ def drive_table(results: Results) -> Table | None:
     return Table("Drives", columns, notes, "drives")
 
 
+def stick_slip_table(results: Results) -> Table | None:
+    """Of every model and drive of a given stiffness; None where all are stiff."""
+    rows = [
+        (str(model), inner, own.stick_slip[name])
+        for suffix, inner in driven(results.case).items()
+        for model, own in results.summary.models.items()
+        if (name := f"drive_force{suffix}") in own.stick_slip
+    ]
+    if not rows:
+        return None
+    found = [told for *_, told in rows]
+    columns = (
+        Column("model", [model for model, *_ in rows]),
+        Column("drive of", [inner for _, inner, _ in rows]),
+        Column("force:\nmean, kN", [one.mean for one in found], ".3g", PER_KILO),
+        Column("at most\nkN", [one.peak for one in found], ".3g", PER_KILO),
+        Column("sticks\ntimes", [one.sticks for one in found]),
+        Column("slips by at most\nmm", [one.slip for one in found], ".3g", MILLI),
+        Column("ends behind by\nmm", [one.behind for one in found], ".3g", MILLI),
+        Column("at most\nm/s", [one.speed for one in found], ".3g"),
+        Column("at most\nm/s²", [one.acceleration for one in found], ".3g"),
+    )
+    notes = (
+        "By the forces of pads as the boom moves that is drawn as asked. Force: with what weighs "
+        "along and speeds up; it sticks while it is drawn; slips: what it catches up in one of "
+        "them; then its own speed and acceleration.",
+    )
+    return Table("Drives that give way", columns, notes, "stick-slip")
+
+
 def swing_table(results: Results) -> Table | None:
     """Of every model that is drawn out, beside the same boom that stands; None of none."""
     answers = results.summary.answers

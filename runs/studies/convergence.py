@@ -47,6 +47,7 @@ STUDIES = (
     "refinement",
     "model_ladder",
     "histories",
+    "stick_slip",
     "as_computed_then",
     "supports",
     "second_order",

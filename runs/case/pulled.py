@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What drives of a given stiffness draw along the boom of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import pi
+
+from dynamics.gap_system import GapSystem
+from dynamics.stick_slip import Pulled
+from dynamics.travel import Travel
+from geometry.boom import Boom, BoomError
+from geometry.drawing import courses, drives_below
+from runs.case.contact import JointTable
+from runs.case.drive import DriveTable
+from runs.case.schema import Case
+
+# In Hz: a swing, or a decay, that is faster is that of a stiff drive.
+_FASTEST = 1.0e3
+
+
+def pulled_by(case: Case, boom: Boom) -> dict[int, Pulled]:
+    """What each drive of a given stiffness draws, by the position of its joint.
+
+    Args:
+        case: a checked one.
+        boom: of the case.
+    """
+    return {
+        number: Pulled(
+            _drawn_mass(boom, number),
+            drive.stiffness,
+            drive.dashpot,
+            _sticking(joint, drive),
+            boom.segments[boom.joints[number].inner].compression.handed,
+            tuple(
+                (_drawn_mass(boom, number, other), beside.drive.history)
+                for other, beside in enumerate(boom.joints)
+                if other != number and beside.drive is not None
+            ),
+        )
+        for number, joint, drive in _drives(case)
+        if drive.stiffness is not None and boom.joints[number].drive is not None
+    }
+
+
+def with_pulled(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
+    """A model's system, whose travels know what their drives draw."""
+    found = pulled_by(case, boom)
+    suffixes = {course.suffix: found.get(course.joints[0]) for course in courses(boom)}
+
+    def pulling(travel: Travel) -> Travel:
+        return replace(travel, pulled=None if travel.suffix is None else suffixes[travel.suffix])
+
+    return replace(system, travels=[pulling(travel) for travel in system.travels])
+
+
+def check_pulled(case: Case, boom: Boom) -> None:
+    """Whether what drives are made of can be.
+
+    Raises:
+        BoomError: it cannot.
+    """
+    for number, joint, drive in _drives(case):
+        where = f"joint[{number + 1}].drive"
+        if drive.stiffness is None:
+            _check_stiff(where, drive)
+            continue
+        _check_friction(where, joint, drive)
+        mass = _drawn_mass(boom, number) if boom.joints[number].drive is not None else 0.0
+        rates = 2.0 * pi * _FASTEST
+        for key, value, most, unit in (
+            ("stiffness", drive.stiffness, mass * rates**2, "N/m"),
+            ("dashpot", drive.dashpot, mass * rates, "N s/m"),
+        ):
+            if value > most > 0.0:
+                raise BoomError(
+                    f"{where}.{key}",
+                    f"must be at most {most:.3g} {unit} for the {mass:.4g} kg that it draws, got "
+                    f"{value:g} {unit}; leave it out where the drive is stiff",
+                )
+
+
+def _check_stiff(where: str, drive: DriveTable) -> None:
+    given = {"dashpot": drive.dashpot, "static_friction": drive.static_friction}
+    for key, value in given.items():
+        if value:
+            raise BoomError(
+                f"{where}.{key}",
+                "without a stiffness the drive is stiff, and what it draws neither sticks nor "
+                f"slips; give stiffness, or leave {key} out",
+            )
+
+
+def _check_friction(where: str, joint: JointTable, drive: DriveTable) -> None:
+    given = drive.static_friction
+    if given is not None and joint.friction == 0.0:
+        raise BoomError(
+            f"{where}.static_friction",
+            "nothing rubs in the joint; give it friction, or leave static_friction out",
+        )
+    if given is not None and given < joint.friction:
+        raise BoomError(
+            f"{where}.static_friction",
+            f"must be at least that of sliding, the joint's friction of {joint.friction:g}, got "
+            f"{given:g}",
+        )
+
+
+def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
+    for number, joint in enumerate(case.joints):
+        if joint.drive is not None:
+            yield number, joint, joint.drive
+
+
+def _drawn_mass(boom: Boom, *joints: int) -> float:
+    """Of the segments that the drives of all these joints move, in kg."""
+    return sum(
+        segment.mass
+        for number, segment in enumerate(boom.segments)
+        if set(joints) <= set(drives_below(boom.joints, number))
+    )
+
+
+def _sticking(joint: JointTable, drive: DriveTable) -> float:
+    """Static friction over that of sliding."""
+    return 1.0 if drive.static_friction is None else drive.static_friction / joint.friction

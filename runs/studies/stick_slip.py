@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a drive of a given stiffness draws: cycles of sticking and slipping, and what lags behind.
+
+The motion across the boom goes by the drive as asked: how far that is off is told by moving it
+again along the way that what is drawn has gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.excitation import Table as Ways
+from dynamics.stick_slip import Followed, Pulled, follow
+from dynamics.trajectory import Trajectory
+from dynamics.travel import SCurve, Stroke
+from geometry.arrays import Array
+from runs import CASES
+from runs.case import reading
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.pipeline.models import build
+from runs.pipeline.motion import Plan
+from runs.report.tables import Table
+from runs.studies.study import Proof, Study
+
+# m in kg, k in N/m, R in N; static friction is so many times that.
+MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
+SPEED = 0.05
+RATIOS = (0.01, 0.1, 0.5)
+
+# Of the drive of the paper's boom in N/m, damped by 0.5 %, with static friction of 0.3.
+ROPES = (2.0e5, 1.0e6, 5.0e6)
+GRAVITY = 9.80665
+KILO = 1.0e3
+
+ROPE = Pulled(MASS, STIFFNESS, sticking=STICKING)
+CYCLE = "sticking until the spring is taut, slipping on a circle"
+
+
+def study(tell: Callable[[str], None]) -> Study:
+    """Cycles, critical speeds, the stiff limit; and the boom along the way that it has gone."""
+    tell("a mass on a spring")
+    proofs = [*_cycle(), *map(_critical, RATIOS), _stiff()]
+    columns = {
+        "stiffness\nN/m": ".3g", "sticks": "", "slips by\nmm": ".3g",
+        "lags at most\n% of overlap": ".3g", "contact forces off\n% of the largest": ".2g",
+        "tip off\n% of its range": ".2g",
+    }  # fmt: skip
+    notes = (
+        "The paper's boom under its weight without play, drawn out by 4 m until 1 m of overlap are "
+        "left in 20 s, five-term series, against the same motion along the way that it has gone.",
+    )
+    rows = []
+    for stiffness in ROPES:
+        tell(f"the paper's boom on {stiffness:g} N/m")
+        rows.append(_one_way(stiffness))
+    table = Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
+    return Study(
+        "stick_slip",
+        "Drives of a given stiffness, on which segments stick and slip",
+        [table],
+        proofs,
+    )
+
+
+def _drawn(pulled: Pulled, speed: float, time: Array) -> Followed:
+    way = Stroke(2.0 * speed * float(time[-1]), speed)
+    return follow(pulled, way, time, np.full(time.size, FRICTION))
+
+
+def _cycle() -> Iterator[Proof]:
+    """Ten cycles at a constant speed without damping."""
+    omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
+    radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
+    slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
+    period = 2.0 * slack / SPEED + slipping
+    time = np.linspace(0.0, first + 9.99 * period, 40_001)
+    found = _drawn(ROPE, SPEED, time)
+    still = found.drawn_speed == 0.0
+    begins = time[1:][still[:-1] & ~still[1:]]
+    told, source = found.told, CYCLE
+    for what, value, reference, unit, allowed in (
+        ("period", (begins[9] - begins[0]) / 9.0, period, "s", 1.0e-3),
+        ("slip", told.slip, 2.0 * radius, "m", 1.0e-4),
+        ("largest force", told.peak, FRICTION + STIFFNESS * radius, "N", 1.0e-4),
+        ("largest speed", told.speed, SPEED + omega * radius, "m/s", 1.0e-4),
+        ("largest acceleration", told.acceleration, omega**2 * radius, "m/s²", 1.0e-3),
+        ("energy not accounted for", told.energy_residual, 0.0, "", 1.0e-10),
+    ):
+        yield Proof(
+            f"cycle: {what}", float(value), float(reference), unit, "analytic", source, allowed
+        )
+
+
+def _critical(ratio: float) -> Proof:
+    """The speed below which it comes to stick again, by halving."""
+    pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
+    expected = pulled.critical_speed(FRICTION)
+    low, high = 0.5 * expected, 2.0 * expected
+    while high - low > 1.0e-5 * expected:
+        middle = 0.5 * (low + high)
+        lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
+        sticks = _drawn(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
+        low, high = (middle, high) if sticks else (low, middle)
+    what, source = f"critical speed at ζ = {ratio:g}", "the swing that just comes back to it"
+    return Proof(what, high, expected, "m/s", "analytic", source, 1.0e-4)
+
+
+def _stiff() -> Proof:
+    """The force of a drive of 1e9 N/m in the middle of an S-curve's first half."""
+    way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
+    pulled = Pulled(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
+    found = follow(pulled, way, time, np.full(time.size, FRICTION))
+    asked = FRICTION + MASS * 0.25 * np.pi
+    what, force = "force of a stiff drive", float(found.drive_force[-1])
+    return Proof(
+        what, force, float(asked), "N", "analytic", "friction and m s̈ of the drive", 1.0e-4
+    )
+
+
+def _one_way(stiffness: float) -> list[float]:
+    """A row of the table."""
+    case = _weighing(stiffness)
+    boom = build_boom(case)
+    plan = Plan.of(build(case, boom, case.models[0]).system, case, case.models[0])
+    asked = _moved(plan)
+    told, data = asked.data.attrs["stick_slip"]["drive_force"], asked.data
+    gone = Ways(tuple(asked.time), tuple((data["drawn_out"] - data["drive_lag"]).values))
+    (travel,) = plan.motion.system.travels
+    along = replace(plan.motion.system, travels=[replace(travel, history=gone, pulled=None)])
+    felt = _moved(replace(plan, motion=replace(plan.motion, system=along)))
+    forces, tips = (
+        [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")
+    )
+    lag = float(np.abs(data["drive_lag"]).max())
+    return [
+        stiffness, told.sticks, KILO * told.slip, 100.0 * lag,
+        100.0 * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),
+        100.0 * float(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1])),
+    ]  # fmt: skip
+
+
+def _moved(plan: Plan) -> Trajectory:
+    return plan.trajectory(lambda _: None)
+
+
+def _weighing(stiffness: float) -> Case:
+    """The paper's boom under its weight, at rest until it is drawn out by a rope."""
+    case = reading.load(str(CASES / "drawn-out.toml"))
+    mass = 10.0 * (case.segments[1].mass_per_length or 0.0)
+    drive = case.joints[0].drive
+    assert drive is not None
+    rope = {
+        "time": 20.0, "stiffness": stiffness, "dashpot": 0.01 * np.sqrt(stiffness * mass),
+        "static_friction": 0.3,
+    }  # fmt: skip
+    joint = case.joints[0].model_copy(update={"play": 0.0, "drive": drive.model_copy(update=rope)})
+    segments = tuple(
+        one.model_copy(update={"load": -GRAVITY * (one.mass_per_length or 0.0)})
+        for one in case.segments
+    )
+    return case.model_copy(
+        update={
+            "segments": segments,
+            "joints": (joint,),
+            "models": case.models[:1],
+            "start": case.start.model_copy(update={"state": "equilibrium"}),
+            "time": case.time.model_copy(update={"duration": 21.0}),
+        }
+    )

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Drives of a given stiffness: what a case says of them, slips in it, and what a run tells."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import rc_context
+from rich.console import Console
+
+from protractile.cases import change, run_case
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.messages import BadInput
+from runs.case.pulled import pulled_by
+from runs.case.reading import load
+from runs.case.schema import Case
+from runs.pipeline.inferred import print_inferred
+from runs.pipeline.results import Results
+from runs.pipeline.summary import Summary
+from runs.report import theme
+from runs.report.drive_figures import drives
+from runs.report.drive_tables import stick_slip_table
+from runs.report.figure_context import Pen
+
+ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
+# Without play, at rest under loads downwards, so that pads press all the time.
+PRESSED = {"play = 0.014": "play = 0.0", "load = 55.07": "load = -540.0"}
+RESTS = {"[[joint]]": '[start]\nstate = "equilibrium"\n\n[[joint]]'}
+
+
+def case_file(folder: Path, changes: dict[str, str]) -> str:
+    text = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
+    for before, after in changes.items():
+        assert before in text
+        text = text.replace(before, after)
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def drawn_by(folder: Path, rope: str, **others: str) -> Case:
+    """The pressed case, drawn by a rope."""
+    changes = {**PRESSED, **RESTS, "least_overlap = 1.0 }": rope, **others}
+    return load(case_file(folder, changes))
+
+
+@pytest.mark.parametrize(
+    ("rope", "message"),
+    [
+        ("least_overlap = 1.0, dashpot = 5.0 }",
+         "joint[1].drive.dashpot: without a stiffness the drive is stiff, and what it draws "
+         "neither sticks nor slips; give stiffness, or leave dashpot out"),
+        ("least_overlap = 1.0, static_friction = 0.3 }",
+         "joint[1].drive.static_friction: without a stiffness the drive is stiff, and what it "
+         "draws neither sticks nor slips; give stiffness, or leave static_friction out"),
+        (ROPE.replace("0.3", "0.1"),
+         "joint[1].drive.static_friction: must be at least that of sliding, the joint's friction "
+         "of 0.2, got 0.1"),
+        (ROPE.replace("2e5", "1e12"),
+         "joint[1].drive.stiffness: must be at most 2.17e+10 N/m for the 550.7 kg that it draws, "
+         "got 1e+12 N/m; leave it out where the drive is stiff"),
+        (ROPE.replace("500.0", "1e9"),
+         "joint[1].drive.dashpot: must be at most 3.46e+06 N s/m for the 550.7 kg that it draws, "
+         "got 1e+09 N s/m; leave it out where the drive is stiff"),
+        (ROPE.replace("2e5", "0.0"),
+         "joint[1].drive.stiffness: must be a number greater than 0, got 0.0"),
+        (ROPE.replace("500.0", "-1.0"),
+         "joint[1].drive.dashpot: must be a number not less than 0, got -1.0"),
+        (ROPE.replace("0.3", "0.0"),
+         "joint[1].drive.static_friction: must be a number greater than 0, got 0.0"),
+        (ROPE.replace("static_friction", "static"),
+         "joint[1].drive.static: unknown key; the nearest known one is start"),
+    ],
+)  # fmt: skip
+def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
+    """Reference: the line that a user reads."""
+    with pytest.raises(BadInput) as caught:
+        load(case_file(tmp_path, {"least_overlap = 1.0 }": rope}))
+    assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
+
+
+def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
+    """Reference: the line that a user reads."""
+    rubs = "friction = 0.2\nnormal_forces = [0.0, 0.0]            # nothing presses from the sides"
+    with pytest.raises(BadInput) as caught:
+        load(case_file(tmp_path, {"least_overlap = 1.0 }": ROPE, rubs: "#"}))
+    assert str(caught.value).endswith(
+        "joint[1].drive.static_friction: nothing rubs in the joint; give it friction, or leave "
+        "static_friction out"
+    )
+
+
+def test_a_drive_draws_all_that_is_beyond() -> None:
+    """Reference: analytic, masses of the segments beyond each joint of the crane, and of those
+    beyond two of them, which another drive moves, too; units of mm, t and s in SI units."""
+    crane = load(str(CASES / "crane-telescopes.toml"))
+    case = change(crane, **{"joint.drive.stiffness": 4e6, "joint[2].drive.static_friction": 0.15})
+    boom = build_boom(case)
+    beyond = [sum(one.mass for one in boom.segments[number:]) for number in (1, 2, 3)]
+    found = pulled_by(case, boom)
+    assert [one.mass for one in found.values()] == pytest.approx(beyond)
+    shared = [[mass for mass, _ in one.beside] for one in found.values()]
+    assert shared == [
+        pytest.approx([beyond[1], beyond[2]]),
+        pytest.approx([beyond[1], beyond[2]]),
+        pytest.approx([beyond[2], beyond[2]]),
+    ]
+    assert [one.sticking for one in found.values()] == pytest.approx([1.0, 1.5, 1.0])
+    assert beyond[2] > 350.0
+
+
+def test_a_drive_holds_what_weighs_along(tmp_path: Path) -> None:
+    """Reference: analytic, m g sin θ of 550.7 kg, which the drive holds before it moves."""
+    along = {
+        "[[joint]]": "[gravity]\nangle = 30.0\n\n[[joint]]",
+        "duration = 7.0": "duration = 0.2",
+    }
+    case = load(
+        case_file(tmp_path, {"least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'", **along})
+    )
+    (pulled,) = pulled_by(case, build_boom(case)).values()
+    assert pulled.thrust == pytest.approx(0.5 * 550.7 * 9.80665)
+    later = change(case, **{"joint.drive.start": 0.1})
+    results = run_case(later, models=["kantorovich-5"])
+    data = results.trajectories.sel(model="kantorovich-5")
+    assert data["drive_force"].values[:100] == pytest.approx(pulled.thrust)
+
+
+def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
+    """Reference: by hand. The lever rule presses pads of 1 m of overlap by 27 and 21.6 kN; 550.7 kg
+    on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula."""
+    shown = StringIO()
+    print_inferred(drawn_by(tmp_path, ROPE), Console(file=shown, width=300))
+    assert (
+        "What the drive of 'inner' draws, 550.7 kg, swings at 3.03 Hz, damped by 2.38 %, and "
+        "against 9.72 kN of friction, the most at rest, sticks and slips below 0.791 m/s.\n"
+    ) in shown.getvalue()
+    assert "caution" not in shown.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("rope", "caution"),
+    [
+        (ROPE,
+         "0.2 m/s at most, and 0.791 m/s would be smooth; draw faster, or by what is stiffer or "
+         "damped more"),
+        (ROPE.replace("dashpot = 500.0, ", ""),
+         "0.2 m/s at most, and nothing damps what swings on it; give it a dashpot"),
+    ],
+)  # fmt: skip
+def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
+    """Reference: the line that a user reads, and the speeds above."""
+    slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
+    shown = StringIO()
+    print_inferred(drawn_by(tmp_path, rope, **slow), Console(file=shown, width=300))
+    assert (
+        f"caution: the drive of 'inner' lets it stick and slip all the way: it draws at {caution}\n"
+    ) in shown.getvalue()
+
+
+@pytest.mark.slow
+def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
+    """Reference: analytic. While it slips the force of the drive is friction and m Δṡ/Δt, and what
+    it has come is what was drawn less the lag; beside a stiff drive nothing else changes."""
+    short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.3"}
+    case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **short)
+    results = run_case(case, models=["kantorovich-5"])
+    data = results.trajectories.sel(model="kantorovich-5")
+    own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
+    _check_motion(data)
+    assert own.energy_residual < 1e-12
+    assert own.sticks >= 1
+    assert own.peak >= float(np.abs(data["drive_force"]).max())
+    assert own.peak == pytest.approx(float(np.abs(data["drive_force"]).max()), rel=0.02)
+    assert own.speed == pytest.approx(float(np.abs(data["drawn_speed"]).max()), rel=0.01)
+    assert own.behind == float(data["drive_lag"][-1])
+    moving = np.diff(data["drawn_out"], prepend=0.0) != 0.0
+    assert own.mean == pytest.approx(float(np.abs(data["drive_force"])[moving].mean()))
+    _check_shown(results, tmp_path)
+    stiff = run_case(drawn_by(tmp_path, "least_overlap = 1.0 }", **short), models=["kantorovich-5"])
+    for name, values in stiff.trajectories.data_vars.items():
+        assert np.array_equal(values, results.trajectories[name])
+    assert stick_slip_table(stiff) is None
+    assert "stick_slip" not in str(stiff.summary)
+
+
+def _check_motion(data: xr.Dataset) -> None:
+    time, speed = data["time"].values, data["drawn_speed"].values
+    friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
+    slips = np.minimum(speed[1:], speed[:-1]) > 0.0
+    assert 300 < slips.sum() < 1250
+    left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(time)
+    assert np.abs(left[slips]).max() < 1e-9 * friction.max()
+    come = (data["drawn_out"] - data["drive_lag"]).values
+    summed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    assert come == pytest.approx(summed, abs=1e-4)
+
+
+def _check_shown(results: Results, folder: Path) -> None:
+    """Reference: what the summary holds, written and read again."""
+    own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
+    read = Summary.model_validate_json(str(results.summary))
+    assert read.models["kantorovich-5"].stick_slip["drive_force"] == own
+    table = stick_slip_table(results)
+    assert table is not None
+    assert [column.cells[0] for column in table.columns] == [
+        "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
+        own.acceleration,
+    ]  # fmt: skip
+    with rc_context(theme.RC):
+        _, figure = drives(Pen(results, folder))
+    assert figure.path.name == "stick-slip.png"
+    assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
+
+
+def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
+    """Reference: the lines that a user reads; by hand, 9.72 kN pull a rope of 1e5 N/m by 97 mm, and
+    by up to half as much again before it slips."""
+    slow = {"time = 5.0": "time = 8.0", "duration = 7.0": "duration = 8.0"}
+    case = drawn_by(tmp_path, ROPE.replace("2e5", "1e5"), **slow)
+    results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])
+    lag = float(np.abs(results.trajectories["drive_lag"]).max())
+    assert 0.09 < lag < 0.15
+    assert results.cautions()[-1] == (
+        f"caution: 'inner' lags up to {lag:.2g} m behind its drive, more than 1 % of the 1 m of "
+        "overlap: the motion across the boom, which goes by the drive, does not feel that"
+    )
