@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numbers are set where people read them."""
+"""How numbers and lists are set where people read them."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 
 def signed(text: str) -> str:
@@ -16,3 +18,13 @@ def digits(value: float, count: int = 3) -> str:
     ('1020', '22.7', '0')
     """
     return signed(f"{float(f'{value:.{count}g}'):.12g}")
+
+
+def listed(parts: Iterable[str]) -> str:
+    """One after the other, one at least.
+
+    >>> listed(["play", "load", "friction"])
+    'play, load and friction'
+    """
+    *most, last = parts
+    return f"{', '.join(most)} and {last}" if most else last

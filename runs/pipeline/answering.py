@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from dynamics.tied import tied_system
@@ -27,7 +28,7 @@ from runs.pipeline.answers import (
     ModesBeside,
     Moved,
 )
-from runs.pipeline.at_rest import NUMERICS, at_rest, drawn_positions, positions
+from runs.pipeline.at_rest import at_rest, drawn_positions, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes

@@ -12,7 +12,7 @@ import numpy as np
 from dynamics.contact import ContactLaw
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, followed
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from dynamics.travel import Travel
@@ -27,9 +27,6 @@ from runs.pipeline.section_forces import section_forces
 
 # A part of the farthest way that is none.
 _SAME_WAY = 1.0e-12
-
-# What numbers out of proportion lead to.
-NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
 
 
 def load_at(system: GapSystem, time: float) -> Array:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.step import contact_step
 from geometry.boom import Boom
@@ -104,7 +104,7 @@ def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
     before = Cost(stand_in.memory, stand_in.seconds)
     try:
         motion, _ = asked(build(case, boom, stand_in.beam).system, case, stand_in.beam)
-    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+    except NUMERICS:
         # The run ends with it, and says so.
         return before
     system, time = motion.system, case.time

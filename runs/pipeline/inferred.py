@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from dynamics.damping import pressed_ratios
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from runs.case import actions
@@ -175,7 +175,7 @@ def _ratios(case: Case, boom: Boom, model: Model) -> list[str]:
         with np.errstate(all="ignore"):
             system = damped(actions.start(build(case, boom, model).system, case)[0], case)
             found = pressed_ratios(system)
-    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+    except NUMERICS:
         return ["cannot be computed"]
     # What stations that nothing presses leave of a dashpot between them is round-off.
     both = (

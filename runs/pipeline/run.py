@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
@@ -102,7 +102,7 @@ class Run:
                     answers[name] = of_model(
                         boom, case, ran.model, ran.built, ran.moved.trajectory, ran.shell
                     )
-                except _NUMERICS as error:
+                except NUMERICS as error:
                     summary.failures[name], answers[name] = _reason(error), ModelAnswers()
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
@@ -154,7 +154,7 @@ def run_case(
     for number, model in enumerate(case.models, start=1):
         try:
             outcome = runs[model.name]()
-        except _NUMERICS as error:
+        except NUMERICS as error:
             failures[model.name] = why = _reason(error)
             first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")
             continue
@@ -196,10 +196,6 @@ def run_case(
         },
         ran,
     )
-
-
-# What a model's numbers may lead to.
-_NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
 
 
 # Gives what a model leaves, or raises what has kept it from that.
@@ -267,7 +263,7 @@ def _run_model(
         tools = None if comm is None else workshop(comm, mesh_folder, stages.tell, cache)
         try:
             built = build(case, boom, model, tools)
-        except _NUMERICS as error:
+        except NUMERICS as error:
             if comm is None or comm.size == 1 or not model.needs_shell:
                 raise
             raise _SharedFailure(_reason(error)) from error

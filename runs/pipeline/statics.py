@@ -12,7 +12,7 @@ from rich.table import Table
 
 from beam_model.statics import Hold, Rest, at_rest, handed_on
 from dynamics.damping import pressed_modes
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 from runs.case.build import joined
@@ -46,7 +46,7 @@ def statics(case: Case, boom: Boom) -> Statics | None:
         with np.errstate(all="ignore"):
             tied = at_rest(boom.play_free, [], [])
             return Statics(at_rest(boom, laws.laws, laws.lateral_laws) if with_play else tied, tied)
-    except (NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError):
+    except NUMERICS:
         return None
 
 

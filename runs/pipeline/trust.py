@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from geometry.typography import listed
 from runs.pipeline.answers import Answers, Known, ModelAnswers
 from runs.pipeline.summary import Summary
 
@@ -47,7 +48,7 @@ def _agreement(answers: Answers) -> Iterator[str]:
     for name in answers.modes.matches:
         parts = [f"{part} {what}" for what, part in _distances(answers, own, name)]
         if parts:
-            yield f"{name} is off {reference} by {_listed(parts)}."
+            yield f"{name} is off {reference} by {listed(parts)}."
 
 
 def _distances(answers: Answers, own: ModelAnswers, name: str) -> Iterator[tuple[str, str]]:
@@ -80,7 +81,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     }
     parted = {name: time for name, time in times.items() if time is not None}
     if parted:
-        which = _listed([f"{name} {time:.2f} s" for name, time in parted.items()])
+        which = listed([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
             "The motion is chaotic: runs whose data differ by less than can be known are "
             f"{percent(_PARTED)} of the tip's range apart from here on: {which}. Later curves are "
@@ -88,7 +89,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
         )
     regular = [name for name, time in times.items() if time is None]
     if regular:
-        yield f"The motion of {_listed(regular)} can be predicted over all {duration:g} s."
+        yield f"The motion of {listed(regular)} can be predicted over all {duration:g} s."
 
 
 def _step(summary: Summary) -> Iterator[str]:
@@ -122,9 +123,3 @@ def _energy(summary: Summary) -> Iterator[str]:
         f"Energy is accounted for within {model.energy_residual:.1g} of the work done in every "
         f"model; the least well in {name}."
     )
-
-
-def _listed(parts: list[str]) -> str:
-    if len(parts) == 1:
-        return parts[0]
-    return f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -8,6 +8,7 @@ from itertools import cycle
 
 from matplotlib.axes import Axes
 
+from geometry.typography import listed
 from runs.case.schema import Case
 from runs.pipeline.answers import AtRest
 from runs.report import theme
@@ -52,5 +53,5 @@ def of_start(case: Case) -> str:
 
 def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
     """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
-    times = " and ".join(f"{time:g}" for time in sorted({rest.time for rest in rests}))
-    return f" Drawn out as it is at {times} s." if driven(case) else ""
+    times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
+    return f" Drawn out as it is at {listed(times)} s." if driven(case) else ""

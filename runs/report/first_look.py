@@ -8,7 +8,7 @@ from math import log, pi
 from typing import NamedTuple
 
 from geometry.arrays import Array
-from geometry.typography import signed
+from geometry.typography import listed, signed
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.results import Results
@@ -94,7 +94,7 @@ def trust_line(results: Results) -> str:
     if not told:
         return ""
     behind = [name for name in results.summary.models if name not in results.read_first]
-    more = f" Of {_listed(behind)} tables and figures below tell." if behind else ""
+    more = f" Of {listed(behind)} tables and figures below tell." if behind else ""
     return (
         f"Held against {reference}, the tip at rest under the largest loads is off: "
         f"{', '.join(told)}.{more}"
@@ -119,8 +119,8 @@ def play_sentence(results: Results) -> str:
     told = [(_SAID[what], one) for what, one in first.items() if what in _SAID]
     more = [f"{_more(one)} to {what}" for what, one in told if not hardly(one)]
     same = [what for what, one in told if hardly(one)]
-    said = [f"Play adds {_listed(more)}."] if more else []
-    said += [f"It hardly changes {_listed(same)}."] if same else []
+    said = [f"Play adds {listed(more)}."] if more else []
+    said += [f"It hardly changes {listed(same)}."] if same else []
     frequency = first.get("first frequency")
     if frequency is not None and frequency.tied and not hardly(frequency):
         both = f"{number(frequency.played)} Hz in place of {number(frequency.tied)} Hz"
@@ -155,8 +155,8 @@ def strength_sentence(results: Results) -> str:
     else:
         verdict = "Of what is known all is" if unknown else "All is"
         verdict += " strong enough without a safety factor"
-    told = f"{verdict}: {_listed(phrase for _, phrase in used)}."
-    return told + (f" No yield strength is given of {_listed(unknown)}." if unknown else "")
+    told = f"{verdict}: {listed(phrase for _, phrase in used)}."
+    return told + (f" No yield strength is given of {listed(unknown)}." if unknown else "")
 
 
 _SAID = {
@@ -177,11 +177,6 @@ def play_note(results: Results) -> str:
 def _more(one: Added) -> str:
     share = "" if one.share is None else f" ({signed(f'{PERCENT * one.share:+.0f}')} %)"
     return f"{amount(one.added, one.unit)}{share}"
-
-
-def _listed(parts: Iterable[str]) -> str:
-    *most, last = parts
-    return f"{', '.join(most)} and {last}" if most else last
 
 
 class _Largest(NamedTuple):
@@ -279,7 +274,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{number(PER_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
         yield (
-            f"Single triangles beside lines of contact have more ({_listed(most)}), the more the "
+            f"Single triangles beside lines of contact have more ({listed(most)}), the more the "
             "finer the mesh; the table of what the walls carry tells where."
         )
 

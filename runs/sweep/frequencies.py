@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.damping import pressed_modes
-from dynamics.failure import NumericsError
+from dynamics.failure import NUMERICS
 from geometry.arrays import Array
 from runs.case import actions
 from runs.case.build import build_boom, joined
@@ -38,8 +38,6 @@ MODES = 3
 # Of them in a terminal of 80 columns.
 SHOWN = 2
 JOINTS = ("pressed", "tied")
-
-_NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError
 
 
 def first_frequencies(
@@ -66,7 +64,7 @@ def first_frequencies(
             with np.errstate(all="ignore"):
                 system, _, _ = actions.start(model.build(booms, tools).system, case)
                 omega = pressed_modes(system)[0][:MODES]
-        except _NUMERICS:
+        except NUMERICS:
             continue
         found[row, : omega.size] = omega / (2.0 * np.pi)
     return found
