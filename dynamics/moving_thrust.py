@@ -36,6 +36,11 @@ class MovingThrust:
     table: RowTable
 
     @property
+    def planes(self) -> int:
+        """In how many it moves."""
+        return self.table.coefficients.shape[2]
+
+    @property
     def slopes(self) -> Array:
         """(num_pieces, 3, num_planes, num_modes) of w′ per m, of the powers of a part passed."""
         factors = np.arange(1.0, 4.0)[:, None, None]
@@ -53,7 +58,7 @@ class MovingThrust:
         """(num_modes, num_modes) K_G at s in m, less that at 0."""
         modes = self.table.coefficients.shape[3]
         total = np.zeros((modes, modes))
-        for plane in range(self.table.coefficients.shape[2]):
+        for plane in range(self.planes):
             total += self._upto(self.passed(plane), self.slopes[:, :, plane], s)
         return self.force * total
 

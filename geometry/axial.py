@@ -125,6 +125,18 @@ def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> 
     return Entry(joint.inner, locked, -1, force) if locked > inner.start else None
 
 
+def passed_over(segments: Sequence[Segment], joints: Sequence[Joint], segment: int) -> set[float]:
+    """x in m on a segment between which axial forces go along it."""
+    return {
+        found.x + found.direction * way
+        for number, joint in enumerate(joints)
+        if joint.drive is not None
+        and (found := entry(segments, joints, number)) is not None
+        and found.segment == segment
+        for way in (0.0, *joint.drive.reach)
+    }
+
+
 def carried(
     segments: Sequence[Segment], joints: Sequence[Joint], number: int, x: Array, time: Array
 ) -> Array:

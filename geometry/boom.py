@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from geometry.axial import passed_over
 from geometry.cylinder import Cylinder, forces
 from geometry.drawing import check_drives, drives_of, places, reach
 from geometry.fault import BoomError
@@ -185,7 +186,7 @@ class Boom:
         if drives := drives_of(self.joints, segment):
             moved = [stop.x for stop in self.stops if stop.segment == segment]
             found |= {x - way for x in moved for way in reach(drives)}
-        return tuple(sorted(found))
+        return tuple(sorted(found | passed_over(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """x of all places at which something acts on a segment, rising.

@@ -24,6 +24,7 @@ from geometry.arrays import Array, Mask
 from geometry.boom import Boom
 from shell_model.boom_shell import BoomShell
 from shell_model.contact.passage import Passage, passages
+from shell_model.moving_thrusts import moving_thrusts
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, Answers, answers, springs, squared
 from shell_model.reduction.segment import ReducedSegment
@@ -77,7 +78,7 @@ class DrawnShell:
         reduce: Callable[[int, Array], ReducedSegment],
         test: float,
     ) -> None:
-        self._full, self._test = full, test
+        self._boom, self._full, self._test = boom, full, test
         self._passages = passages(boom, full, size)
         self.reduced: list[ReducedSegment] = []
         self._answers: list[Answers] = []
@@ -86,7 +87,9 @@ class DrawnShell:
             read = self._read(number)
             self._answers.append(answers(shell, read.columns, test))
             self.reduced.append(self._kept(number, own, read))
-        self._apart = BoomCoordinates(full.comm, full.shells, self.reduced, ())
+        # Springs are what forces move beyond modes of the unloaded boom.
+        free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
+        self._apart = BoomCoordinates(full.comm, full.shells, free, ())
         self._springs = [
             springs(*self._left(position, passage))
             for position, passage in enumerate(self._passages)
@@ -123,7 +126,11 @@ class DrawnShell:
                 rows = np.concatenate([passage.rows(coordinates), beside], axis=2)
                 histories = [drive.history for drive in passage.course.drives]
                 table = RowTable.through(passage.ways, rows)
-                travels.append(Travel.of(histories, table, passage.moving, passage.course.suffix))
+                thrusts = moving_thrusts(
+                    self._boom, self._full, coordinates, passage.course, int(behind[-1])
+                )
+                along = passage.moving, passage.course.suffix, list(thrusts)
+                travels.append(Travel.of(histories, table, *along))
         omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
         return replace(with_coordinates(system, omega2, pulled), travels=travels)
 

@@ -135,7 +135,8 @@ def drawn_steps(
     slid, turns = lines[:2], lines[2]
     slips, noise = problem[FREE], problem[NOISE]
     along, slope, along_then, slope_then = borrowed(pushed)
-    forces, of_thrust = thrusts[0], thrusts[1]
+    pressing_along = borrowed(thrusts)
+    forces, of_thrust = pressing_along[0], pressing_along[1]
     softened = forces.size > 0
     carried, driven, done = told
     fading, pressed, excited = rates.size > 0, pressing.any(), loads.shape[0] > 0
@@ -267,7 +268,7 @@ def drawn_steps(
                         if abs(push[j]) > abs(peak[j]):
                             peak[j] = push[j]
                 if softened:
-                    press_along(place, thrusts, a, along_then, slope_then)
+                    press_along(place, pressing_along, a, along_then, slope_then)
                     kick(v, along_then, 0.5 * time)
                     for t in range(forces.size):
                         n = of_thrust[t, 0]

@@ -11,10 +11,14 @@ from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 
 # Of each thrust in a plane: its force in N (num_thrusts,); its travel, its first and its last knot,
-# the first of its pieces, and between which modes it acts (num_thrusts, 6); knots of all in m;
-# slopes of all pieces (num_pieces, 3, num_modes) and what was passed before each
-# (num_pieces, most_modes, most_modes), see ``MovingThrust``.
-Thrusts = tuple[Array, Indices, Array, Array, Array]
+# the first of its pieces, and how many modes it moves (num_thrusts, 5); which these are
+# (num_thrusts, most_modes); knots of all in m; in these modes slopes of all pieces
+# (num_pieces, 3, most_modes) and what was passed before each (num_pieces, most_modes, most_modes),
+# see ``MovingThrust``; scratch (2, most_modes).
+Thrusts = tuple[Array, Indices, Indices, Array, Array, Array, Array]
+
+# A mode that moves the place by a smaller part of the largest does not but for round-off.
+_NOTHING = 1.0e-13
 
 # Forces on the modes (num_modes,) and slopes where thrusts act (num_thrusts,), where a part of a
 # step begins, and where it ends.
@@ -23,32 +27,41 @@ Pushed = tuple[Array, Array, Array, Array]
 
 def thrust_arrays(system: GapSystem) -> Thrusts:
     """The thrusts of a system in the layout of the compiled loop."""
-    forces, where, knots, slopes, passed = [], [], [np.zeros(0)], [], []
-    pieces = first = 0
-    for number, travel in enumerate(system.travels):
-        for thrust in travel.thrusts:
-            own = thrust.slopes
-            for plane in range(own.shape[2]):
-                (modes,) = np.nonzero(own[:, :, plane].any(axis=(0, 1)))
-                begin, end = (int(modes[0]), int(modes[-1]) + 1) if modes.size else (0, 0)
-                last = first + len(own)
-                forces.append(thrust.force)
-                where.append((number, first, last, pieces, begin, end))
-                knots.append(thrust.table.knots)
-                slopes.append(own[:, :, plane])
-                passed.append(thrust.passed(plane)[:, begin:end, begin:end])
-                first, pieces = last + 1, pieces + len(own)
-    most = max((block.shape[1] for block in passed), default=0)
-    blocks = [
-        np.pad(block, ((0, 0), *2 * [(0, most - block.shape[1])])) for block in passed
-    ]  # fmt: skip
+    every = [
+        (number, thrust, plane)
+        for number, travel in enumerate(system.travels)
+        for thrust in travel.thrusts
+        for plane in range(thrust.planes)
+    ]
+    moved = [_moved(thrust.slopes[:, :, plane]) for _, thrust, plane in every]
+    most = max((len(modes) for modes in moved), default=0)
+    pieces = sum(len(thrust.table.coefficients) for _, thrust, _ in every)
+    slopes, passed = np.zeros((pieces, 3, most)), np.zeros((pieces, most, most))
+    columns, where, knots, first = np.zeros((len(every), most), dtype=np.int64), [], [], 0
+    for t, ((number, thrust, plane), modes) in enumerate(zip(every, moved, strict=True)):
+        own, count, low = thrust.slopes[:, :, plane], len(modes), first + t
+        last = first + len(own)
+        slopes[first:last, :, :count] = own[:, :, modes]
+        passed[first:last, :count, :count] = thrust.passed(plane)[:, modes[:, None], modes]
+        columns[t, :count] = modes
+        where.append((number, low, low + len(own), first, count))
+        knots.append(thrust.table.knots)
+        first = last
     return (
-        np.array(forces),
-        np.array(where, dtype=np.int64).reshape(-1, 6),
-        np.concatenate(knots),
-        np.concatenate([np.zeros((0, 3, system.num_modes)), *slopes]),
-        np.concatenate([np.zeros((0, most, most)), *blocks]),
+        np.array([thrust.force for _, thrust, _ in every], dtype=np.float64),
+        np.array(where, dtype=np.int64).reshape(-1, 5),
+        columns,
+        np.concatenate([np.zeros(0), *knots]),
+        slopes,
+        passed,
+        np.zeros((2, most)),
     )
+
+
+def _moved(slopes: Array) -> Indices:
+    """Modes that slopes (num_pieces, 3, num_modes) read."""
+    reach = np.abs(slopes).max(axis=(0, 1))
+    return np.flatnonzero(reach > _NOTHING * reach.max(initial=0.0))
 
 
 def pushed_by(thrusts: Thrusts, a: Array) -> Pushed:
@@ -61,10 +74,11 @@ def pushed_by(thrusts: Thrusts, a: Array) -> Pushed:
 @njit(**SUMS)
 def press_along(ways: Array, thrusts: Thrusts, a: Array, force: Array, slopes: Array) -> None:
     """Fill in K_G a of all thrusts and the slopes where they act, ``ways`` (num_travels,) in m."""
-    forces, where, knots, powers, passed = thrusts
+    forces, where, columns, knots, powers, passed, scratch = thrusts
+    own, total = scratch
     force[:] = 0.0
     for t in range(forces.size):
-        travel, low, high, first, begin, end = where[t]
+        travel, low, high, first, count = where[t]
         start = low
         while high - low > 1:
             middle = (low + high) // 2
@@ -75,22 +89,26 @@ def press_along(ways: Array, thrusts: Thrusts, a: Array, force: Array, slopes: A
         length = knots[low + 1] - knots[low]
         u = (ways[travel] - knots[low]) / length
         p = first + low - start
-        bent, turned, level = 0.0, 0.0, 0.0
-        for i in range(begin, end):
-            level += powers[p, 0, i] * a[i]
-            turned += powers[p, 1, i] * a[i]
-            bent += powers[p, 2, i] * a[i]
+        for i in range(count):
+            own[i] = a[columns[t, i]]
+        level, turned, bent = 0.0, 0.0, 0.0
+        for i in range(count):
+            level += powers[p, 0, i] * own[i]
+            turned += powers[p, 1, i] * own[i]
+            bent += powers[p, 2, i] * own[i]
         slopes[t] = level + u * (turned + u * bent)
-        scale = forces[t] * length * u
+        scale = length * u
         of_level = scale * (level + u * (turned / 2.0 + u * bent / 3.0))
         of_turned = scale * u * (level / 2.0 + u * (turned / 3.0 + u * bent / 4.0))
         of_bent = scale * u * u * (level / 3.0 + u * (turned / 4.0 + u * bent / 5.0))
-        for i in range(begin, end):
-            total = 0.0
-            for j in range(begin, end):
-                total += passed[p, i - begin, j - begin] * a[j]
-            force[i] += forces[t] * total + of_level * powers[p, 0, i]
-            force[i] += of_turned * powers[p, 1, i] + of_bent * powers[p, 2, i]
+        for i in range(count):
+            total[i] = of_level * powers[p, 0, i] + of_turned * powers[p, 1, i]
+            total[i] += of_bent * powers[p, 2, i]
+        for j in range(count):
+            for i in range(count):
+                total[i] += passed[p, j, i] * own[j]
+        for i in range(count):
+            force[columns[t, i]] += forces[t] * total[i]
 
 
 @njit(**SUMS)

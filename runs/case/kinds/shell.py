@@ -100,15 +100,6 @@ class ShellTable(ModelTable):
             )
         return super().not_drawn
 
-    def _check_drives(self, where: str, boom: Boom) -> None:
-        super()._check_drives(where, boom)
-        if boom.driven and boom.compressed:
-            raise BoomError(
-                where,
-                f"the shell {self.name!r} has the axial forces of the place where it rests; leave "
-                "the model out, or axial and the angle of gravity",
-            )
-
     def describe(self) -> str:
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 
@@ -131,7 +122,11 @@ class ShellTable(ModelTable):
         shell = with_plays_and_loads(
             made, joined.boom, dict(zip(("z", "y"), of_joints, strict=True))
         )
-        return Built(shell.system, shell.num_dofs, shell.seconds, shell.critical_factor, shell)
+        factor = shell.critical_factor
+        if boom.driven and factor is not None:
+            # On the way it is known of beams alone.
+            factor = min(factor, self.critical_factor(boom) or factor)
+        return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
     def options(self) -> ShellOptions:
         """How a boom becomes such shells."""
