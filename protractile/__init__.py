@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
     from dynamics.row_table import RowTable as RowTable
     from dynamics.sided_contact import SidedContact as SidedContact
+    from dynamics.stick_slip import Pulled as Pulled
     from dynamics.trajectory import Trajectory as Trajectory
     from dynamics.travel import SCurve as SCurve
     from dynamics.travel import Stroke as Stroke
@@ -108,6 +109,7 @@ _HOMES = {
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
         "dynamics.row_table": "RowTable",
+        "dynamics.stick_slip": "Pulled",
         "dynamics.trajectory": "Trajectory",
         "dynamics.travel": "SCurve Stroke Travel",
         "geometry.axial": "Thrust with_compression",

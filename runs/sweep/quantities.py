@@ -65,6 +65,8 @@ QUANTITIES = (
     Quantity("swing", "m", "swing while drawn out", 1.0e3, "mm"),
     Quantity("swing_where_begun", "m", "swing at rest where it begins", 1.0e3, "mm", charted=False),
     Quantity("swing_where_ended", "m", "swing at rest where it ends", 1.0e3, "mm", charted=False),
+    Quantity("drive_force", "N", "largest force of a drive that gives way", 1.0e-3, "kN"),
+    Quantity("drive_slip", "m", "longest slip on a drive", 1.0e3, "mm"),
     Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
     Quantity("peak_contact_force", "N", "peak of a blow", 1.0e-3, "kN", charted=False),
     Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
@@ -81,7 +83,8 @@ def measure(results: Results, model: str) -> Measured:
     force is the largest mean of an output interval at any station, the peak of a blow what no pad
     feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
     own over a patch, the damage that of a life at the worst place. Swings are those of
-    :class:`runs.pipeline.answers.Swing`.
+    :class:`runs.pipeline.answers.Swing`; force and slip of drives of a given stiffness are those of
+    :class:`dynamics.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
@@ -91,6 +94,8 @@ def measure(results: Results, model: str) -> Measured:
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "peak_contact_force": summary.peak_contact_force,
         "mass": mass(results.boom),
+        "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
+        "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,

@@ -19,6 +19,7 @@ from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
+from runs.case.pulled import pulled_by
 from runs.case.reading import load
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.inferred import print_inferred
@@ -71,7 +72,7 @@ def test_a_drive_has_a_history(
 
 
 def test_a_drive_in_other_units(tmp_path: Path) -> None:
-    """Reference: analytic, 4000 mm are 4 m."""
+    """Reference: analytic, 4000 mm are 4 m, 2e2 N/mm are 2e5 N/m, 0.5 N s/mm are 500 N s/m."""
     text = DRAWN.split("[[segment]]")[0].replace("[time]", 'units = "mm-t-s"\n\n[time]')
     path = tmp_path / "case.toml"
     path.write_text(
@@ -94,7 +95,7 @@ second_moment_of_area = 2.1829e8
 outer = "arm"
 inner = "fly"
 extension = 5000.0
-drive = { travel = 4000.0, speed = 1000.0, least_overlap = 900.0 }
+drive = { travel = 4000.0, speed = 1000.0, least_overlap = 900.0, stiffness = 2e2, dashpot = 0.5 }
 stations = ["tail", "head"]
 play = 14.0
 stiffness = 1e6
@@ -106,7 +107,9 @@ kind = "finite-element"
 """,
         encoding="utf-8",
     )
-    drive = build_boom(load(str(path))).joints[0].drive
+    case = load(str(path))
+    drive, (pulled,) = build_boom(case).joints[0].drive, pulled_by(case, build_boom(case)).values()
+    assert (pulled.mass, pulled.stiffness, pulled.dashpot) == pytest.approx((550.7, 2e5, 500.0))
     assert drive is not None
     assert drive.reach == pytest.approx((0.0, 4.0))
     assert drive.least_overlap == pytest.approx(0.9)

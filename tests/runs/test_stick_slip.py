@@ -23,9 +23,11 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
+from runs.report.answer_tables import answer_tables
 from runs.report.drive_figures import drives
 from runs.report.drive_tables import stick_slip_table
 from runs.report.figure_context import Pen
+from runs.sweep.quantities import measure
 
 ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
 # Without play, at rest under loads downwards, so that pads press all the time.
@@ -212,6 +214,9 @@ def _check_shown(results: Results, folder: Path) -> None:
         "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
         own.acceleration,
     ]  # fmt: skip
+    assert table.title in [one.title for one in answer_tables(results)]
+    measured = measure(results, "kantorovich-5")
+    assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
     with rc_context(theme.RC):
         _, figure = drives(Pen(results, folder))
     assert figure.path.name == "stick-slip.png"

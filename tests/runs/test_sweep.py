@@ -254,6 +254,8 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
         "swing": "m",
         "swing_where_begun": "m",
         "swing_where_ended": "m",
+        "drive_force": "N",
+        "drive_slip": "m",
         "drive_speed": "m/s",
         "peak_contact_force": "N",
         "energy_residual": "1",
