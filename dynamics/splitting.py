@@ -65,6 +65,9 @@ from dynamics.trajectory import Trajectory
 # peaks want told more finely.
 _CLOSED_STRIDES = np.array([1, 4, 16, 64, 256, 1024])
 
+# Single steps of a system with dashpots before it is asked for a stride again.
+_AGAIN = int(STRIDES[1])
+
 # Part of a contact's force by which its peak may pass what the ends of strides tell.
 _UNTOLD = 0.01
 
@@ -159,10 +162,11 @@ def _march(
         done = 0
         until = 0
         flying = False
+        again = 0
         while done < substeps:
             k = interval * substeps + done
             stride = 0
-            if not (touching or single):
+            if not (touching or single or done < again):
                 if not flying:
                     until = done + min(straight[k], substeps - done)
                     excite(excitations, parts[k], parts[k + until - done], 0.0, 1.0)
@@ -178,6 +182,8 @@ def _march(
                         count = _telling(reach, omega2, rows, stiffness, pressed, step, strides)
                         telling = strides[:count]
                 stride = safe_stride(y, limits, bounds, step, until - done, telling)
+                if dragging and stride == 0:
+                    again = done + _AGAIN
             flying = not (touching or lossy or dragging) and done + strides[stride] < until
             if lossy and stride == 0:
                 done += -k + lossy_steps(
