@@ -68,9 +68,9 @@ def stick_slip_table(results: Results) -> Table | None:
         Column("at most\nm/s²", [one.acceleration for one in found], ".3g"),
     )
     notes = (
-        "By the forces of pads as the boom moves that is drawn as asked. Force: with what weighs "
-        "along and speeds up; it sticks while it is drawn; slips: what it catches up in one of "
-        "them; then its own speed and acceleration.",
+        "Force: against friction, with what weighs along and what is sped up. Sticks: how often it "
+        "comes to stand while it is drawn. Slips: how far it catches up with its drive in one "
+        "slip. Then its own speed and acceleration. The boom moves as it is drawn by a stiff one.",
     )
     return Table("Drives that give way", columns, notes, "stick-slip")
 

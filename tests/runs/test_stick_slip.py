@@ -191,6 +191,21 @@ def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
     assert "stick_slip" not in str(stiff.summary)
 
 
+def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
+    """Reference: analytic. On 1e10 N/m its force is that of the stiff drive against the friction of
+    each moment, and what speeds 550.7 kg up on the S-curve, 0.1 % of the largest apart."""
+    short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.2"}
+    rope = "least_overlap = 1.0, stiffness = 1e10, dashpot = 2e6 }"
+    results = run_case(drawn_by(tmp_path, rope, **short), models=["kantorovich-5"])
+    data = results.trajectories.sel(model="kantorovich-5")
+    time = data["time"].values
+    speed = 4.0 / 1.2 * (1.0 - np.cos(2.0 * np.pi * time / 1.2))
+    asked = data["drive_friction"].values[1:] + 550.7 * np.diff(speed) / np.diff(time)
+    force = data["drive_force"].values[1:]
+    assert force.max() > 9000.0
+    assert np.abs(force - asked)[10:-10].max() < 1e-3 * force.max()
+
+
 def _check_motion(data: xr.Dataset) -> None:
     time, speed = data["time"].values, data["drawn_speed"].values
     friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
