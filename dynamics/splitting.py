@@ -147,7 +147,7 @@ def _march(
     damped, dragging = rates.size > 0, dashpot_rates.size > 0
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
-    single = (given[0] * given[1]).any() or straight.max() < strides[1]
+    single = (given[0] * given[1]).any() or strides.size == 1 or straight.max() < strides[1]
     lossy = friction.size > 0 or limits["damping"].any()
     touching, closed = force.any(), stiffness.any()
     pressed = force
