@@ -14,9 +14,9 @@ from runs.case import reading
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
+from runs.pipeline.means import Means
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case as run_models
-from runs.pipeline.run import silent
 from runs.sweep.variation import Unplaced, find
 
 # How messages call a case that has left its file.
@@ -100,7 +100,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
 
         comm = MPI.COMM_SELF
     with TemporaryDirectory() as meshes:
-        run = run_models(chosen, _CASE, comm, Path(meshes), silent, Cache.of_user())
+        run = run_models(chosen, _CASE, Means(comm, Path(meshes), cache=Cache.of_user()))
     assert run is not None
     run.answer()
     return run.results

@@ -111,6 +111,7 @@ def run(
     from runs.paper import readings, then
     from runs.paper.rules import judge
     from runs.pipeline import estimates
+    from runs.pipeline.means import Means
     from runs.pipeline.run import run_case
     from runs.report import output
     from runs.report.printed import say_what_failed
@@ -126,7 +127,7 @@ def run(
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                run_case(effective, case, comm, Path(), progress.silence, cache)
+                run_case(effective, case, Means(comm, cache=cache))
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
@@ -134,7 +135,7 @@ def run(
             beside(folder) as scratch,
             progress.told([model.name for model in effective.models]) as tell,
         ):
-            finished = run_case(effective, case, comm, scratch, tell, cache, cache)
+            finished = run_case(effective, case, Means(comm, scratch, tell, cache, cache))
             assert finished is not None
             finished.answer()
             verdicts = judge(finished.results)

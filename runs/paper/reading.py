@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -18,8 +17,9 @@ from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
+from runs.pipeline.means import Means
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.run import run_case
 from runs.report.verdict import Judgement
 
 Stiffness = Literal["restored", "literal"]
@@ -200,7 +200,7 @@ def _but_exponent(reading: Reading) -> Reading:
 
 
 def _results(case: Case) -> Results:
-    finished = run_case(case, "paper.toml", None, Path(), silent)
+    finished = run_case(case, "paper.toml", Means())
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")

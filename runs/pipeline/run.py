@@ -7,12 +7,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
+from functools import cached_property, partial
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
@@ -22,7 +21,6 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
 from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.answering import of_model, of_run
@@ -33,21 +31,12 @@ from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models, regular
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
+from runs.pipeline.means import Means, Progress
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import Ensembles, ModelSummary, Peak, StickSlips, Summary
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-# Called with the model's name, the stage, and the part of it that is done.
-Progress = Callable[[str, str, float], None]
-
-
-def silent(model: str, stage: str, part: float) -> None:
-    """A :data:`Progress` that nobody watches."""
 
 
 class Stages:
@@ -79,14 +68,27 @@ class Ran:
     stages: Stages
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Run:
-    """Results, and by the model's name what each shell and each beam leaves."""
+    """Results, and by their names the models that have moved."""
 
     results: Results
-    shells: dict[str, ShellOutput]
-    beams: dict[str, BeamOutput]
     ran: dict[str, Ran]
+
+    @property
+    def shells(self) -> dict[str, ShellOutput]:
+        """What each shell leaves."""
+        return {name: one.shell for name, one in self.ran.items() if one.shell is not None}
+
+    @cached_property
+    def beams(self) -> dict[str, BeamOutput]:
+        """What each beam leaves."""
+        boom = self.results.boom
+        return {
+            name: BeamOutput.of(one.model.lines(boom, one.built), one.moved.trajectory)
+            for name, one in self.ran.items()
+            if one.shell is None
+        }
 
     def answer(self) -> None:
         """Put what a designer asks, answered, into the summary.
@@ -109,15 +111,7 @@ class Run:
         summary.answers = of_run(boom, case, summary, answers)
 
 
-def run_case(
-    case: Case,
-    file: str,
-    comm: MPI.Intracomm | None,
-    mesh_folder: Path,
-    progress: Progress,
-    cache: Cache | None = None,
-    kept: Cache | None = None,
-) -> Run | None:
+def run_case(case: Case, file: str, means: Means) -> Run | None:
     """Run all models of a case. Collective; None but on rank 0.
 
     A model that cannot be computed is in the summary's ``failures``, by its name, with the reason.
@@ -125,32 +119,23 @@ def run_case(
     Args:
         case: a checked one.
         file: how messages call it.
-        comm: the ranks that share the shells and the ensembles; a case without shells can do
-            without.
-        mesh_folder: where gmsh's files go, ``MODEL/SEGMENT.msh``.
-        progress: told about every stage.
-        cache: of reduced shells.
-        kept: where motions are that have ended before, and those that end now are kept.
+        means: of the run.
 
     Raises:
         NumericsError: no model can be computed, or a shell that several ranks share.
     """
     boom = build_boom(case)
-    first_rank = comm is None or comm.rank == 0
     cutoff = None if case.ensemble is None else members.slow_below(boom, case.time)
 
     def run_model(model: Model) -> Ran | None:
         # What overflows is found where it matters, and said there.
         with np.errstate(all="ignore"):
-            return _run_model(
-                boom, model, case, cutoff, comm, mesh_folder / model.name, progress, cache, kept
-            )
+            return _run_model(boom, model, case, cutoff, means)
 
     ran: dict[str, Ran] = {}
     failures: dict[str, str] = {}
     first_failure = None
-    alone = comm is None or comm.size == 1
-    runs = (_beams_beside_shells if alone else _one_by_one)(case.models, run_model)
+    runs = (_beams_beside_shells if means.alone else _one_by_one)(case.models, run_model)
     for number, model in enumerate(case.models, start=1):
         try:
             outcome = runs[model.name]()
@@ -162,40 +147,49 @@ def run_case(
             raise NumericsError(f"{file}: model[{number}]: {error}") from error
         if outcome is not None:
             ran[model.name] = outcome
-    if not first_rank:
+    if not means.first_rank:
         return None
     if first_failure is not None and not ran:
         raise first_failure
-    outcomes = {name: one.moved for name, one in ran.items()}
+    moved = {name: one.moved for name, one in ran.items()}
+    return Run(_results(boom, case, cutoff, moved, failures), ran)
+
+
+def _results(
+    boom: Boom,
+    case: Case,
+    cutoff: float | None,
+    moved: Mapping[str, Finished],
+    failures: dict[str, str],
+) -> Results:
+    """What the motions of a case leave, summed up."""
     summary = Summary(
         title=case.title,
         case_hash=toml.digest(case),
         versions=versions(),
-        models={name: outcome.summary for name, outcome in outcomes.items()},
+        models={name: one.summary for name, one in moved.items()},
         failures=failures,
     )
     # Every file says which case it is of, so that a folder cannot mix two runs unnoticed.
-    trajectories = {name: outcome.trajectory for name, outcome in outcomes.items()}
+    trajectories = {name: one.trajectory for name, one in moved.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
-    ensembles = members.gather(
-        {name: out.ensemble for name, out in outcomes.items() if out.ensemble is not None}
-    )
-    if ensembles is not None and case.ensemble is not None:
+    ensembles = _ensembles(data, moved)
+    if case.ensemble is not None and ensembles is not None:
         summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
-        ensembles = ensembles.assign_attrs(Conventions=CONVENTIONS, case_hash=summary.case_hash)
-        for name, values in ensembles.data_vars.items():
-            values.attrs.update(data[name].attrs)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
-    return Run(
-        Results(case, data, summary, ensembles),
-        {name: one.shell for name, one in ran.items() if one.shell is not None},
-        {
-            name: BeamOutput.of(one.model.lines(boom, one.built), one.moved.trajectory)
-            for name, one in ran.items()
-            if one.shell is None
-        },
-        ran,
+    return Results(case, data, summary, ensembles)
+
+
+def _ensembles(data: xr.Dataset, moved: Mapping[str, Finished]) -> xr.Dataset | None:
+    """Those of all models, with the attributes of the trajectories."""
+    found = members.gather(
+        {name: one.ensemble for name, one in moved.items() if one.ensemble is not None}
     )
+    if found is None:
+        return None
+    for name, values in found.data_vars.items():
+        values.attrs.update(data[name].attrs)
+    return found.assign_attrs(Conventions=CONVENTIONS, case_hash=data.attrs["case_hash"])
 
 
 # Gives what a model leaves, or raises what has kept it from that.
@@ -250,34 +244,32 @@ def _run_model(
     model: Model,
     case: Case,
     cutoff: float | None,
-    comm: MPI.Intracomm | None,
-    mesh_folder: Path,
-    progress: Progress,
-    cache: Cache | None,
-    kept: Cache | None,
+    means: Means,
 ) -> Ran | None:
     """What a model leaves, on rank 0; None elsewhere."""
-    first_rank = comm is None or comm.rank == 0
-    stages = Stages(model.name, progress)
-    if model.needs_shell or first_rank:
-        tools = None if comm is None else workshop(comm, mesh_folder, stages.tell, cache)
+    comm, stages = means.comm, Stages(model.name, means.progress)
+    if model.needs_shell or means.first_rank:
+        meshes = means.mesh_folder / model.name
+        tools = None if comm is None else workshop(comm, meshes, stages.tell, means.cache)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:
-            if comm is None or comm.size == 1 or not model.needs_shell:
+            if means.alone or not model.needs_shell:
                 raise
             raise _SharedFailure(_reason(error)) from error
         stages.seconds |= built.seconds
     with members.workers(comm if case.ensemble else None) as executor:
-        if not first_rank:
+        if not means.first_rank:
             return None
         alone = case.model_copy(
             update={"models": (model,), "title": "", "statements": (), "demand": ()}
         )
         system = built.system
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
-        moving = Stages(model.name, progress)
-        moved = finished(kept, content, lambda: _move(built, model, case, cutoff, executor, moving))
+        moving = Stages(model.name, means.progress)
+        moved = finished(
+            means.kept, content, lambda: _move(built, model, case, cutoff, executor, moving)
+        )
     summary, reduced = moved.summary, built.shell
     if boom.compressed:
         summary.critical_factor = built.critical_factor

@@ -22,9 +22,10 @@ from runs.case import reading as case_file
 from runs.pipeline.answers import Answers, Diagram, ModelAnswers
 from runs.pipeline.at_rest import at_rest, positions
 from runs.pipeline.life import counted, endurance
+from runs.pipeline.means import Means
 from runs.pipeline.modes import modes
 from runs.pipeline.moved import Motions, gone_through
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.run import run_case
 from runs.studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from runs.studies.study import Proof, Study
 
@@ -67,7 +68,7 @@ def answered() -> Answers:
     models = tuple(model for model in case.models if model.name in MODELS)
     with TemporaryDirectory() as meshes:
         short = case.model_copy(update={"models": models, "time": time})
-        run = run_case(short, "coarse.toml", MPI.COMM_SELF, Path(meshes), silent)
+        run = run_case(short, "coarse.toml", Means(MPI.COMM_SELF, Path(meshes)))
     assert run is not None
     run.answer()
     assert run.results.summary.answers is not None

@@ -144,7 +144,7 @@ def comparable_until(
         case: a checked one.
         model: the reference, of the case.
         results: what it has left.
-        comm, meshes, cache: as of :func:`runs.pipeline.run.run_case`.
+        comm, meshes, cache: as of :class:`runs.pipeline.means.Means`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])

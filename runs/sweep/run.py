@@ -29,7 +29,8 @@ from runs.case.user_files import check_left
 from runs.folder.cache import Cache, Files, key
 from runs.folder.versions import program
 from runs.pipeline import members
-from runs.pipeline.run import Progress, run_case, silent
+from runs.pipeline.means import Means, Progress
+from runs.pipeline.run import run_case
 from runs.process import ranks
 from runs.process import workers as processes
 from runs.process.interruption import undone
@@ -189,7 +190,7 @@ def run_point(
         alone = case.model_copy(update={"models": (model,)})
         with TemporaryDirectory(dir=scratch) as meshes:
             try:
-                finished = run_case(alone, "", comm, Path(meshes), silent, cache)
+                finished = run_case(alone, "", Means(comm, Path(meshes), cache=cache))
             except NumericsError as error:
                 # The file, the point and the model's name stand before it where it is shown.
                 failures[model.name] = str(error).removeprefix(": model[1]: ")

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,19 +25,20 @@ from runs.pipeline.at_rest import (
     instants,
     positions,
 )
+from runs.pipeline.means import Means
 from runs.pipeline.models import build
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.run import run_case
 from runs.pipeline.summary import Summary
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+def answers() -> Answers:
     """Of the paper's boom by elements, with play."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.05})
     models = tuple(model for model in case.models if model.name == "timoshenko")
     short = case.model_copy(update={"models": models, "time": time})
-    run = run_case(short, "", None, Path(tmp_path_factory.mktemp("meshes")), silent)
+    run = run_case(short, "", Means())
     assert run is not None
     run.answer()
     # As a folder gives it back.

@@ -24,9 +24,9 @@ from runs.case.kinds.model import Built
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.folder.cache import Cache
+from runs.pipeline.means import Means
 from runs.pipeline.models import build, workshop
 from runs.pipeline.run import run_case as run_models
-from runs.pipeline.run import silent
 from runs.report.output import write
 from runs.studies.motions import move
 from runs.studies.working_load import Point, at_point
@@ -166,7 +166,7 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     alone = case_file.select(case, "", ["sprung"])
     scratch, folder = tmp_path / "meshes", tmp_path / "run"
     folder.mkdir()
-    run = run_models(alone, "", MPI.COMM_SELF, scratch, silent)
+    run = run_models(alone, "", Means(MPI.COMM_SELF, scratch))
     assert run is not None
     run.answer()
     write(run, [], folder, scratch, None)

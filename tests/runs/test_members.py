@@ -17,6 +17,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case, EnsembleTable
+from runs.pipeline.means import Means
 from runs.pipeline.members import slow_below
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
@@ -42,11 +43,8 @@ def told() -> list[tuple[str, str, float]]:
 
 
 @pytest.fixture(scope="module")
-def run(
-    case: Case, told: list[tuple[str, str, float]], tmp_path_factory: pytest.TempPathFactory
-) -> Run:
-    folder = tmp_path_factory.mktemp("mesh")
-    finished = run_case(case, "", None, folder, lambda *what: told.append(what))
+def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
+    finished = run_case(case, "", Means(progress=lambda *what: told.append(what)))
     assert finished is not None
     finished.answer()
     return finished
@@ -145,7 +143,7 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     short = case.model_copy(
         update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
     )
-    without = run_case(short, "", None, tmp_path, lambda *_: None)
+    without = run_case(short, "", Means())
     assert without is not None
     without.answer()
     write(without, [], tmp_path, tmp_path)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,8 +18,9 @@ from protractile.cases import change
 from runs import CASES
 from runs.case.reading import load
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.means import Means
 from runs.pipeline.motion import Plan
-from runs.pipeline.run import Run, run_case, silent
+from runs.pipeline.run import Run, run_case
 
 
 def bouncing() -> Motion:
@@ -52,11 +52,11 @@ def test_a_step_is_halved_twice_at_most() -> None:
         plan.halved(up_to(0.2))
 
 
-def short(name: str, model: str, folder: Path, **values: object) -> Run:
+def short(name: str, model: str, **values: object) -> Run:
     """The run of one model, without answers."""
     case = change(load(str(CASES / name)), **values)
     models = tuple(one for one in case.models if one.name == model)
-    run = run_case(case.model_copy(update={"models": models}), "", None, folder, silent)
+    run = run_case(case.model_copy(update={"models": models}), "", Means())
     assert run is not None
     return run
 
@@ -83,11 +83,10 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
     model: str,
     values: dict[str, object],
     motions: int,
-    tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Reference: the case. Without play, and standing where a drive begins and ends."""
-    run = short(name, model, tmp_path, **values, **{"time.step": 4.0e-5})
+    run = short(name, model, **values, **{"time.step": 4.0e-5})
     steps: list[float] = []
     move = Splitting.__call__
 
@@ -101,10 +100,10 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
 
 
 def test_what_rests_without_play_is_told_where_it_cannot_move(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Reference: the same where it moves."""
-    run = short("coarse.toml", "kantorovich-4", tmp_path, **{"time.duration": 0.03})
+    run = short("coarse.toml", "kantorovich-4", **{"time.duration": 0.03})
     whole = answers(run)
 
     def fail(way: Events, motion: Motion, progress: None = None) -> Trajectory:

@@ -19,7 +19,8 @@ from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.fibres import Fibres, outer_corners
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.means import Means
+from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.summary import Summary
 
@@ -75,7 +76,7 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelAnswers:
     """Of a run, as a folder gives them back."""
     file = folder / "case.toml"
     file.write_text(case.format(model=model), encoding="utf-8")
-    run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
+    run = run_case(case_file.load(str(file)), "", Means())
     assert run is not None
     run.answer()
     found = Summary.model_validate_json(str(run.results.summary)).answers

@@ -20,6 +20,7 @@ from runs.paper import readings
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
 from runs.paper.rules import judge
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.means import Means
 from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
@@ -31,11 +32,11 @@ COARSE = CASES / "coarse.toml"
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run() -> Run:
     """A twentieth of a second of a series."""
     case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"], None)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
-    finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
+    finished = run_case(case, "", Means())
     assert finished is not None
     finished.answer()
     return finished

@@ -11,7 +11,8 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.answers import Added, Answers
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.means import Means
+from runs.pipeline.run import run_case
 from runs.pipeline.trust import known
 from tests.runs.summaries import model_summary, summary_of
 
@@ -23,7 +24,7 @@ def run_of(names: list[str], meshes: Path, comm: MPI.Intracomm | None = None) ->
     """What some models of the paper's boom answer."""
     case = case_file.load(str(CASES / "coarse.toml"))
     models = tuple(model for model in case.models if model.name in names)
-    run = run_case(case.model_copy(update={"models": models}), "", comm, meshes, silent)
+    run = run_case(case.model_copy(update={"models": models}), "", Means(comm, meshes))
     assert run is not None
     run.answer()
     assert run.results.summary.answers is not None

@@ -12,7 +12,8 @@ from geometry.compression import Compression
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.means import Means
+from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import normal_force
 
 # A pin at 1 m, 100 kg/m under 30 degrees, and a cylinder of the triangle 3, 4, 5 at 4 m.
@@ -63,7 +64,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
 def answers_of(text: str, folder: Path) -> Answers:
     file = folder / "case.toml"
     file.write_text(text, encoding="utf-8")
-    run = run_case(case_file.load(str(file)), "", None, folder / "meshes", silent)
+    run = run_case(case_file.load(str(file)), "", Means())
     assert run is not None
     run.answer()
     assert run.results.summary.answers is not None

@@ -12,6 +12,7 @@ from mpi4py import MPI
 
 from runs import CASES
 from runs.case import reading as case_file
+from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.report.document import render
 from runs.report.figures import draw
@@ -30,9 +31,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     mesh_size = 0.5 if any(model.needs_shell for model in whole.models) else None
     case = case_file.select(whole, file, mesh_size=mesh_size, members=0)
     short = case.time.model_copy(update={"duration": 0.15})
-    run = run_case(
-        case.model_copy(update={"time": short}), file, MPI.COMM_SELF, tmp_path, lambda *_: None
-    )
+    run = run_case(case.model_copy(update={"time": short}), file, Means(MPI.COMM_SELF, tmp_path))
     assert run is not None
     run.answer()
     results = run.results

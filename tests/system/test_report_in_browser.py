@@ -14,6 +14,7 @@ import pytest
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
 from runs.paper.rules import judge
+from runs.pipeline.means import Means
 from runs.pipeline.results import read_netcdf
 from runs.pipeline.run import run_case
 from runs.report import output
@@ -50,7 +51,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ensemble = EnsembleTable(members=3, relative=1e-6, seed=1, vary="load")
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
-    finished = run_case(case, "", None, tmp_path_factory.mktemp("mesh"), lambda *_: None)
+    finished = run_case(case, "", Means(mesh_folder=tmp_path_factory.mktemp("mesh")))
     assert finished is not None
     finished.answer()
     finished.results.summary.models["kantorovich-5"].horizons = {

@@ -21,6 +21,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
 from runs.folder.files import beside
+from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.process.notices import NOTICES
 from runs.sweep import run as sweep
@@ -81,7 +82,7 @@ def _shell(cache: Cache) -> bytes:
     case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
     with TemporaryDirectory() as scratch:
-        run = run_case(short, "", MPI.COMM_SELF, Path(scratch), lambda *_: None, cache, cache)
+        run = run_case(short, "", Means(MPI.COMM_SELF, Path(scratch), cache=cache, kept=cache))
     assert run is not None
     left = run.results.trajectories, run.shells["shell"].fields
     return b"".join(bytes(data.to_netcdf(engine="scipy")) for data in left)

@@ -13,7 +13,8 @@ from time import perf_counter
 from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
-from runs.pipeline.run import run_case, silent
+from runs.pipeline.means import Means
+from runs.pipeline.run import run_case
 from runs.report import output
 from runs.report.tables import Table
 
@@ -35,7 +36,7 @@ def leaving(models: Sequence[str]) -> Table:
         comm = MPI.COMM_SELF
     with TemporaryDirectory() as folder:
         meshes = Path(folder) / "meshes"
-        run = run_case(case, str(CASE), comm, meshes, silent, Cache.of_user())
+        run = run_case(case, str(CASE), Means(comm, meshes, cache=Cache.of_user()))
         assert run is not None
         run.answer()
         rows = []
