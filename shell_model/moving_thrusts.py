@@ -51,7 +51,10 @@ def _ways(full: BoomShell, found: Entry, drive: Drive, near: float) -> Array:
     mesh, lines = full.shells[found.segment].mesh, np.zeros(0)
     if mesh is not None:
         along = mesh.points[mesh.triangles, 0]
-        lines = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
+        around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
+        # Nodes are on these but for the digits to which they are rounded.
+        x = np.unique(along)
+        lines = x[np.abs(np.subtract.outer(around, x)).argmin(axis=1)]
     ways = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
     low, high = drive.reach
     return np.asarray(ways[(ways > low - near) & (ways < high + near)])

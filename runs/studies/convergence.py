@@ -51,6 +51,7 @@ STUDIES = (
     "as_computed_then",
     "supports",
     "second_order",
+    "drawn_column",
     "sections",
     "taper",
     "answers",

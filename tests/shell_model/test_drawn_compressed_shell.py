@@ -26,7 +26,7 @@ from tests.shell_model.booms import flat_boom
 
 LAW = PowerContact(1.0e8, 1.0, clearance=7.0e-3)
 DRAWN = Drive(Stroke(2.0, 4.0, 0.1), ("inner", "outer"))
-SIZE = 0.25
+SIZE = 0.3  # of which rings do not lie at round places
 
 
 def telescope(way: float, drive: Drive | None = None) -> Boom:
@@ -66,7 +66,7 @@ def test_on_the_way_it_is_the_shell_that_rests_there() -> None:
         time = float(np.interp(way, travel.history(times), times))
         here = system.standing(time)
         there = told(reduced(way))
-        assert told(here) == pytest.approx(there, rel=1e-5)
+        assert told(here) == pytest.approx(there, rel=1e-4)
     # Without the force that goes along it rests and swings by several times that elsewhere.
     plain = replace(here, softening=np.zeros((0, 0)))
     assert (np.abs(told(plain)[:4] / there[:4] - 1.0) > 5.0e-4).all()
