@@ -170,7 +170,7 @@ def _work_of(system: GapSystem, drives: Array) -> list[Array]:
     moving, of_thrust = row_tables(system)[3], thrust_arrays(system)[1][:, 0]
     at_rows, at_thrusts = np.split(drives, [drives.shape[1] - len(of_thrust)], axis=1)
     return [
-        at_rows[:, moving[moving[:, 1] == number, 0]].sum(axis=1)
+        at_rows[:, np.unique(moving[moving[:, 1] == number, 0])].sum(axis=1)
         + at_thrusts[:, of_thrust == number].sum(axis=1)
         for number in range(len(system.travels))
     ]

@@ -181,7 +181,7 @@ def drawn_steps(
                     place_rows(place, tabled, then)
                     carried[:] = 0.0
                 if fresh and halved:
-                    average(now, then, moving, middles)
+                    average(now, then, moving, m, middles)
                 if fresh and f > 0:
                     filter_rows(between, half, time, filtered)
                     for j in range(f):
@@ -257,8 +257,10 @@ def drawn_steps(
                 else:
                     move(a, v, half)
                 pressed_then = contact_forces(a, touching_rows, terms, y, force)
-                if moves and (pressed_then or f > 0):
-                    carry(now, then, moving, 0, o, a, time, carried)
+                if moves and f > 0:
+                    carry(now, then, moving, m, o, a, time, carried)
+                if moves and pressed_then:
+                    carry(now, then, moving, 0, m, a, time, carried)
                 if pressed_then:
                     loss += damped_kick(
                         v, then, carried, force, limits, 0.5 * time, True, push, driven

@@ -5,8 +5,8 @@ Within a part of a step rows go straight from where they were to where they will
 changes by B̄ Δa + ΔB ā exactly, with the means of both ends: what the modes make of it and what the
 drive does. ΔB a over the time of the part is the convective rate of the gap.
 
-Loops run over slices from 0 on: at any other index numba asks whether it counts from the end, and
-no loop that asks is made of vector instructions.
+Entries of a stretch are counted by numbers without sign: of others numba asks whether they count
+from the end, and no loop that asks is made of vector instructions.
 """
 
 from __future__ import annotations
@@ -20,12 +20,16 @@ from dynamics.kernels.compiled import SUMS
 from dynamics.travel import KINDS
 
 # Knots of all travels in m, where those of each begin (num_travels + 1,), coefficients of all
-# pieces (num_pieces of all rows, 4, num_modes), and for each row that moves its position among all
-# rows, its travel, the first of its pieces, and between which entries it changes (num_moving, 5).
+# pieces (num_pieces of all rows, 4, num_modes), and for each stretch of entries in which a row
+# changes the position of the row among all, its travel, the first of its pieces, and between which
+# entries it lies (num_stretches, 5).
 Tables = tuple[Array, Indices, Array, Indices]
 
 # An entry that changes by a smaller part of the largest is constant but for round-off.
 _CONSTANT = 1.0e-13
+
+# Stretches with fewer constant entries between them are one.
+_NEAR = 8
 
 
 def stacked_rows(system: GapSystem) -> Array:
@@ -38,13 +42,15 @@ def row_tables(system: GapSystem) -> Tables:
     rubbing = any(f.pressed_by or f.normal_force * f.coefficient for f in system.frictions)
     firsts = np.cumsum([0, *(len(getattr(system, kind)) for kind in KINDS)])
     first_of = dict(zip(KINDS, firsts[:-1].tolist(), strict=True))
-    coefficients, moving, pieces = [np.zeros((0, 4, system.num_modes))], [], 0
+    coefficients, pieces = [np.zeros((0, 4, system.num_modes))], 0
+    moving: list[tuple[int, ...]] = []
     for number, travel in enumerate(system.travels):
         for row, (kind, position) in enumerate(travel.moving):
             if kind == "friction_rows" and not rubbing:
                 continue
             cubics = travel.table.coefficients[:, :, row]
-            moving.append((first_of[kind] + position, number, pieces, *_changing(cubics)))
+            own = first_of[kind] + position, number, pieces
+            moving.extend((*own, *stretch) for stretch in _stretches(cubics))
             coefficients.append(cubics)
             pieces += len(cubics)
     knots = [travel.table.knots for travel in system.travels]
@@ -53,33 +59,35 @@ def row_tables(system: GapSystem) -> Tables:
     return np.concatenate(knots), starts, flat, np.array(moving, dtype=np.int64).reshape(-1, 5)
 
 
-def _changing(cubics: Array) -> tuple[int, int]:
-    """From which to before which entry a row (num_pieces, 4, num_modes) changes."""
+def _stretches(cubics: Array) -> list[tuple[int, int]]:
+    """From which to before which entries a row (num_pieces, 4, num_modes) changes."""
     reach = np.abs(cubics[:, 1:]).max(axis=(0, 1)) + np.ptp(cubics[:, 0], axis=0)
     (entries,) = np.nonzero(reach > _CONSTANT * np.abs(cubics).max(initial=0.0))
-    return (int(entries[0]), int(entries[-1]) + 1) if entries.size else (0, 0)
+    apart = np.split(entries, np.flatnonzero(np.diff(entries) > _NEAR) + 1)
+    return [(int(some[0]), int(some[-1]) + 1) for some in apart if some.size]
 
 
 @njit(**SUMS)
 def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
     """Set those of all rows that move to where travels have come, ``ways`` (num_travels,) in m."""
     knots, starts, coefficients, moving = tables
+    found, low, u = -1, 0, 0.0
     for m in range(moving.shape[0]):
         row, travel, first, begin, end = moving[m]
-        low, high = starts[travel], starts[travel + 1] - 1
-        while high - low > 1:
-            middle = (low + high) // 2
-            if knots[middle] <= ways[travel]:
-                low = middle
-            else:
-                high = middle
-        u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
-        cubic = coefficients[first + low - starts[travel]]
-        c0, c1 = cubic[0, begin:end], cubic[1, begin:end]
-        c2, c3 = cubic[2, begin:end], cubic[3, begin:end]
-        entries = rows[row, begin:end]
-        for i in range(entries.size):
-            entries[i] = c0[i] + u * (c1[i] + u * (c2[i] + u * c3[i]))
+        if travel != found:
+            found, low, high = travel, starts[travel], starts[travel + 1] - 1
+            while high - low > 1:
+                middle = (low + high) // 2
+                if knots[middle] <= ways[travel]:
+                    low = middle
+                else:
+                    high = middle
+            u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
+        piece = first + low - starts[travel]
+        for i in range(np.uint64(begin), np.uint64(end)):
+            bent = coefficients[piece, 2, i] + u * coefficients[piece, 3, i]
+            straight = coefficients[piece, 1, i] + u * bent
+            rows[row, i] = coefficients[piece, 0, i] + u * straight
 
 
 @njit(**SUMS)
@@ -94,27 +102,27 @@ def carry(
     rates: Array,
 ) -> None:
     """Fill in the convective rates ΔB a/τ in m/s of the rows from ``first`` to before ``last``."""
+    for j in range(first, last):
+        rates[j] = 0.0
     for m in range(moving.shape[0]):
         j = moving[m, 0]
         if not first <= j < last:
             continue
-        begin, end = moving[m, 3:]
-        old, new, part = now[j, begin:end], then[j, begin:end], a[begin:end]
         total = 0.0
-        for i in range(part.size):
-            total += (new[i] - old[i]) * part[i]
-        rates[j] = total / time
+        for i in range(np.uint64(moving[m, 3]), np.uint64(moving[m, 4])):
+            total += (then[j, i] - now[j, i]) * a[i]
+        rates[j] += total / time
 
 
 @njit(**SUMS)
-def average(now: Array, then: Array, moving: Indices, middle: Array) -> None:
-    """Fill in the rows that move as they are in the mean."""
+def average(now: Array, then: Array, moving: Indices, first: int, middle: Array) -> None:
+    """Fill in the rows from ``first`` on that move as they are in the mean."""
     for m in range(moving.shape[0]):
         j = moving[m, 0]
-        begin, end = moving[m, 3:]
-        old, new, mean = now[j, begin:end], then[j, begin:end], middle[j, begin:end]
-        for i in range(mean.size):
-            mean[i] = 0.5 * (old[i] + new[i])
+        if j < first:
+            continue
+        for i in range(np.uint64(moving[m, 3]), np.uint64(moving[m, 4])):
+            middle[j, i] = 0.5 * (now[j, i] + then[j, i])
 
 
 @njit(**SUMS)
@@ -122,10 +130,8 @@ def arrive(now: Array, then: Array, moving: Indices) -> None:
     """Set the rows that move to where they come."""
     for m in range(moving.shape[0]):
         j = moving[m, 0]
-        begin, end = moving[m, 3:]
-        old, new = now[j, begin:end], then[j, begin:end]
-        for i in range(old.size):
-            old[i] = new[i]
+        for i in range(np.uint64(moving[m, 3]), np.uint64(moving[m, 4])):
+            now[j, i] = then[j, i]
 
 
 @njit(**SUMS)

@@ -44,6 +44,7 @@ SIZES = Sizes(
     members=3,
     shell_members=0,
     left=("series",),
+    drawn=("kantorovich-5",),
 )
 
 
@@ -111,12 +112,15 @@ def test_every_table_is_complete(folder: Path, data: Any) -> None:
     assert [cost["modes"] for cost in data["steps"]] == [5, 7]
     assert [cost["what"] for cost in data["leaving"]] == ["without snapshots", "with snapshots"]
     assert min(cost["processor s"] for cost in data["leaving"]) > 0.0
+    assert [cost["resisted by"] for cost in data["drawing"]] == ["nothing", "friction", "dashpots"]
+    for cost in data["drawing"]:
+        assert cost["times"] == pytest.approx(cost["drawn out s"] / cost["at rest s"])
     assert {entry["ensemble"] for entry in data["ensembles"]} == {
         "3 five-term series, event-driven",
         "3 five-term series, splitting",
     }
     text = (folder / "bench.md").read_text(encoding="utf-8")
-    assert text.count("\n## ") == 5
+    assert text.count("\n## ") == 6
     for how in ("as one writes it in NumPy", "compiled by numba"):
         assert text.count(f"With the same right-hand side {how}, the best of solve_ivp is ") == 2
     assert text.count("odeint, whose loop is in Fortran: ") == 4

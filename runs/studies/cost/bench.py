@@ -37,6 +37,7 @@ from runs.process import notices
 from runs.report.tables import Table, wide_console
 from runs.report.theme import repeated
 from runs.studies.cost import scaling
+from runs.studies.cost.drawing import MODELS, drawing
 from runs.studies.cost.generic_solvers import (
     METHODS,
     OUTPUT_STEP,
@@ -93,6 +94,7 @@ class Sizes:
         members: of the ensemble of series.
         shell_members: of the ensemble of shells, 0 for none.
         left: models of the run whose leaving is timed.
+        drawn: models that are drawn out.
     """
 
     duration: float = 10.0
@@ -106,6 +108,7 @@ class Sizes:
     members: int = 256
     shell_members: int = 32
     left: Sequence[str] = ("series", "timoshenko", "shell")
+    drawn: Sequence[str] = MODELS
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,6 +320,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
         partial(steps, sizes),
         partial(ensembles, case, sizes),
         partial(leaving, sizes.left),
+        partial(drawing, sizes.drawn, sizes.duration),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
     data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
