@@ -17,6 +17,7 @@ from dynamics.predictability.comparison import (
     Pointwise,
     compare,
 )
+from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.pipeline.summary import Comparisons, Levels, Whole
 
@@ -28,17 +29,6 @@ DECIDES: Mapping[str, str] = {
     "peaks": PeakDifferences.decides,
     "distributions": Distributions.decides,
 }
-
-
-def regular(case: Case) -> bool:
-    """Whether dry friction keeps motions comparable from moment to moment.
-
-    It does under forces that are given, at each station; what contacts press does not.
-    """
-    return all(
-        joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
-        for joint in case.joints
-    )
 
 
 def reference_of(models: Iterable[Model]) -> str | None:

@@ -21,8 +21,8 @@ from dynamics.step import contact_step
 from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
+from runs.case.regularity import regular
 from runs.case.schema import Case, Model
-from runs.pipeline.comparisons import regular
 from runs.pipeline.models import build
 from runs.pipeline.motion import asked
 

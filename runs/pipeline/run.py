@@ -20,6 +20,7 @@ from geometry.boom import Boom
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import Built
+from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
@@ -28,7 +29,7 @@ from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
 from runs.pipeline.card import card
 from runs.pipeline.cautions import static_tip
-from runs.pipeline.comparisons import compare_models, regular
+from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
 from runs.pipeline.means import Means, Progress

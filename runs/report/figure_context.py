@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
-from runs.pipeline.comparisons import regular
+from runs.case.regularity import regular
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dynamics.predictability.horizon import SHARES
 from runs.case.build import contact_laws
-from runs.pipeline.comparisons import regular
+from runs.case.regularity import regular
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import Cell, Column, Table

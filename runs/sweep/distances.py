@@ -20,8 +20,8 @@ from dynamics.predictability.ensemble import Member, Vary, run_members
 from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from runs.case.build import build_boom
+from runs.case.regularity import regular
 from runs.case.schema import Case, Model
-from runs.pipeline.comparisons import regular
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
