@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final, Literal, TypeVar
 
 import matplotlib
 import numpy as np
@@ -20,10 +21,15 @@ from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
 from runs.sweep.figures import RC, at_ends, finish, in_shown_units, scale_axis
 from runs.sweep.quantities import Quantity
 
+_Word = TypeVar("_Word", bound=str)
+
 # Below the first level, between them, beyond the last one.
 _SHADES = ("#2e7d32", "#a5c882", "#f2c14e", "#b23a2e")
 # In percent: more is as bad, and less as good.
 _MOST, _LEAST = 100.0, 0.01
+# Where letters stand at the first and the last place along an axis.
+_SIDES: Final = ("left", "right")
+_ENDS: Final = ("bottom", "top")
 # Inches of a map beside another one.
 _COLUMN = 3.6
 
@@ -100,6 +106,9 @@ def _maps(
         where = ", ".join(f"{key} {part[key].item():g}" for key in before)
         column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
     sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
+    if quantity.name == TIP_OFF and data[UNTIL].min() < data[UNTIL].max():
+        until = f"compared until {data[UNTIL].max():g} s, or until where seconds stand"
+        sheet.supxlabel(until, x=0.02, ha="left", fontsize=9.0)
     title = f"Distance from {reference}: {quantity.title}"
     finish(sheet, title, folder / f"sweep-{quantity.name.replace('_', '-')}.png")
 
@@ -131,4 +140,10 @@ def _say_until_when(axes: Axes, until: xr.DataArray, longest: float) -> None:
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
-        axes.text(x[column], y[row], text, fontsize=7.0, ha="center", va="center")
+        ha, va = _inwards(column, x.size, _SIDES), _inwards(row, y.size, _ENDS)
+        axes.text(x[column], y[row], text, fontsize=7.0, ha=ha, va=va)
+
+
+def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
+    """How letters are aligned that are not to leave a panel."""
+    return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
