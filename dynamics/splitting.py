@@ -52,10 +52,12 @@ from dynamics.kernels.integrator_state import (
     friction_arrays,
     initial_state,
     look,
+    no_excitations,
     system_arrays,
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
 from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, move, tabulate, travel
+from dynamics.kernels.pressed_steps import pressed_steps
 from dynamics.kernels.strides import STRIDES, closing_bounds, dragged_speeds, safe_stride
 from dynamics.motion import Motion
 from dynamics.step import DRAGGED, contact_step
@@ -150,6 +152,7 @@ def _march(
     single = (given[0] * given[1]).any() or strides.size == 1 or straight.max() < strides[1]
     lossy = friction.size > 0 or limits["damping"].any()
     touching, closed = force.any(), stiffness.any()
+    plain = not (lossy or damped or dragging or excited or closed)
     pressed = force
     if closed:
         pressed = np.zeros(y.size)
@@ -164,6 +167,11 @@ def _march(
         flying = False
         again = 0
         while done < substeps:
+            if plain and touching:
+                left = substeps - done
+                done += pressed_steps(state, system, touch, flows[0], step, left, substeps)
+                touching = force.any()
+                continue
             k = interval * substeps + done
             stride = 0
             if not (touching or single or done < again):
@@ -289,18 +297,23 @@ class _Steps:
     ) -> int:
         """Advance from the step ``first`` as :func:`_march` does."""
         contacts, step = self.contacts, self.step
-        times = step * np.arange(first, first + len(out[0]) * substeps + 1)
         laws = contacts.opened.laws
         springs = contacts.stiffness, contacts.preload, contact_terms(laws), contact_limits(laws)
         before = state[3].copy()
         contacts.enter(state)
         made: int = _march(
             state, self.strides, self.flows, self.system, springs, self.damping, self.dry,
-            excitation_arrays(contacts.system, times, step), self.space, step, substeps, steady,
+            self._excitations(first, len(out[0]) * substeps), self.space, step, substeps, steady,
             out,
         )  # fmt: skip
         contacts.leave(state, before, tuple(array[:made] for array in out))
         return made
+
+    def _excitations(self, first: int, steps: int) -> Excitations:
+        system = self.contacts.system
+        if not system.excitations:
+            return no_excitations(system.num_modes, 1 << steps.bit_length(), self.step)
+        return excitation_arrays(system, self.step * np.arange(first, first + steps + 1), self.step)
 
 
 def integrate(

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numba import njit
 
@@ -84,6 +86,18 @@ def excitation_arrays(system: GapSystem, times: Array, step: float) -> Excitatio
     straight = np.repeat(ends, np.diff(ends, prepend=0)) - np.arange(times.size - 1)
     samples = np.ascontiguousarray(samples.reshape(len(histories), knots.size).T)
     return loads, samples, spans, parts, straight, np.zeros((3, system.num_modes))
+
+
+@lru_cache(maxsize=4)
+def no_excitations(num_modes: int, steps: int, step: float) -> Excitations:
+    """What :func:`excitation_arrays` gives where there are none, for up to so many steps.
+
+    It would take as long as the steps themselves while nothing touches. Nobody writes there but
+    zeros.
+    """
+    parts = np.arange(steps + 1)
+    none, scratch = np.zeros((0, num_modes)), np.zeros((3, num_modes))
+    return none, np.zeros((steps + 1, 0)), np.full(steps, step), parts, steps - parts[:-1], scratch
 
 
 def initial_state(system: GapSystem, position: Array, velocity: Array) -> State:
