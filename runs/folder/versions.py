@@ -56,6 +56,7 @@ def sources(folders: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
+@cache
 def program() -> dict[str, str | None]:
     """What decides a result beside its data: the sources, and the libraries that compute."""
     # As installed: what a process has loaded says nothing of what another one will compute.

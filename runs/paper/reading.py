@@ -16,6 +16,7 @@ from dynamics.predictability.ensemble import perturbations
 from runs.case.kinds.kantorovich import KantorovichTable
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
+from runs.folder.memory import Memory
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.pipeline.means import Means
 from runs.pipeline.results import Results
@@ -153,9 +154,27 @@ class Judged:
         return [key for key, finding in self.findings.items() if finding.verdict == "contradicted"]
 
 
-def judge_reading(reading: Reading, paper: Case, members: int = MEMBERS) -> Judged:
-    """Run a reading and judge all statements but S9, which takes several readings."""
-    runs = [_results(reading.case(paper, change)) for change in perturbations(members, CHANGE, 0)]
+def by_base(readings: Sequence[Reading]) -> list[list[Reading]]:
+    """Groups of readings that differ in the base of the series alone."""
+    groups: dict[Reading, list[Reading]] = {}
+    for reading in readings:
+        groups.setdefault(replace(reading, base="complete"), []).append(reading)
+    return [*groups.values()]
+
+
+def judge_bases(readings: Sequence[Reading], paper: Case, members: int) -> list[Judged]:
+    """Judge one of these groups, all of whose readings have the same elements."""
+    motions = Memory()
+    return [_judge(reading, paper, members, motions) for reading in readings]
+
+
+def _judge(reading: Reading, paper: Case, members: int, motions: Memory) -> Judged:
+    """Run a reading and judge all statements but S9, which takes several readings.
+
+    Motions of other readings are not made again, and its own join them.
+    """
+    changes = perturbations(members, CHANGE, 0)
+    runs = [_results(reading.case(paper, change), motions) for change in changes]
     first = runs[0]
     findings = {
         verdict.id: Finding(
@@ -199,8 +218,8 @@ def _but_exponent(reading: Reading) -> Reading:
     return replace(reading, exponent=0.0)
 
 
-def _results(case: Case) -> Results:
-    finished = run_case(case, "paper.toml", Means())
+def _results(case: Case, motions: Memory) -> Results:
+    finished = run_case(case, "paper.toml", Means(kept=motions))
     assert finished is not None
     for model, why in finished.results.summary.failures.items():
         raise NumericsError(f"{model}: {why}")

@@ -39,8 +39,9 @@ from runs.paper.reading import (
     Judged,
     Reading,
     Stiffness,
+    by_base,
+    judge_bases,
     judge_exponents,
-    judge_reading,
 )
 from runs.paper.rules import DIVERGENCE
 from runs.process import notices
@@ -163,8 +164,9 @@ def survey(
     """Run, print, and write ``readings.json``, ``readings.md`` and ``readings.html``."""
     paper = case_file.load(str(PAPER))
     with ThreadPoolExecutor(2) as pool:
-        runs = pool.map(lambda reading: judge_reading(reading, paper, members), readings)
-        judged = judge_exponents(list(runs))
+        groups = pool.map(lambda group: judge_bases(group, paper, members), by_base(readings))
+        found = {entry.reading: entry for group in groups for entry in group}
+    judged = judge_exponents([found[reading] for reading in readings])
     tables = shown(judged)
     tables[0].show(console)
     entries: list[dict[str, Any]] = [

@@ -15,7 +15,8 @@ import xarray as xr
 
 from dynamics.trajectory import Trajectory
 from runs.folder import records
-from runs.folder.cache import Cache, Files, key
+from runs.folder.cache import Files, key
+from runs.folder.memory import Keeper
 from runs.folder.versions import program
 from runs.pipeline.summary import ModelSummary
 
@@ -30,26 +31,27 @@ class Finished:
 
 
 def finished(
-    cache: Cache | None, content: Sequence[Any], compute: Callable[[], Finished]
+    keeper: Keeper | None, content: Sequence[Any], compute: Callable[[], Finished]
 ) -> Finished:
-    """A motion as ``compute`` gives it, from the cache if it has ended before.
+    """A motion as ``compute`` gives it, or as it was kept when it ended before.
 
     Args:
-        cache: of the user, which need not be writable; always computed unless given.
+        keeper: of motions, such as the user's cache, which need not be writable; always computed
+            unless given.
         content: all that it depends on.
         compute: the motion.
 
     Raises:
         NumericsError: it cannot be computed.
     """
-    if cache is None:
+    if keeper is None:
         return compute()
     name = key(list(content), program())
-    found = cache.load(name, _read)
+    found = keeper.load(name, _read)
     if found is not None:
         return found
     result = compute()
-    cache.remember(name, records.pack(result))
+    keeper.remember(name, records.pack(result))
     return result
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runs.folder.cache import Cache
+from runs.folder.memory import Keeper
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -38,7 +39,7 @@ class Means:
     mesh_folder: Path = Path()
     progress: Progress = silent
     cache: Cache | None = None
-    kept: Cache | None = None
+    kept: Keeper | None = None
 
     @property
     def first_rank(self) -> bool:

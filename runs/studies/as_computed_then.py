@@ -52,7 +52,7 @@ def told(survey: Survey) -> Study:
 def outcome_table(survey: Survey) -> Table:
     """A row for each statement."""
     rows = [
-        (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes().items()
+        (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes.items()
     ]
     return Table.of_rows(
         "then-statements",
@@ -252,22 +252,23 @@ def _cut(time: Array, values: Array) -> tuple[list[float], list[float]]:
     return _curve(time[shown], values[shown])
 
 
-def leave(survey: Survey, folder: Path) -> None:
-    """Write ``then.json`` and ``then.md``."""
+def leave(survey: Survey, tables: Sequence[Table], folder: Path) -> None:
+    """Write ``then.json`` and ``then.md`` with these tables."""
     cases = [case_file.load(str(path)) for path in (WITHOUT, WITH)]
     data = {
         "case_hashes": [toml.digest(case) for case in cases],
-        "outcomes": {key: asdict(found) for key, found in survey.outcomes().items()},
+        "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
     }
-    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in told(survey).tables])
+    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in tables])
 
 
 def main() -> None:
     """Print the tables, and leave them where the verdicts look for them."""
     survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
-    for table in told(survey).tables:
+    tables = told(survey).tables
+    for table in tables:
         table.text.show(wide_console())
-    leave(survey, OUT)
+    leave(survey, tables, OUT)
     print(f"written to {OUT}")
 
 

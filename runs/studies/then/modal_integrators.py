@@ -104,9 +104,7 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
     )
     gaps = states @ system.rows.T
     forces, energies = np.zeros(gaps.shape), np.zeros((n + 1, len(ENERGIES)))
-    for k in range(lasted + 1):
-        law_forces(gaps[k], terms, forces[k])
-        energies[k, 2] = contact_energy(gaps[k], terms)
+    _press(gaps[: lasted + 1], terms, forces, energies[:, 2])
     energies[:, 0] = 0.5 * (speeds**2).sum(axis=1)
     energies[:, 1] = 0.5 * states**2 @ system.omega2
     energies[:, 3] = (states - states[0]) @ system.load
@@ -128,6 +126,14 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
         contact_changes=int(np.count_nonzero(np.diff(pressed, axis=0))),
     )
     return Stepped(trajectory, lasted, unsettled)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
+    """Fill in what contacts press with and hold, at gaps (num_times, num_rows)."""
+    for k in range(len(gaps)):
+        law_forces(gaps[k], terms, forces[k])
+        energy[k] = contact_energy(gaps[k], terms)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -19,17 +19,17 @@ import numpy as np
 from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Splitting, suited
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import changed, perturbations
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom
-from runs.case.schema import Case
+from runs.case.schema import Case, Model
 from runs.paper.parting import peaks_apart
 from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.pipeline.members import slow_below
+from runs.pipeline.motion import Plan
 from runs.studies.motions import gap_system, model_of
 from runs.studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
@@ -44,8 +44,6 @@ MODES = (6, 8, 10, 12, 14)
 # Loads a little changed: each run is a sample.
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 DURATION = 10.0
-# Of the converged elements in s.
-FINE = 2.5e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +197,7 @@ class Example:
         cutoff = slow_below(boom, case.time)
         assert cutoff is not None
         runs = _side_by_side(
-            lambda one: Moved.of(_well(changed(Motion(systems[one[1]], DURATION), "load", one[0]))),
+            lambda one: Moved.of(_well(case, systems[one[1]], model_of(case, one[1]), one[0])),
             list(product(factors(members), names)),
         )
         well = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
@@ -254,10 +252,10 @@ def _side_by_side(move: Callable[[Any], Moved], tasks: Sequence[Any]) -> list[Mo
         return list(pool.map(move, tasks))
 
 
-def _well(motion: Motion) -> Trajectory:
-    """By this program's own integrators."""
-    way = suited(motion)
-    return (Splitting(FINE) if isinstance(way, Splitting) else way)(motion)
+def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Trajectory:
+    """As a run of the case moves the model."""
+    plan = Plan.of(system, case, model)
+    return plan.integrator(changed(plan.motion, "load", factor))
 
 
 def _then(how: Numerics, system: GapSystem, put_in: float, factor: float) -> Moved:

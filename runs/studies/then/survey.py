@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -69,7 +70,7 @@ class Outcome:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Survey:
     """Every run of both examples.
 
@@ -104,6 +105,7 @@ class Survey:
         printed = {how: [one.as_printed(how) for one in examples] for how in all_numerics()}
         return cls(without, with_friction, of_free, of_rubbed, reached, printed)
 
+    @cached_property
     def outcomes(self) -> dict[str, Outcome]:
         """By the statement."""
         return {"S3": self._s3(), "S7": self._s7(), "S8": self._s8(), "S10": self._s10()}

@@ -149,7 +149,7 @@ def test_outcomes_follow_from_the_runs() -> None:
     """
     alike, parting = (swing(), swing(), swing()), (swing(), swing(), swing(late=0.4))
     lost = sample(*alike, gained=2.0, since=6.5)
-    outcomes = survey([sample(*parting), sample(*parting), lost, lost], 2.0).outcomes()
+    outcomes = survey([sample(*parting), sample(*parting), lost, lost], 2.0).outcomes
     first = str(Numerics(all_numerics()[0].scheme, True, STEPS[0]))
     assert (outcomes["S3"].shown, outcomes["S3"].why) == (True, f"in 50 % of runs by {first}")
     assert outcomes["S7"].shown
@@ -161,11 +161,12 @@ def test_outcomes_follow_from_the_runs() -> None:
 
 def test_the_verdicts_read_what_the_study_leaves(tmp_path: Path) -> None:
     done = survey([sample(swing(), swing(), swing())], 2.0)
-    leave(done, tmp_path)
+    tables = told(done).tables
+    leave(done, tables, tmp_path)
     case = case_file.load(str(WITH))
     verdict = Verdict("S7", "", None, None, "", "undecided", "")
     (found,) = then.beside([verdict], tmp_path, case)
-    assert found.then == f"not shown: {done.outcomes()['S7'].why}"
-    names = [table.name for table in told(done).tables]
+    assert found.then == f"not shown: {done.outcomes['S7'].why}"
+    names = [table.name for table in tables]
     text = (tmp_path / "then.md").read_text(encoding="utf-8")
     assert len(names) == text.count("| :--")
