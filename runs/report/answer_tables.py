@@ -214,12 +214,16 @@ def life_table(results: Results) -> Table | None:
         Column("equivalent range\nMPa", [life.equivalent for _, life in rows], ".4g", PER_MEGA),
     ]
     if any(life.damage is not None for _, life in rows):
-        columns.append(Column("damage of a run", [life.damage for _, life in rows], ".3g"))
+        damages = [life.damage for _, life in rows]
+        columns.append(Column("damage of a run", damages, ".3g"))
+        borne = [1.0 / damage if damage else None for damage in damages]
+        columns.append(Column("runs to failure", borne, ".3g"))
     if any(life.life_damage is not None for _, life in rows):
         columns.append(Column("of its life", [life.life_damage for _, life in rows], ".3g"))
     notes = (
         "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: what, once "
-        "in a run, does as much as all of them at a slope of 3.",
+        "in a run, does as much as all of them at a slope of 3. Runs to failure: how often its "
+        "motion may come until the damage is 1; none where no range does any.",
     )
     return Table("Life", columns, notes, "life")
 

@@ -96,7 +96,8 @@ class Drawing:
 def boom(pen: Pen) -> list[Figure]:
     """What the run is of."""
     path = pen.folder / "boom.png"
-    draw_boom_of(pen.case, path)
+    if not path.exists():
+        draw_boom_of(pen.case, path)
     return [Figure(path, "The boom", CAPTION, part="case")]
 
 

@@ -169,7 +169,9 @@ class Pen:
             sheet.legend([*named.values()], [*named], loc="outside lower left", ncols=2)
         sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
         path = self.folder / f"{stem}.png"
-        sheet.savefig(path)
+        # One that is there is of the same numbers.
+        if not path.exists():
+            sheet.savefig(path)
         if chart is not None and chart.thinned:
             caption += THINNED
         return Figure(path, title, caption, statements, part, chart)

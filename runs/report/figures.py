@@ -46,7 +46,7 @@ def draw(results: Results, folder: Path) -> list[Figure]:
 
     Args:
         results: one run.
-        folder: where the PNG files go; it must exist.
+        folder: where the PNG files go; it must exist. Those that are there stay as they are.
     """
     with matplotlib.rc_context(theme.RC):
         pen = Pen(results, folder)

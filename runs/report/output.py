@@ -8,11 +8,13 @@ import json
 import shutil
 from collections.abc import Sequence
 from dataclasses import asdict
+from hashlib import sha256
 from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import matplotlib
 import numpy as np
 import xarray as xr
 
@@ -20,6 +22,7 @@ from runs.case import toml
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
 from runs.folder.files import beside, whole
+from runs.folder.versions import program
 from runs.pipeline.comparisons import leading
 from runs.pipeline.results import (
     CASE,
@@ -51,6 +54,7 @@ CALIBRATION = "calibration.json"
 STRESSES = "stress.nc"
 SERIES = "fields"
 FIGURES = "figures"
+DRAWN_OF = ".drawn-of"
 LATER = "they were not asked for; protractile snapshot draws them"
 
 
@@ -186,10 +190,25 @@ def write_report(
 
 
 def _draw_figures(results: Results, folder: Path) -> list[Figure]:
-    """Those that a run has the numbers for, in place of all earlier ones."""
-    shutil.rmtree(folder / FIGURES, ignore_errors=True)
-    (folder / FIGURES).mkdir()
-    return draw(results, folder / FIGURES)
+    """Those that a run has the numbers for, in place of all earlier ones of anything else."""
+    figures, known = folder / FIGURES, folder / DRAWN_OF
+    drawn_of = _drawn_of(results, folder)
+    figures.mkdir(exist_ok=True)
+    if not known.is_file() or known.read_text(encoding="utf-8") != drawn_of:
+        shutil.rmtree(figures)
+        figures.mkdir()
+    drawn = draw(results, figures)
+    _write_text(known, drawn_of)
+    return drawn
+
+
+def _drawn_of(results: Results, folder: Path) -> str:
+    """SHA-256 of all that decides what figures look like: data and this program."""
+    bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
+    digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
+    for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):
+        digest.update(path.read_bytes() if path.is_file() else b"")
+    return digest.hexdigest()
 
 
 def _write_pages(

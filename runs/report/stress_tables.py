@@ -12,7 +12,7 @@ from runs.report.tables import Column, Table
 from runs.report.theme import number
 
 if TYPE_CHECKING:
-    from shell_model.stress.summary import StressSummary
+    from shell_model.stress.summary import LargestPatch, StressSummary
 
 PER_KILO, PER_MEGA, PERCENT = 1.0e-3, 1.0e-6, 100.0
 
@@ -37,13 +37,7 @@ def wall_tables(results: Results) -> list[Table]:
         Column("shear force\nkN", [carried.shear for *_, carried in walls], ".2f", PER_KILO),
         Column("moment\nkN m", [carried.moment for *_, carried in walls], ".2f", PER_KILO),
     )
-    largest = [
-        f"{name}, at {stress.time:.3f} s: the largest von Mises stress of the run, "
-        f"{number(PER_MEGA * stress.von_mises, 3)} MPa{_of_yield(results.case, stress)}, at "
-        f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
-        f"{stress.wall!r}."
-        for name, stress in shells.items()
-    ]
+    largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
     means = (
         "Means over the row of elements at x, at a mesh line of that towards the tip. Axial forces "
         "pull; shear forces act on the part before the section, along each wall, upwards where it "
@@ -53,7 +47,24 @@ def wall_tables(results: Results) -> list[Table]:
     return [Table(title, columns, (*largest, means), "walls")]
 
 
-def _of_yield(case: Case, stress: StressSummary) -> str:
+def _largest(case: Case, stress: StressSummary) -> str:
+    """What is judged, the mean over a patch, before what tells the instant alone."""
+    triangle = (
+        f"single triangle, beside a line of contact the more the finer the mesh: "
+        f"{number(PER_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
+        f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
+        f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
+    )
+    if (patch := stress.patch) is None:
+        return f"largest von Mises stress of a {triangle}"
+    return (
+        "largest von Mises stress over a patch of half a wall, which settles as the mesh refines: "
+        f"{number(PER_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
+        f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
+    )
+
+
+def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
     """What part of the yield strength it is, where the case tells that."""
     names = [segment.name for segment in case.segments]
     strength = material_of(case, names.index(stress.segment)).yield_strength

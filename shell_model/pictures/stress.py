@@ -137,12 +137,12 @@ def draw_stress(
                 )
             }
             overlap_view.draw(scene, sheet, instant.time, looks, apart)
-            _mark_largest(sheet, overlap_view, values, instant.time)
+            ringed = _mark_largest(sheet, overlap_view, values, instant.time)
             sheet.write(
                 overlap_view.heading(instant),
                 f"{where}boom: displacements × {view.scale:g}, sections × {SECTION_DRAWN:g}; "
                 f"overlap: cut open, × {overlap_view.scale:g}, cuts white (outer), grey (inner)\n"
-                f"{_largest(overlap_view, instant.time)}\n"
+                f"{ringed}; {_largest(overlap_view, instant.time)}\n"
                 f"{overlap_view.forces_explained(instant.time)}{_coarse(shell, overlap)}",
             )
             yield sheet.image()
@@ -170,7 +170,7 @@ def smoothed(shell: MovingShell, values: npt.ArrayLike) -> Array:
 
 
 def _largest(view: OverlapView, time: float) -> str:
-    """Which stress of a triangle is the largest of the overlap's segments, and where."""
+    """Which stress of a triangle is the largest of both segments, seen or not, and where."""
     shell = view.shell
     stress = shell.stress.at(time)
     shown = np.isin(shell.segment, (view.overlap.outer, view.overlap.inner))
@@ -181,13 +181,13 @@ def _largest(view: OverlapView, time: float) -> str:
     wall = shell.stress.wall_name(triangle)
     value = float(stress.largest()[triangle]) / 1.0e6
     return (
-        f"largest of {' and '.join(view.names)}: {digits(value)} MPa in a triangle at "
-        f"x = {x:.2f} m ({shell.names[int(shell.segment[triangle])]}, {wall} wall, {face} face)"
+        f"single triangles up to {digits(value)} MPa, x = {x:.2f} m "
+        f"({shell.names[int(shell.segment[triangle])]}, {wall} wall, {face} face)"
     )
 
 
-def _mark_largest(sheet: Sheet, view: OverlapView, values: Array, time: float) -> None:
-    """A ring where the smoothed stress of the half that is seen is largest."""
+def _mark_largest(sheet: Sheet, view: OverlapView, values: Array, time: float) -> str:
+    """A ring where the smoothed stress of the half that is seen is largest; what it is."""
     shell = view.shell
     seen = np.where(
         view.behind & np.isin(shell.segment, _both(view.overlap)), values.max(axis=1), 0.0
@@ -196,7 +196,10 @@ def _mark_largest(sheet: Sheet, view: OverlapView, values: Array, time: float) -
     places = view.places(time)
     corner = places[shell.triangles[triangle, int(values[triangle].argmax())]]
     x, y = view.camera(places).project(corner)
-    sheet.ring(float(x), float(y), f"{digits(1e-6 * float(seen[triangle]))} MPa")
+    largest = f"{digits(1e-6 * float(seen[triangle]))} MPa"
+    sheet.ring(float(x), float(y), largest)
+    at, segment = shell.stress.centroids[triangle][0], int(shell.segment[triangle])
+    return f"ring: {largest}, the mean around a point, x = {at:.2f} m ({shell.names[segment]})"
 
 
 def _both(overlap: Overlap) -> tuple[int, int]:

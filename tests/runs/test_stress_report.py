@@ -75,7 +75,7 @@ def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
 def test_the_table_says_what_each_wall_carries() -> None:
     (table,) = wall_tables(results(STRESS))
     assert table.text.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
-    assert "91.6 MPa, at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
+    assert "91.6 MPa at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
 
 
 def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
@@ -91,5 +91,5 @@ def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known()
     steel = material.model_copy(update={"yield_strength": 355e6})
     known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
     said = [table.notes[0] for found in (plain, known) for table in wall_tables(found)]
-    assert "91.6 MPa, at x" in said[0]
-    assert "91.6 MPa (25.8 % of the yield strength), at x" in said[1]
+    assert "91.6 MPa at x" in said[0]
+    assert "91.6 MPa (25.8 % of the yield strength) at x" in said[1]

@@ -44,6 +44,7 @@ def test_every_file_of_a_series_run_opens(series: Path) -> None:
         "report.html",
         "viewer.html",
         ".manifest",
+        ".drawn-of",
     }
 
 
@@ -77,6 +78,19 @@ def test_a_report_is_rendered_again_from_the_data(series: Path, tmp_path: Path) 
     shutil.rmtree(again / "figures")
     assert protractile("report", again) == 0
     assert files(again) == files(series)
+
+
+def test_figures_are_drawn_again_of_other_numbers_alone(series: Path, tmp_path: Path) -> None:
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    tip, other = (again / "figures" / name for name in ("tip.png", "head.png"))
+    drawn = tip.read_bytes()
+    shutil.copy(other, tip)
+    assert protractile("report", again) == 0
+    assert tip.read_bytes() == other.read_bytes()
+    (again / ".drawn-of").write_text("of an earlier version")
+    assert protractile("report", again) == 0
+    assert tip.read_bytes() == drawn
 
 
 def test_files_of_two_runs_are_not_mixed(
