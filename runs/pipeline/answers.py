@@ -65,7 +65,8 @@ class Pressed:
         x: in m.
         direction: z or y.
         force: in N, positive where the inner segment presses up (along y: towards larger y).
-        pad: force of each pad that bears it in N, not negative; None without pads.
+        pad: the most that one of its pads bears in N, not negative, where those of a side share its
+            force as they are stiff and shims press first; None without pads.
         depth: how far the contact that is pressed most is pressed in, in m.
     """
 

@@ -17,13 +17,17 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from dynamics.travel import Travel
 from geometry.arrays import Array
-from geometry.boom import Boom, Joint
+from geometry.boom import Boom, Direction, Joint
 from geometry.cylinder import forces
 from geometry.drawing import drawn, places
+from geometry.section import Side
 from runs.case.contact import PADS_OF_SIDE
 from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
 from runs.pipeline.place_names import place_names
 from runs.pipeline.section_forces import section_forces
+
+# Of sides.
+_SIGNS: tuple[Side, Side] = (1, -1)
 
 # A part of the farthest way that is none.
 _SAME_WAY = 1.0e-12
@@ -166,30 +170,49 @@ def _diagram(boom: Boom, number: int, line: Line, position: Array, time: float) 
 def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
     """Of the stations of joints with play, in z and in y, and of stops, at (num_modes,)."""
     gaps = system.rows @ position
-    padded = [
-        joint.pad is not None
+    joints = [
+        joint
         for _ in boom.directions
         for joint in boom.joints
         if not joint.tied
         for _ in joint.stations
-    ] + [False for _ in boom.stops]
+    ] + [None for _ in boom.stops]
     names = place_names(boom.stations)
-    for k, ((x, direction), name, pads) in enumerate(
-        zip(boom.stations, names, padded, strict=True)
+    for k, ((x, direction), name, joint) in enumerate(
+        zip(boom.stations, names, joints, strict=True)
     ):
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
-            sum(_one_sided(system.laws[row], side, gaps[row]) for row in here) for side in (1, -1)
+            sum(_one_sided(system.laws[row], side, gaps[row]) for row in here) for side in _SIGNS
         ]
         yield Pressed(
             place=name,
             x=x,
             direction=direction,
             force=sides[0] - sides[1],
-            pad=max(sides) / PADS_OF_SIDE if pads else None,
+            pad=None if joint is None else _of_a_pad(joint, direction, sides),
             # A tied model has stations, and no rows there.
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
         )
+
+
+def _of_a_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
+    """The most in N that one pad bears where they bear so much on both sides; None without pads."""
+    if not joint.padded:
+        return None
+    pairs = (_hardest(joint, direction, *of) for of in zip(_SIGNS, sides, strict=True))
+    return max(pairs) / PADS_OF_SIDE
+
+
+def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
+    """What bears most in N of the pairs of a side, of which those with more shim press first."""
+    pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
+    shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
+    own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
+    stiffness = PADS_OF_SIDE * sum(own) or 1.0
+    # Each further pair that presses leaves less way to those before it.
+    ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
+    return float(stiffness * (shares * (ways.min() + shims)).max())
 
 
 def _one_sided(law: ContactLaw, side: int, gap: float) -> float:

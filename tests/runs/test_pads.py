@@ -15,6 +15,7 @@ from runs.case import reading as case_file
 from runs.case.actions import start
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
+from runs.pipeline.at_rest import positions, pressed
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
@@ -133,6 +134,27 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     assert lines[2:] == ["beyond allowable", f"inner {face}, {where} m"]
     assert told["Pad that presses most"] in table.text.strong
     assert not any(asked.startswith("Station") for asked in told)
+
+
+@pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
+def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) -> None:
+    """Reference: another computation, the rows of each pair of pads; 3 and 2 parts of a force."""
+    below = [pad_on("below", 0.03, 0.02), pad_on("below", 0.02, 0.02, offset=0.04, shim=shim)]
+    above = pad_on("above", 0.05, 0.02)
+    case = case_with(tmp_path, several(above, *below))
+    boom = build_boom(case)
+    system = build(case, boom, case.models[0]).system.gathered()
+    position = positions(system, 0.0)[0.0]
+    tail, head = pressed(boom, system, position)
+    of_rows = [
+        abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)
+    ]
+    for k, station in enumerate((tail, head)):
+        hardest = max(f for f, at in zip(of_rows, system.station_of_row, strict=True) if at == k)
+        assert station.pad == pytest.approx(0.5 * hardest, rel=1e-9)
+    expected = {0.0: 0.5 * 0.6, 1.0e-3: 0.5}.get(shim)
+    part = min(one.pad / abs(one.force) for one in (tail, head) if one.pad is not None)
+    assert expected is None or part == pytest.approx(expected)
 
 
 def test_corners_bear_no_pressure(tmp_path: Path) -> None:
