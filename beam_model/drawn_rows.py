@@ -18,7 +18,7 @@ from dynamics.moving_thrust import MovingThrust
 from dynamics.row_table import RowTable
 from dynamics.travel import Travel
 from geometry.arrays import Array
-from geometry.axial import entry
+from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom, Direction
 from geometry.drawing import Course, courses, drives_below
 
@@ -82,7 +82,8 @@ def _travel(
     alone = len(course.joints) == 1
     pressing = moving_thrusts(boom, models, reads, course.joints[0]) if alone else []
     histories = [drive.history for drive in course.drives]
-    return Travel.of(histories, table, moving, course.suffix, pressing)
+    against = borne(boom.segments, boom.joints, course.joints[0])
+    return Travel.of(histories, table, moving, course.suffix, pressing, against)
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], course: Course) -> list[float]:

@@ -148,12 +148,13 @@ def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Ar
             continue
         way, friction = travel.history(found.time), rubbing(system, travel, forces)
         rubbed = np.sign(np.diff(way, prepend=way[0])) * friction
-        power = np.diff(work + np.cumsum(rubbed * np.diff(way, prepend=way[0])), prepend=0.0)
+        against = (rubbed + travel.borne) * np.diff(way, prepend=way[0])
+        power = np.diff(work + np.cumsum(against), prepend=0.0)
         power[1:] /= np.diff(found.time)
         for name, (values, unit, said) in {
             "drawn_out": (way, "m", "length drawn out since the start"),
             "drive_friction": (rubbed, "N", "force of the drive against friction along the boom"),
-            "drive_power": (power, "W", "power of the drive against contacts and friction"),
+            "drive_power": (power, "W", "power of the drive, with what presses along the boom"),
         }.items():
             added[f"{name}{travel.suffix}"] = ("time", values, {"units": unit, "long_name": said})
         if travel.pulled is not None:

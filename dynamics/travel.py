@@ -175,6 +175,7 @@ class Travel:
         moving: kind and position of each of them in the gap system.
         suffix: behind the names of what results tell of it; nothing where it is None.
         thrusts: axial forces that go along.
+        borne: what presses all that is drawn along the boom in N, against which the drive works.
         pulled: what a drive of a given stiffness draws, in place of a stiff one.
 
     Raises:
@@ -186,6 +187,7 @@ class Travel:
     moving: tuple[tuple[Kind, int], ...]
     suffix: str | None = None
     thrusts: Sequence[MovingThrust] = ()
+    borne: float = 0.0
     pulled: Pulled | None = None
 
     def __post_init__(self) -> None:
@@ -204,10 +206,11 @@ class Travel:
         moving: Sequence[tuple[Kind, int]],
         suffix: str | None,
         thrusts: Sequence[MovingThrust] = (),
+        borne: float = 0.0,
     ) -> Travel:
         """What several histories move together, or one."""
         history = histories[0] if len(histories) == 1 else Together(tuple(histories))
-        return cls(history, table, tuple(moving), suffix, tuple(thrusts))
+        return cls(history, table, tuple(moving), suffix, tuple(thrusts), borne)
 
     @property
     def moves(self) -> bool:

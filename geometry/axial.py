@@ -108,6 +108,13 @@ class Entry:
         return np.asarray(self.force * (out.astype(float) - back))
 
 
+def borne(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
+    """What presses all that is inside a joint in N, where the joint takes it; else 0."""
+    inner = joints[number].inner
+    taken = _lock(joints, inner) is joints[number]
+    return segments[inner].compression.handed if taken else 0.0
+
+
 def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> Entry | None:
     """What goes along as a joint is drawn out; None where no axial force changes its place.
 
@@ -115,9 +122,8 @@ def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> 
     takes it off the inner one ever nearer to its tail, but for a foot below the tail.
     """
     joint = joints[number]
-    inner = segments[joint.inner]
-    force = inner.compression.handed
-    if joint.drive is None or _lock(joints, joint.inner) is not joint or force == 0.0:
+    inner, force = segments[joint.inner], borne(segments, joints, number)
+    if joint.drive is None or force == 0.0:
         return None
     locked = inner.start if joint.locked_at is None else joint.locked_at
     if joint.drive.locked == "inner":

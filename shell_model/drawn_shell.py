@@ -21,6 +21,7 @@ from dynamics.residual import with_coordinates
 from dynamics.row_table import RowTable
 from dynamics.travel import KINDS, Travel
 from geometry.arrays import Array, Mask
+from geometry.axial import borne
 from geometry.boom import Boom
 from shell_model.boom_shell import BoomShell
 from shell_model.contact.passage import Passage, passages
@@ -130,7 +131,9 @@ class DrawnShell:
                     self._boom, self._full, coordinates, passage.course, int(behind[-1])
                 )
                 along = passage.moving, passage.course.suffix, list(thrusts)
-                travels.append(Travel.of(histories, table, *along))
+                boom, (joint, *_) = self._boom, passage.course.joints
+                against = borne(boom.segments, boom.joints, joint)
+                travels.append(Travel.of(histories, table, *along, against))
         omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
         return replace(with_coordinates(system, omega2, pulled), travels=travels)
 

@@ -64,7 +64,8 @@ def _drive(pen: Pen, suffix: str, inner: str) -> Figure:
     caption = (
         f"Above what the drive of {inner!r} pushes with against the friction of its pads along the "
         "boom, the coefficient times all that presses them; below its power, with what contact "
-        "forces do on their slope as it is drawn, negative where the boom would slide by itself. "
+        "forces do on their slope as it is drawn and what presses along the boom, negative where "
+        "the boom would slide by itself. "
         f"Means over {MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {theme.fixed(force, 2)} kN against friction"

@@ -40,7 +40,7 @@ def drive_table(results: Results) -> Table | None:
     )
     notes = (
         "Against the friction of pads along the boom, while it is drawn; power and work with what "
-        "contact forces do on their slope.",
+        "contact forces do on their slope, and against what presses along the boom.",
     )
     return Table("Drives", columns, notes, "drives")
 

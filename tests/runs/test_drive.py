@@ -213,6 +213,23 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     _check_figures(draw(results, tmp_path))
 
 
+def test_a_drive_lifts_what_presses_along(tmp_path: Path) -> None:
+    """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m, beside what bending and
+    friction take without them."""
+    path = Path(case_file(tmp_path, "duration = 7.0", "duration = 0.3"))
+    text = path.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
+    text = text.replace("normal_forces = [0.0, 0.0]", "normal_forces = [0.0, 0.0]\nlocked_at = 1.0")
+    works = []
+    for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
+        still = text.replace("[[joint]]", f"{pressed}\n[[joint]]")
+        path.write_text(still, encoding="utf-8")
+        data = run_case(load(str(path)), models=["kantorovich-5"]).trajectories
+        power = data["drive_power"].sel(model="kantorovich-5").values
+        works.append(float(power[1:].sum()) * 1.0e-3)
+    assert works[1] - works[0] == pytest.approx(4.0 * (0.5 * 5507.0 + 2.0e4), rel=0.1)
+    assert abs(works[0]) < 0.1 * works[1]
+
+
 def _check_table(results: Results, data: xr.Dataset) -> None:
     """Reference: analytic, means and sums of what trajectories hold."""
     table = drive_table(results)
