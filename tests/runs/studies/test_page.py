@@ -76,6 +76,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     },
     "damping": {"PressedBoom.of": swung, "_system": one},
     "histories": {},
+    "stick_slip": {"_one_way": lambda _: [1.0] * 6},
     "answers": {},
     "supports": {
         "_MODELS": dict.fromkeys(supports._MODELS, supports._elements),
