@@ -91,7 +91,8 @@ def integrate_drawn(
             state, still, rows, tables, thrusts, pushed, ways, excitations, space, strides, h,
             substeps, tuple(array[1 + first : 1 + done] for array in recorded),
         )  # fmt: skip
-        check_energy(energies[: 1 + done], h, energy_bound, least)
+        for end in motion.checks(first, done):
+            check_energy(energies[: 1 + end], h, energy_bound, least)
         if progress is not None:
             progress(done / outputs)
     tally, time = state[6], output_step * np.arange(outputs + 1)

@@ -369,8 +369,10 @@ def integrate(
             known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), h)
         out = tuple(array[1 + done : 1 + motion.until(done)] for array in recorded)
         steps = known[closed.tobytes()]
+        first = done
         done += steps.march(state, done * substeps, substeps, bool(linear.any()), out)
-        check_energy(energies[: 1 + done], h, energy_bound, least)
+        for end in motion.checks(first, done):
+            check_energy(energies[: 1 + end], h, energy_bound, least)
         if progress is not None:
             progress(done / outputs)
     return Trajectory.record(
