@@ -179,7 +179,9 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"Von Mises stresses of {model!r}{above}: {state}. Above: the whole boom; below: the "
             f"overlap{which}, cut open. The larger value of both faces, the mean of the triangles "
             "around a point of a wall; the few beyond the end of the scale have its darkest "
-            "colour. Displacements and play are magnified by the factors above the picture."
+            "colour. Beside a line of contact all of these grow as the mesh refines; strength is "
+            "judged by means over a patch of half a wall, which settle and stand in the tables. "
+            "Displacements and play are magnified by the factors above the picture."
             f"{forces}"
         )
         return Figure(path, f"Stress at the overlap{which}{above}: {when}", caption)

@@ -21,7 +21,6 @@ from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell, Overlap
 from shell_model.pictures.overlap import Look, OverlapView
 from shell_model.pictures.theme import Scene, Sheet, Triangles, sharp_edges
-from shell_model.stress.stresses import Face
 
 # Of the overlap and of the whole boom, whose displacements are drawn up to this part of its length.
 OVERLAP_PIXELS, BOOM_PIXELS = (theme.SHEET[0], 475), (1160, 195)
@@ -176,13 +175,11 @@ def _largest(view: OverlapView, time: float) -> str:
     shown = np.isin(shell.segment, (view.overlap.outer, view.overlap.inner))
     triangle = int(np.where(shown, stress.largest(), 0.0).argmax())
     x, _, _ = shell.stress.centroids[triangle]
-    faces: tuple[Face, ...] = ("outer", "inner")
-    face = max(faces, key=lambda name: float(stress.von_mises(name)[triangle]))
     wall = shell.stress.wall_name(triangle)
     value = float(stress.largest()[triangle]) / 1.0e6
     return (
-        f"single triangles up to {digits(value)} MPa, x = {x:.2f} m "
-        f"({shell.names[int(shell.segment[triangle])]}, {wall} wall, {face} face)"
+        f"single triangles: {digits(value)} MPa at x = {x:.2f} m "
+        f"({shell.names[int(shell.segment[triangle])]}, {wall} wall)"
     )
 
 
@@ -199,7 +196,7 @@ def _mark_largest(sheet: Sheet, view: OverlapView, values: Array, time: float) -
     largest = f"{digits(1e-6 * float(seen[triangle]))} MPa"
     sheet.ring(float(x), float(y), largest)
     at, segment = shell.stress.centroids[triangle][0], int(shell.segment[triangle])
-    return f"ring: {largest}, the mean around a point, x = {at:.2f} m ({shell.names[segment]})"
+    return f"ring: {largest} at x = {at:.2f} m ({shell.names[segment]})"
 
 
 def _both(overlap: Overlap) -> tuple[int, int]:
