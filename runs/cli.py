@@ -106,6 +106,9 @@ def run(
 ) -> int:
     """Run the models of a case, judge them, and write everything to a folder."""
     from runs.case import reading
+
+    effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
+    # After the case, whose mistakes need not wait for them.
     from runs.folder.cache import Cache
     from runs.folder.files import beside, whole_folder
     from runs.paper import readings, then
@@ -117,7 +120,6 @@ def run(
     from runs.report.printed import say_what_failed
     from runs.sweep.run import launched_world
 
-    effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     if not large:
         estimates.refuse_large(estimates.of_run(effective), case)
     cache = None if no_cache else Cache.of_user()

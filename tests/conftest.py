@@ -37,12 +37,13 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _loops() -> None:
+def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
     """The first of several workers compiles what most tests of motions would wait for."""
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
         from tests.loops import compile_loops
+        from tests.rubbing import compiled_in
 
-        compile_loops()
+        compile_loops(compiled_in(tmp_path_factory))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:

@@ -3,16 +3,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
+from tests import rubbing
 
 
-def compile_loops() -> None:
-    """One output each of what rubs, of few modes that jump, and of what is drawn out."""
-    for name in ("paper-friction", "coarse", "drawn-out"):
+def compile_loops(rubbed: Path) -> None:
+    """A motion that rubs, told to a file, and one output each of few modes that jump and of what is
+    drawn out.
+    """
+    rubbing.compile_loop(rubbed)
+    for name in ("coarse", "drawn-out"):
         case = reading.load(str(CASES / f"{name}.toml"))
         model = case.models[0]
         Plan.of(build(case, build_boom(case), model).system, case, model).warm()

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import accumulate, pairwise
+from itertools import accumulate
+from math import copysign, cos, pi, sin
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.linalg import block_diag
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
@@ -42,23 +45,17 @@ def tips(system: GapSystem) -> list[float]:
     return [float(system.observers[name].row @ rest) for name in ("tip", "head", "tail")]
 
 
-def hermite(xi: float, h: float) -> Array:
-    """(2, 4) cubics of an element and their slopes."""
-    return np.array(
-        [
-            [1 - 3 * xi**2 + 2 * xi**3, h * (xi - 2 * xi**2 + xi**3),
-             3 * xi**2 - 2 * xi**3, h * (xi**3 - xi**2)],
-            [6 * (xi**2 - xi) / h, 1 - 4 * xi + 3 * xi**2,
-             6 * (xi - xi**2) / h, 3 * xi**2 - 2 * xi],
-        ]
-    )  # fmt: skip
+# Coefficients (4, 4) of 1, ξ, ξ², ξ³ in the cubics of an element of unit length.
+HERMITE = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [-3, -2, 3, -1], [2, 1, -2, 1]], dtype=float)
+# i and j of d(ξⁱ)/dξ d(ξʲ)/dξ = i j ξⁱ⁺ʲ⁻².
+I, J = np.mgrid[1.0:4.0, 1.0:4.0]
 
 
 class Beam:
     """Cubic elements of a uniform beam, assembled by the closed forms of textbooks."""
 
     def __init__(self, segment: Segment, nodes: Sequence[float]) -> None:
-        self.nodes = np.array(nodes)
+        self.nodes = list(nodes)
         dofs = 2 * len(nodes)
         self.stiffness, self.mass = np.zeros((2, dofs, dofs))
         self.load = np.zeros(dofs)
@@ -73,34 +70,40 @@ class Beam:
                  [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h**2, -22 * h, 4 * h**2]]
             )  # fmt: skip
             self.load[at] += segment.load * h * np.array([0.5, h / 12, 0.5, -h / 12])
-        held = [2 * int(np.argmin(np.abs(self.nodes - s.x))) for s in segment.supports]
+        held = [2 * self.nodes.index(s.x) for s in segment.supports]
         self.free = np.setdiff1d(np.arange(dofs), held)
+        self.cubics = []
+        for e, h in enumerate(np.diff(self.nodes)):
+            own = np.zeros((4, dofs))
+            own[:, 2 * e : 2 * e + 4] = HERMITE * [1.0, h, 1.0, h]
+            self.cubics.append(own[:, self.free])
 
     @cached_property
     def _whole(self) -> list[Array]:
         """What elements take up to each node, see :meth:`pressed`."""
-        parts = [self._part(a, b) for a, b in pairwise(self.nodes)]
+        parts = [self._part(e, 1.0, h) for e, h in enumerate(np.diff(self.nodes))]
         return list(accumulate(parts, initial=np.zeros((self.free.size, self.free.size))))
 
     def pressed(self, end: float) -> Array:
         """(num_free, num_free) ∫ w′ᵀ w′ dx from its start up to an x in m."""
-        e = min(int(np.searchsorted(self.nodes, end, "right")) - 1, self.nodes.size - 2)
-        return np.asarray(self._whole[e] + self._part(self.nodes[e], end))
+        e, xi, h = self._place(end)
+        return np.asarray(self._whole[e] + self._part(e, xi, h))
 
-    def _part(self, a: float, b: float) -> Array:
-        total = np.zeros((self.free.size, self.free.size))
-        for point, weight in zip(*np.polynomial.legendre.leggauss(3), strict=True):
-            slope = self.rows(0.5 * (a + b + point * (b - a)))[1]
-            total += 0.5 * (b - a) * weight * np.outer(slope, slope)
-        return total
+    def _part(self, e: int, xi: float, h: float) -> Array:
+        own = self.cubics[e][1:]
+        return np.asarray(own.T @ (I * J * xi ** (I + J - 1.0) / ((I + J - 1.0) * h)) @ own)
+
+    def _place(self, x: float) -> tuple[int, float, float]:
+        """An element, the part of it up to an x in m, and its length in m."""
+        e = min(bisect(self.nodes, x) - 1, len(self.cubics) - 1)
+        h = self.nodes[e + 1] - self.nodes[e]
+        return e, (x - self.nodes[e]) / h, h
 
     def rows(self, x: float) -> Array:
         """(2, num_free) that read the deflection at x and its slope."""
-        e = min(int(np.searchsorted(self.nodes, x, "right")) - 1, self.nodes.size - 2)
-        h = self.nodes[e + 1] - self.nodes[e]
-        rows = np.zeros((2, self.load.size))
-        rows[:, 2 * e : 2 * e + 4] = hermite((x - self.nodes[e]) / h, h)
-        return rows[:, self.free]
+        e, xi, h = self._place(x)
+        powers = np.array([[1.0, xi, xi**2, xi**3], [0.0, 1.0 / h, 2.0 * xi / h, 3.0 * xi**2 / h]])
+        return np.asarray(powers @ self.cubics[e])
 
 
 def runge_kutta(
@@ -112,41 +115,39 @@ def runge_kutta(
     """
     nodes = (0.0, 2.0, 3.5, 5.0, 7.5, 10.0), (5.0, 7.5, 10.0, 12.5, 15.0)
     outer, inner = (Beam(segment, own) for segment, own in zip(boom.segments, nodes, strict=True))
-    n = outer.free.size
-    blocks = [
-        (beam.stiffness[np.ix_(beam.free, beam.free)], beam.mass[np.ix_(beam.free, beam.free)])
-        for beam in (outer, inner)
-    ]
-    inverses = [np.linalg.inv(mass) for _, mass in blocks]
+    n, ends = outer.free.size, outer.free.size + inner.free.size
+    stiffness, mass = (
+        block_diag(*(getattr(one, name)[np.ix_(one.free, one.free)] for one in (outer, inner)))
+        for name in ("stiffness", "mass")
+    )
+    stiffness[n:, n:] -= thrust * inner.pressed(boom.tip)
+    inverse = np.linalg.inv(mass)
+    turned = -inverse @ stiffness
+    pushed = inverse @ np.concatenate([outer.load[outer.free], inner.load[inner.free]])
     tail, head = boom.joints[0].stations
-    softer = thrust * inner.pressed(boom.tip)
 
     def change(time: float, state: Array) -> Array:
-        part = np.clip(time / history.duration, 0.0, 1.0)
-        way = history.travel * (part - np.sin(2 * np.pi * part) / (2 * np.pi))
-        speed = history.travel / history.duration * (1 - np.cos(2 * np.pi * part))
-        (q, v), forces, power = np.split(state[:-1], 2), [outer.load, inner.load], 0.0
-        forces = [force[beam.free] for force, beam in zip(forces, (outer, inner), strict=True)]
-        forces[0] = forces[0] - blocks[0][0] @ q[:n]
-        forces[1] = forces[1] - blocks[1][0] @ q[n:]
+        part = min(max(time / history.duration, 0.0), 1.0)
+        way = history.travel * (part - sin(2 * pi * part) / (2 * pi))
+        speed = history.travel / history.duration * (1 - cos(2 * pi * part))
+        q, v = state[:ends], state[ends:-1]
+        rates, power = turned @ q + pushed, 0.0
         if thrust:
             slope = outer.rows(tail + way)[1] @ q[:n]
-            forces[0] = forces[0] + thrust * outer.pressed(tail + way) @ q[:n]
-            forces[1] = forces[1] + softer @ q[n:]
+            rates += inverse[:, :n] @ (thrust * outer.pressed(tail + way) @ q[:n])
             power -= 0.5 * thrust * speed * slope**2
         for x_outer, x_inner, moved in ((tail + way, tail, 0), (head, head - way, 1)):
             (w, w_slope), (u, u_slope) = outer.rows(x_outer), inner.rows(x_inner)
             gap = u @ q[n:] - w @ q[:n]
-            force = 1.0e6 * np.sign(gap) * max(abs(gap) - 7.0e-3, 0.0)
-            forces[0] = forces[0] + force * w
-            forces[1] = forces[1] - force * u
-            power += force * speed * (-u_slope @ q[n:] if moved else -w_slope @ q[:n])
-        rates = np.concatenate([b @ f for b, f in zip(inverses, forces, strict=True)])
+            if abs(gap) > 7.0e-3:
+                force = 1.0e6 * (gap - copysign(7.0e-3, gap))
+                rates += force * (inverse @ np.concatenate([w, -u]))
+                power += force * speed * (-u_slope @ q[n:] if moved else -w_slope @ q[:n])
         return np.concatenate([v, rates, [power]])
 
-    start = np.zeros(2 * (n + inner.free.size) + 1)
+    start = np.zeros(2 * ends + 1)
     found = solve_ivp(
         change, (0.0, times[-1]), start, "DOP853", times, rtol=1e-9, atol=1e-12, max_step=1e-3
     )
-    places = found.y[: (len(start) - 1) // 2]
+    places = found.y[:ends]
     return np.asarray(inner.rows(boom.tip)[0] @ places[n:]), float(found.y[-1, -1])

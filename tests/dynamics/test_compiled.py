@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests import rubbing
+
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
 from numba import config
@@ -47,40 +49,23 @@ def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
-RUBBING = """
-import numpy as np
-from dynamics.friction import DryFriction
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.contact import PowerContact
-from dynamics.motion import Motion
-from dynamics.splitting import integrate
-
-random = np.random.default_rng(3)
-rows = random.normal(size=(2, 12))
-system = GapSystem(
-    omega2=np.linspace(0.0, 300.0, 12) ** 2,
-    load=random.normal(size=12),
-    rows=rows,
-    laws=[PowerContact(1.0e6, 2.0, 1.0e-3)] * 2,
-    station_of_row=np.array([0, 1]),
-    stations=[0.0, 1.0],
-    observers={"tip": Observer(rows[0])},
-    friction_rows=random.normal(size=(2, 12)),
-    frictions=[DryFriction(0.2, 0, 1.0), DryFriction(0.2, 1, 2.0)],
-)
-data = integrate(Motion(system, 0.5, 0.01), step=1.0e-4).data
-print({name: values.values.tolist() for name, values in data.items()})
-"""
+def _rubbing(environment: dict[str, str]) -> str:
+    """What a process of its own tells of a motion that rubs."""
+    program = [sys.executable, "-m", "tests.rubbing"]
+    return subprocess.run(
+        program, cwd=ROOT, env=os.environ | environment, capture_output=True, check=True, text=True
+    ).stdout
 
 
 @pytest.mark.slow
-def test_who_compiles_gets_the_bits_of_those_who_do_not(tmp_path: Path) -> None:
-    """Reference: the same program, which the second time finds all it compiled the first time."""
-    program = [sys.executable, "-c", RUBBING]
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-    one, other = (
-        subprocess.run(program, cwd=ROOT, env=environment, capture_output=True, check=True).stdout
-        for _ in range(2)
-    )
+def test_who_compiles_gets_the_bits_of_those_who_do_not(
+    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Reference: the same motion, in a process that has found all that the first one compiled:
+    one of the tests' own workers, or one with an empty folder for it.
+    """
+    of_worker = rubbing.compiled_in(tmp_path_factory)
+    environment = {} if of_worker.exists() else {"NUMBA_CACHE_DIR": str(tmp_path)}
+    one = of_worker.read_text("utf-8") if of_worker.exists() else _rubbing(environment)
     assert len(one) > 1000
-    assert one == other
+    assert one == _rubbing(environment)

@@ -23,10 +23,11 @@ PROGRAM = """
 import sys
 from pathlib import Path
 from runs.cli import main
-from shell_model.pictures import rendering
-rendering.FRAMES = 3  # one after the other, which takes time alone
+from runs.report import figures
+figures.FIGURES = figures.FIGURES[-2:]
 try:
-    main(sys.argv[1:])
+    # Pictures are drawn by other processes.
+    main([*sys.argv[1:], "--no-pictures"])
 except SystemExit as end:
     assert not end.code
 # Its own: what getrusage tells begins with the process that started this one.

@@ -89,8 +89,9 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("all_hear_it", [True, False])
+@pytest.mark.parametrize(
+    ("number", "all_hear_it"), [(signal.SIGINT, True), (signal.SIGTERM, False)]
+)
 def test_a_sweep_ends_with_its_processes(
     tmp_path: Path, number: signal.Signals, all_hear_it: bool
 ) -> None:

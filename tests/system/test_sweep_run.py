@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests import at_once
 from tests.system.run_folder import COARSE, ROOT, files, protractile
 
 pytestmark = pytest.mark.slow
@@ -42,6 +43,12 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return write_case(tmp_path).name
 
 
+@pytest.fixture
+def _in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Points run where patches hold, and no process imports what this one has."""
+    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
+
+
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a sweep on all cores, and beside it what it said."""
@@ -59,6 +66,7 @@ def stamps(folder: str | Path) -> dict[str, int]:
     return {path.name: (path / "point.json").stat().st_mtime_ns for path in points}
 
 
+@pytest.mark.usefixtures("_in_this_process")
 def test_a_sweep_leaves_its_files_and_is_taken_up(
     swept: Path, case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,6 +90,7 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     assert before.items() <= after.items()
 
 
+@pytest.mark.usefixtures("_in_this_process")
 def test_failures_are_lines_and_count_if_nothing_is_left(
     case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -115,6 +124,7 @@ def test_two_ranks_leave_what_the_cores_do(
     assert stamps("two").keys() == stamps(swept).keys()
 
 
+@pytest.mark.usefixtures("_in_this_process")
 def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
     arguments = ["sweep", case, "--vary", "joint.play=0.004:0.014:4", *MODELS, "--out", "out"]
     process = subprocess.Popen(

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A motion that rubs, told to the last bit, and whether a worker of the tests has compiled it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics import splitting
+from dynamics.contact import PowerContact
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.kernels import lossy_steps
+from dynamics.motion import Motion
+
+
+def compiled_in(factory: pytest.TempPathFactory) -> Path:
+    """Where a worker that has compiled the motion leaves what it tells, for all workers."""
+    return factory.getbasetemp().parent / "compiled-rubbing"
+
+
+def compile_loop(file: Path) -> None:
+    """Leave in a file what the motion tells, unless some of its loop had been compiled before."""
+    said = told()
+    loops = splitting._march, lossy_steps.lossy_steps
+    if all(loop.stats.cache_misses for loop in loops):
+        file.write_text(said, encoding="utf-8")
+
+
+def told() -> str:
+    """All numbers of the motion."""
+    random = np.random.default_rng(3)
+    rows = random.normal(size=(2, 12))
+    system = GapSystem(
+        omega2=np.linspace(0.0, 300.0, 12) ** 2,
+        load=random.normal(size=12),
+        rows=rows,
+        laws=[PowerContact(1.0e6, 2.0, 1.0e-3)] * 2,
+        station_of_row=np.array([0, 1]),
+        stations=[0.0, 1.0],
+        observers={"tip": Observer(rows[0])},
+        friction_rows=random.normal(size=(2, 12)),
+        frictions=[DryFriction(0.2, 0, 1.0), DryFriction(0.2, 1, 2.0)],
+    )
+    data = splitting.integrate(Motion(system, 0.5, 0.01), step=1.0e-4).data
+    return f"{ {name: values.values.tolist() for name, values in data.items()} }\n"
+
+
+if __name__ == "__main__":
+    print(told(), end="")
