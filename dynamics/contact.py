@@ -142,7 +142,7 @@ class ContactLaw(ABC):
         """
         # The least penetration would be lost beside a clearance.
         law = self.behind(0.0)
-        return max(law._slope_on(term.side, measure, value) for term in law.terms)
+        return max(law._slope_on(side, measure, value) for side in {t.side for t in law.terms})
 
     def _slope_on(
         self, side: float, measure: Callable[[ContactLaw, Array], Array], value: float

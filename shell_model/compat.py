@@ -62,7 +62,7 @@ def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> A
     cell = ufl.Cell("triangle", geometric_dimension=3)
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", cell, 1))
     # Version 0.5 gives each rank the cells across its edges, however many they are.
-    return mesh.create_mesh(comm, triangles, points, domain)
+    return mesh.create_mesh(comm, _listed(triangles), points, domain)
 
 
 def _apart(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
@@ -118,7 +118,13 @@ def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) ->
         element = basix.ufl.element("Lagrange", "hexahedron", 1, shape=(3,))
         return mesh.create_mesh(comm, cells=hexahedra, x=points, e=ufl.Mesh(element))
     cell = ufl.Cell("hexahedron", geometric_dimension=3)
-    return mesh.create_mesh(comm, hexahedra, points, ufl.Mesh(ufl.VectorElement("Q", cell, 1)))
+    domain = ufl.Mesh(ufl.VectorElement("Q", cell, 1))
+    return mesh.create_mesh(comm, _listed(hexahedra), points, domain)
+
+
+def _listed(cells: Indices) -> Any:
+    """As version 0.5 wants them: an array costs it an exception that prints the whole of it."""
+    return cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
 
 
 def solid_space(domain: Any) -> Any:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from PIL import Image
 
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
@@ -128,6 +129,17 @@ def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     from runs.report import figures
 
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
+
+
+@pytest.fixture
+def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are made, but what lays them out and prints them is left out, which takes longer."""
+    from runs.report import theme
+
+    def blank(canvas: object, filename: str, **_: object) -> None:
+        Image.new("L", (8, 8)).save(filename, "png")
+
+    monkeypatch.setattr(theme.Canvas, "print_figure", blank)
 
 
 @pytest.fixture

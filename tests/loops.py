@@ -10,14 +10,17 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
+from runs.studies.then.modal_integrators import NEWMARK
+from runs.studies.then.scheme_errors import own_root
 from tests import rubbing
 
 
 def compile_loops(rubbed: Path) -> None:
-    """A motion that rubs, told to a file, and one output each of few modes that jump and of what is
-    drawn out.
+    """A motion that rubs, told to a file, one by the numerics of 1997, and one output each of few
+    modes that jump and of what is drawn out.
     """
     rubbing.compile_loop(rubbed)
+    own_root(NEWMARK, 0.1)
     for name in ("coarse", "drawn-out"):
         case = reading.load(str(CASES / f"{name}.toml"))
         model = case.models[0]

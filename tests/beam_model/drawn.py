@@ -47,8 +47,9 @@ def tips(system: GapSystem) -> list[float]:
 
 # Coefficients (4, 4) of 1, ξ, ξ², ξ³ in the cubics of an element of unit length.
 HERMITE = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [-3, -2, 3, -1], [2, 1, -2, 1]], dtype=float)
-# i and j of d(ξⁱ)/dξ d(ξʲ)/dξ = i j ξⁱ⁺ʲ⁻².
-I, J = np.mgrid[1.0:4.0, 1.0:4.0]
+# i j and i + j − 1 of the powers from 1 on: ∫ d(ξⁱ) d(ξʲ) = i j ξⁱ⁺ʲ⁻¹/(i + j − 1).
+POWERS = np.outer([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
+DEGREE = np.add.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
 
 
 class Beam:
@@ -91,7 +92,7 @@ class Beam:
 
     def _part(self, e: int, xi: float, h: float) -> Array:
         own = self.cubics[e][1:]
-        return np.asarray(own.T @ (I * J * xi ** (I + J - 1.0) / ((I + J - 1.0) * h)) @ own)
+        return np.asarray(own.T @ (POWERS * xi**DEGREE / (DEGREE * h)) @ own)
 
     def _place(self, x: float) -> tuple[int, float, float]:
         """An element, the part of it up to an x in m, and its length in m."""

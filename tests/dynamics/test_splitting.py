@@ -20,6 +20,7 @@ from dynamics.motion import Motion
 from dynamics.splitting import integrate
 from dynamics.step import PHASE
 from dynamics.trajectory import Trajectory
+from tests.dynamics.one_stop import reference_states, two_modes
 
 OneMass = Callable[..., GapSystem]
 
@@ -152,40 +153,10 @@ def test_no_contact_is_not_a_number(one_mass: OneMass) -> None:
     assert not run.data["contact_force"].values.any()
 
 
-def two_modes(exponent: float = 2.0) -> GapSystem:
-    """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
-    return GapSystem(
-        omega2=np.array([9.0, 60.0]),
-        load=np.array([2.0, 5.0]),
-        rows=np.array([[1.0, 0.6]]),
-        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent, clearance=0.05).upper()],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"first": Observer(np.array([1.0, 0.0]))},
-    )
-
-
-def reference_state(system: GapSystem, duration: float) -> Array:
-    """Modal coordinates from an adaptive Runge-Kutta method of order 8 (other code, scipy)."""
-    (law,) = system.laws
-    (row,) = system.rows
-    n = system.num_modes
-
-    def rate(_: float, state: Array) -> Array:
-        a, v = state[:n], state[n:]
-        pull = system.load - system.omega2 * a - row * law.force(row @ a)
-        return np.concatenate([v, pull])
-
-    end = solve_ivp(
-        rate, (0.0, duration), np.zeros(2 * n), "DOP853", rtol=1e-13, atol=1e-15, max_step=1e-3
-    )
-    return np.asarray(end.y[:n, -1])
-
-
 def test_order_and_error_through_one_contact() -> None:
     """Reference: other code, scipy's DOP853. Slope 2, and the error itself is small."""
     system, duration = two_modes(), 0.6
-    expected = reference_state(system, duration)
+    expected = reference_states(system, np.array([0.0, duration]))[-1]
     steps = 2.0e-3 / 2.0 ** np.arange(5)
     errors = []
     for step in steps:

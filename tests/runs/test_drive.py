@@ -193,6 +193,7 @@ def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str)
     assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the ways of the case, and the drive's force from contact forces."""
     path = case_file(tmp_path, "duration = 7.0", "duration = 0.3")
@@ -289,7 +290,6 @@ def _check_swings(results: Results) -> None:
 def _check_figures(figures: Sequence[Figure]) -> None:
     """Reference: what a run with a drive draws beside the others."""
     drawn = {figure.path.stem: figure for figure in figures}
-    assert drawn["drive"].path.stat().st_size > 10_000
     # By hand, the play's lever, and elements: 7 mm of bending.
     assert drawn["at-rest"].title == "At rest under the largest loads: the tip at 140.4 mm"
     assert "Drawn out as it is at 0.2 s." in drawn["at-rest"].caption

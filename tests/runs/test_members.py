@@ -50,13 +50,6 @@ def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
     return finished
 
 
-@pytest.fixture(scope="module")
-def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("run")
-    write(run, [], out, out)
-    return out
-
-
 def test_member_0_is_the_trajectory(run: Run) -> None:
     """Reference: by hand, the model's own run, but for the single precision."""
     ensembles = run.results.ensembles
@@ -129,8 +122,10 @@ def test_ensembles_say_what_they_are(run: Run) -> None:
         assert set(values.attrs) == {"units", "long_name"}
 
 
-def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
-    results = Results.load(folder)
+@pytest.mark.usefixtures("unprinted")
+def test_ensembles_are_read_back(run: Run, tmp_path: Path) -> None:
+    write(run, [], tmp_path, tmp_path)
+    results = Results.load(tmp_path)
     assert results.ensembles is not None
     assert run.results.ensembles is not None
     xr.testing.assert_equal(results.ensembles, run.results.ensembles)
@@ -139,6 +134,7 @@ def test_ensembles_are_read_back(run: Run, folder: Path) -> None:
     assert results.case.ensemble == run.results.case.ensemble
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path) -> None:
     short = case.model_copy(
         update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}

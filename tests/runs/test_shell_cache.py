@@ -35,7 +35,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture
 def case() -> Case:
-    return case_file.select(case_file.load(str(CASES / "coarse.toml")), "", ["shell"], 0.5)
+    return case_file.select(case_file.load(str(CASES / "coarse.toml")), "", ["shell"], 1.0)
 
 
 def reduce(case: Case, cache: Cache | None, folder: Path) -> ReducedShell:

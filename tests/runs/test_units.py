@@ -173,7 +173,7 @@ def test_shells_do_not_know_the_units(line: str) -> None:
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
     runs = [
-        integrate(Motion(_shell(line)(*data), 0.6), step=1.0e-6)
+        integrate(Motion(_shell(line)(*data), 0.6), step=2.0e-6)
         for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
     ]
     agree(*runs)

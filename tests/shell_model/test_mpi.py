@@ -96,7 +96,7 @@ def moved(comm: MPI.Comm) -> dict[str, Any]:
     """The unreduced shell with friction."""
     law = replace(LAW, stiffness=1.0e9, exponent=1.0)
     full = assemble_boom(flat_boom(friction=0.2), {"z": [law]}, ShellOptions(1.0), comm)
-    motion = integrate_directly(full, 0.1, 5.0e-4)
+    motion = integrate_directly(full, 0.04, 5.0e-4)
     return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}
 
 

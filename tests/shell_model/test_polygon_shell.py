@@ -188,10 +188,13 @@ def _compliance(system: GapSystem) -> Array:
 
 
 @pytest.mark.slow
-def test_a_hexagonal_boom_with_collars_follows_its_beam() -> None:
+def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: other code, Timoshenko elements. Without collars at its stations the hexagons
     unfold under the pads, and the first peak is 9 % higher; the box is 0.1 % apart without any.
     """
+    monkeypatch.setattr(sections, "MESH_SIZE", 0.2)
+    monkeypatch.setattr(sections, "TOLERANCE", 0.03)
+    monkeypatch.setattr(sections, "DURATION", 0.65)
     plain = sections.boom_of(HEXAGON, INNER_HEXAGON)
     shell = sections.shell_peak(sections.collared(plain, 0.010))
     assert shell == pytest.approx(sections.beam_peak(plain), rel=0.015)
@@ -304,7 +307,7 @@ def test_all_that_a_segment_may_have(pair: tuple[Section, Section], line: Contac
     """
     boom = _laden(sections.boom_of(*pair), line)
     options = ShellOptions(
-        0.5, contact_line=line, contact_tolerance=0.3, krylov=KrylovOptions(moments=1)
+        0.5, contact_line=line, contact_tolerance=1.0, krylov=KrylovOptions(moments=1)
     )
     found = reduce_boom(boom, [LINEAR], options, MPI.COMM_WORLD)
     assert np.isfinite(found.local_compliance[:-2]).all() or line == "surface"

@@ -73,7 +73,7 @@ def test_it_bends_as_its_beam(shape: str) -> None:
     tips = []
     for system in (
         gap_system(boom, models, ()),
-        reduce_boom(boom, [], ShellOptions(mesh_size=0.1), MPI.COMM_SELF).system,
+        reduce_boom(boom, [], ShellOptions(mesh_size=0.15), MPI.COMM_SELF).system,
     ):
         (load,) = system.excitations
         tips.append(float(system.observers["tip"].row @ system.static_response(load.load)))
@@ -139,7 +139,7 @@ def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
     sides = [replace(LAW, clearance=5e-3)] if lateral else []
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
-        boom, law, ShellOptions(0.1, contact_tolerance=0.02), MPI.COMM_SELF, lateral_laws=sides
+        boom, law, ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF, lateral_laws=sides
     )
     beam, found = (
         float(np.abs(integrate(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max())

@@ -17,11 +17,11 @@ from PIL import Image
 
 from runs.case.build import build_boom
 from runs.pipeline.results import Results
-from shell_model.pictures import rendering
 from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.opengl import RenderingUnavailable, require_opengl
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests import at_once
+from tests.short_film import RENDERED
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -40,7 +40,7 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-tied"]
 @pytest.fixture
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
     """The film itself is what the tests of rendering look at; one run draws in its own process."""
-    monkeypatch.setattr(rendering, "FRAMES", 3)
+    monkeypatch.setattr("runs.report.snapshots.RENDERED", RENDERED)
     monkeypatch.setattr("runs.report.snapshots.workers", at_once.workers)
 
 
@@ -49,7 +49,9 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run of all models."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     folder = tmp_path_factory.mktemp("whole") / "out"
-    assert protractile("run", COARSE, "--out", folder) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("runs.report.snapshots.RENDERED", RENDERED)
+        assert protractile("run", COARSE, "--out", folder) == 0
     return folder
 
 

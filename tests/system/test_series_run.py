@@ -56,6 +56,7 @@ def test_a_run_reads_back(series: Path) -> None:
     xr.testing.assert_identical(results.trajectories, trajectories(series))
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path: Path) -> None:
     """Reference: the run itself; the arithmetic is the same, so the numbers are too."""
     again = tmp_path / "out"
@@ -71,6 +72,7 @@ def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path:
         assert (again / name).read_bytes() == (series / name).read_bytes()
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_report_is_rendered_again_from_the_data(series: Path, tmp_path: Path) -> None:
     again = tmp_path / "out"
     shutil.copytree(series, again)
