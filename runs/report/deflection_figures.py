@@ -94,7 +94,8 @@ def heads(pen: Pen) -> list[Figure]:
 
 def _head(pen: Pen, place: str) -> Figure:
     models = pen.with_play or pen.models
-    sheet, panels = new_sheet(len(models), 1.1 + 1.25 * len(models))
+    # One panel alone has room for the names of its axes.
+    sheet, panels = new_sheet(len(models), 1.1 + max(1.25 * len(models), 2.2))
     curves = {name: MILLI * pen.of(name, place) for name in pen.models}
     for axes, name in zip(panels, models, strict=True):
         for other in pen.play_free:
