@@ -44,7 +44,7 @@ LYING, HIGHEST, LEAST, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
 # Letters that fit in one of two columns of the legend.
 LETTERS = 30
 # A boom that stands steeper than so many degrees leaves room for so many sections beside it.
-STEEP, BESIDE = 25.0, 4
+STEEP, BESIDE = 25.0, 3
 # What is left free beside the boom, as a part of its length.
 MARGIN = 0.06
 
