@@ -343,10 +343,6 @@ def test_other_sources_are_other_points(
 
 def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
     """A millisecond is too coarse for the contacts; the model without any does not mind."""
-    text = (
-        Path("case.toml").read_text(encoding="utf-8").replace("duration = 0.2", "duration = 0.45")
-    )
-    Path("case.toml").write_text(text, encoding="utf-8")
     sweeping = planned("time.step=1e-5,1e-3")
     outcomes = run(sweeping)
     assert run(sweeping) == outcomes
