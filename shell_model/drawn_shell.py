@@ -91,6 +91,7 @@ class DrawnShell:
         # Springs are what forces move beyond modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
         self._apart = BoomCoordinates(full.comm, full.shells, free, ())
+        self._rows = [passage.rows(self._apart) for passage in self._passages]
         self._springs = [
             springs(*self._left(position, passage))
             for position, passage in enumerate(self._passages)
@@ -101,7 +102,7 @@ class DrawnShell:
         sigma, found = squared(self._test), np.zeros(contacts)
         for position, passage in enumerate(self._passages):
             omega2, pulls = self._springs[position]
-            parts = (passage.rows(self._apart), self._apart.omega2), (pulls, omega2)
+            parts = (self._rows[position], self._apart.omega2), (pulls, omega2)
             own = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
             whole = np.einsum("wjj->wj", self._answered(position, passage, "tested"))
             off = np.abs(whole - own).max(axis=0)
@@ -124,7 +125,7 @@ class DrawnShell:
             at = [first_of[kind] + position for kind, position in passage.moving]
             pulled[at] = beside[passage.start]
             if passage.course is not None:
-                rows = np.concatenate([passage.rows(coordinates), beside], axis=2)
+                rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
                 histories = [drive.history for drive in passage.course.drives]
                 table = RowTable.through(passage.ways, rows)
                 thrusts = moving_thrusts(
@@ -199,7 +200,7 @@ class DrawnShell:
 
     def _left(self, position: int, passage: Passage) -> tuple[Array, Array]:
         """What modes leave of a passage's compliance, and of its inertia."""
-        rows, shifted = passage.rows(self._apart), self._apart.omega2 + squared(SLOW)
+        rows, shifted = self._rows[position], self._apart.omega2 + squared(SLOW)
         taken = [rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2)]
         return (
             self._answered(position, passage, "compliance") - taken[0],

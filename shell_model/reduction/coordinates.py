@@ -88,7 +88,10 @@ class BoomCoordinates:
         """
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
-        apart = np.concatenate(parts)
+        return self.of_rows(np.concatenate(parts))
+
+    def of_rows(self, apart: Array) -> Array:
+        """(…, num_modes) of rows in the segments' own modes."""
         return apart if self._combination is None else apart @ self._combination
 
     def of_fields(self, fields: xr.Dataset) -> xr.Dataset:
@@ -137,7 +140,7 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
         left: (num_owned,).
         right: (num_owned, num_columns).
     """
-    rows = np.flatnonzero(left)
+    rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]
     lost, size = np.zeros((2, right.shape[1]))
     for begin in range(0, rows.size, _AT_ONCE):
