@@ -19,23 +19,20 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_limits, contact_terms
-from dynamics.energy import DRAWN_ENERGIES, check_energy
+from dynamics.energy import DRAWN_ENERGIES
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.drawn_steps import Rows, Still, march_drawn, space_for
 from dynamics.kernels.drawn_strides import strides_for, strides_over
 from dynamics.kernels.integrator_state import (
-    CHANGES,
-    FIRST_CONTACT,
-    STEPS,
     Excitations,
     excitation_arrays,
     friction_arrays,
-    initial_state,
 )
 from dynamics.kernels.moving_rows import row_tables, stacked_rows
 from dynamics.kernels.moving_thrusts import pushed_by, thrust_arrays
 from dynamics.motion import Motion
+from dynamics.record import Record
 from dynamics.stick_slip import FOLLOWED, follow
 from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
@@ -59,29 +56,13 @@ def integrate_drawn(
     Raises:
         NumericsError: the state is not finite, or the energy residual passes its bound.
     """
-    system, outputs, output_step = motion.system, motion.outputs, motion.output_step
-    n, m, f = system.num_modes, len(system.laws), len(system.frictions)
-    substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
-    h = output_step / substeps
-    state = initial_state(system, motion.position.copy(), motion.velocity.copy())
-    still, rows, space = _still(system), _rows(system), space_for(system)
+    system, still, rows = motion.system, _still(motion.system), _rows(motion.system)
+    record = Record.begin(motion, step, len(DRAWN_ENERGIES), rows[3].shape[1])
+    state, h, substeps = record.state, record.step, record.substeps
     tables, strides, thrusts = row_tables(system), strides_for(system, h), thrust_arrays(system)
-    pushed = pushed_by(thrusts, state[1])
-
-    rates = n if system.observes_rates else 0
-    columns = (n, rates, len(DRAWN_ENERGIES), m, m, m, f, len(rows[3][0]))
-    recorded = tuple(np.zeros((outputs + 1, count)) for count in columns)
-    states, velocities, energies, gaps, means, peaks, frictions, drives = recorded
-    _, a, v, y, *_ = state
-    states[0], gaps[0] = a, y
-    velocities[0] = v[: velocities.shape[1]]
-    means[0] = peaks[0] = [law.force(gap) for law, gap in zip(system.laws, y, strict=True)]
-    energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
-    energies[0, 2] = sum(float(law.energy(y)) for law, y in zip(system.laws, gaps[0], strict=True))
-
-    least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
+    pushed, space = pushed_by(thrusts, state[1]), space_for(system)
     done = 0
-    while done < outputs:
+    while done < motion.outputs:
         first, done = done, motion.until(done)
         times = h * np.arange(first * substeps, done * substeps + 1)
         excitations, ways = _followed(system, times, h)
@@ -89,30 +70,10 @@ def integrate_drawn(
         strides = strides_over(strides, tables[3], straight, ways, h)
         march_drawn(
             state, still, rows, tables, thrusts, pushed, ways, excitations, space, strides, h,
-            substeps, tuple(array[1 + first : 1 + done] for array in recorded),
+            substeps, record.rows(first, done),
         )  # fmt: skip
-        for end in motion.checks(first, done):
-            check_energy(energies[: 1 + end], h, energy_bound, least)
-        if progress is not None:
-            progress(done / outputs)
-    tally, time = state[6], output_step * np.arange(outputs + 1)
-    found = Trajectory.record(
-        system,
-        time=time,
-        states=states,
-        velocities=velocities,
-        energies=energies,
-        row_gaps=gaps,
-        row_forces=means,
-        row_peaks=peaks,
-        row_frictions=frictions,
-        step=h,
-        steps=int(tally[STEPS]),
-        first_contact=float(tally[FIRST_CONTACT]),
-        contact_changes=int(tally[CHANGES]),
-        least_energy=least,
-    )
-    return _with_drives(found, system, means, drives)
+        record.check(first, done, energy_bound, progress)
+    return _with_drives(record)
 
 
 def _still(system: GapSystem) -> Still:
@@ -141,8 +102,10 @@ def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations
     return (loads[:count].copy(), own, spans, parts, straight, pushes), ways
 
 
-def _with_drives(found: Trajectory, system: GapSystem, forces: Array, drives: Array) -> Trajectory:
-    """With what drives do, of contact forces (num_times, num_rows), and work at all rows in J."""
+def _with_drives(record: Record) -> Trajectory:
+    """The trajectory, with what drives do."""
+    system, found, (*_, drives) = record.motion.system, record.trajectory(), record.arrays
+    forces = record.arrays[4]
     added, told = {}, {}
     for travel, work in zip(system.travels, _work_of(system, drives), strict=True):
         if travel.suffix is None:

@@ -27,7 +27,7 @@ from dynamics.arrays import Array, Indices
 from dynamics.closed_contacts import ClosedContacts, closable, pressing
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
 from dynamics.drawn_out import integrate_drawn
-from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy
+from dynamics.energy import ENERGIES, ENERGY_BOUND
 from dynamics.kernels.contact_kicks import (
     add_closed_forces,
     contact_energy,
@@ -39,8 +39,6 @@ from dynamics.kernels.decay import Damping, damp, damping_arrays, drag, kept_aft
 from dynamics.kernels.integrator_state import (
     CHANGES,
     DAMPING,
-    FIRST_CONTACT,
-    STEPS,
     WORK,
     Dry,
     Excitations,
@@ -50,7 +48,6 @@ from dynamics.kernels.integrator_state import (
     excitation_arrays,
     excite,
     friction_arrays,
-    initial_state,
     look,
     no_excitations,
     system_arrays,
@@ -60,6 +57,7 @@ from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, mov
 from dynamics.kernels.pressed_steps import pressed_steps
 from dynamics.kernels.strides import STRIDES, closing_bounds, dragged_speeds, safe_stride
 from dynamics.motion import Motion
+from dynamics.record import Record
 from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
 
@@ -333,61 +331,25 @@ def integrate(
     Raises:
         NumericsError: the state is not finite, or the energy residual passes its bound.
     """
-    system, outputs, output_step = motion.system.gathered(), motion.outputs, motion.output_step
-    n, m = system.num_modes, len(system.laws)
-    a, v = motion.position.copy(), motion.velocity.copy()
+    motion = replace(motion, system=motion.system.gathered())
+    system = motion.system
     if step is None:
-        step = contact_step(system, output_step, motion.initial_speeds)
+        step = contact_step(system, motion.output_step, motion.initial_speeds)
     if system.travels:
-        return integrate_drawn(replace(motion, system=system), step, energy_bound, progress)
-    substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
-    h = output_step / substeps
-    state = initial_state(system, a, v)
-    y, tally = state[3], state[6]
-
-    f = len(system.frictions)
-    states, frictions = np.zeros((outputs + 1, n)), np.zeros((outputs + 1, f))
-    velocities = np.zeros((outputs + 1, n if system.observes_rates else 0))
-    gaps, means, peaks = np.zeros((3, outputs + 1, m))
-    energies = np.zeros((outputs + 1, len(ENERGIES)))
-    states[0], gaps[0] = a, y
-    velocities[0] = v[: velocities.shape[1]]
-    means[0] = peaks[0] = [w.force(gap) for w, gap in zip(system.laws, y, strict=True)]
-    energies[0, :2] = 0.5 * v @ v, 0.5 * system.omega2 @ a**2
-    energies[0, 2] = sum(float(w.energy(y)) for w, y in zip(system.laws, gaps[0], strict=True))
-    recorded = (states, velocities, energies, gaps, means, peaks, frictions)
-
-    # What the loads give within one step.
-    least = 0.5 * h**2 * float(system.largest_load @ system.largest_load)
+        return integrate_drawn(motion, step, energy_bound, progress)
+    record = Record.begin(motion, step, len(ENERGIES))
+    state, y = record.state, record.state[3]
     # Impacts keep their steps, which run back as they came.
     linear = closable(system) & pressing(system, y).any()
     known: dict[bytes, _Steps] = {}
     done = 0
-    while done < outputs:
+    while done < motion.outputs:
         closed = linear & pressing(system, y)
         if closed.tobytes() not in known:
-            known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), h)
-        out = tuple(array[1 + done : 1 + motion.until(done)] for array in recorded)
-        steps = known[closed.tobytes()]
-        first = done
-        done += steps.march(state, done * substeps, substeps, bool(linear.any()), out)
-        for end in motion.checks(first, done):
-            check_energy(energies[: 1 + end], h, energy_bound, least)
-        if progress is not None:
-            progress(done / outputs)
-    return Trajectory.record(
-        system,
-        time=output_step * np.arange(outputs + 1),
-        states=states,
-        velocities=velocities,
-        energies=energies,
-        row_gaps=gaps,
-        row_forces=means,
-        row_peaks=peaks,
-        row_frictions=frictions,
-        step=h,
-        steps=int(tally[STEPS]),
-        first_contact=float(tally[FIRST_CONTACT]),
-        contact_changes=int(tally[CHANGES]),
-        least_energy=least,
-    )
+            known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), record.step)
+        out = record.rows(done, motion.until(done))
+        steps, first = known[closed.tobytes()], done
+        steady = bool(linear.any())
+        done += steps.march(state, first * record.substeps, record.substeps, steady, out)
+        record.check(first, done, energy_bound, progress)
+    return record.trajectory()
