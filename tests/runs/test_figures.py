@@ -294,7 +294,8 @@ def test_energies_start_where_the_boom_does(
         "from zero": results,
         "loaded": replace(results, trajectories=loaded),
     }.items():
-        (figure,) = draw_some(energies, run, tmp_path)
+        (tmp_path / name).mkdir()
+        (figure,) = draw_some(energies, run, tmp_path / name)
         (work,) = sheets["energies"].axes[0].get_lines()
         line[name] = np.asarray(work.get_ydata(), dtype=float)
         assert ("what was there at the start" in figure.caption) == (name == "loaded")
