@@ -12,7 +12,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from geometry.arrays import Array
 from runs.report.charts import Chart
 from runs.report.drawn_axis import drawn_axis, of_start
-from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet
+from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet, no_closer
 
 # Over a whole run only the largest force of each of so many intervals can be seen.
 FORCE_BINS = 100
@@ -41,6 +41,7 @@ def first_contacts(pen: Pen) -> list[Figure]:
             pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
             curves.append(pen.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
+        no_closer(axes)
         drawn_axis(pen, axes)
     panels[-1].set_xlabel("time (s)")
     title = f"Mean contact forces, first {end:g} s"

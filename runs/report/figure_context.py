@@ -28,6 +28,8 @@ KILO = 1.0e3
 BEHIND = 0.5
 # A close-up lasts so many times as long as the first peak takes.
 PAST = 1.3
+# An axis shows no less than this part of what it is about.
+HARDLY_CHANGES = 0.02
 # How plotly calls the strokes.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
@@ -189,6 +191,15 @@ def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet,
     theme.Canvas(sheet)
     column = sheet.subplots(panels, 1, sharex=True, sharey=share_y, squeeze=False)
     return sheet, list(column[:, 0])
+
+
+def no_closer(axes: Axes) -> None:
+    """Leave what hardly changes a flat line: round-off is not drawn as a curve."""
+    low, high = axes.get_ylim()
+    least = HARDLY_CHANGES * max(abs(low), abs(high))
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
 
 
 def farthest(values: Sequence[float] | Array) -> float:
