@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How numbers and lists are set where people read them."""
+"""How numbers and lists are set where people read them, and in which multiples of units."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+
+# What turns m, N and Pa into the mm, kN and MPa that are read, and a part into per cent.
+TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6, 100.0
 
 
 def signed(text: str) -> str:

@@ -9,10 +9,9 @@ from rich.console import Console
 from rich.table import Table
 
 from geometry.boom import Boom
+from geometry.typography import TO_KILO, TO_MEGA
 from runs.case.schema import Case
 from runs.pipeline.cautions import of_buckling
-
-KILO, MEGA = 1.0e3, 1.0e6
 
 
 def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
@@ -27,8 +26,8 @@ def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
                 for ends, places in zip(pressed.ends, pairwise(pressed.places), strict=True)
                 for x, end in zip(places, ends, strict=True)
             )
-            stress = f"{max(stresses, key=abs, default=0.0) / MEGA:.4g}"
-        carried.add_row(segment.name, f"{force / KILO:.4g}", stress)
+            stress = f"{max(stresses, key=abs, default=0.0) * TO_MEGA:.4g}"
+        carried.add_row(segment.name, f"{force * TO_KILO:.4g}", stress)
     console.print(carried)
     buckling = Table("joints pressed", "buckling factor", "of the critical forces")
     cautions: list[str] = []

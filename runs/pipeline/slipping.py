@@ -13,6 +13,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.stick_slip import Pulled
 from dynamics.travel import Travel
 from geometry.boom import Boom
+from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.pulled import pulled_by, with_pulled
 from runs.case.schema import Case
 from runs.case.units import System
@@ -23,7 +24,6 @@ from runs.pipeline.statics import statics
 if TYPE_CHECKING:
     import xarray as xr
 
-KILO, PERCENT = 1.0e3, 100.0
 
 # Part of the least overlap beyond which what lags behind presses pads in other places.
 FAR_BEHIND = 0.01
@@ -84,8 +84,8 @@ def slip_lines(case: Case, boom: Boom) -> Iterator[str]:
         mass = f"{case.system.of(one.pulled.mass, 'kg'):.4g} {case.system.label('kg')}"
         yield (
             f"What the drive of {one.inner!r} draws, {mass}, swings at {one.pulled.frequency:.3g} "
-            f"Hz, damped by {PERCENT * one.pulled.damping_ratio:.3g} %, and against "
-            f"{one.friction / KILO:.3g} kN of friction, the most at rest, "
+            f"Hz, damped by {TO_PERCENT * one.pulled.damping_ratio:.3g} %, and against "
+            f"{one.friction * TO_KILO:.3g} kN of friction, the most at rest, "
             f"{_slips(one, case.system)}."
         )
 

@@ -15,6 +15,7 @@ from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from geometry.boom import Boom
 from geometry.cylinder import force_name
+from geometry.typography import TO_KILO, TO_MILLI
 from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
@@ -23,9 +24,10 @@ from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.cautions import of_tip
 from runs.pipeline.section_forces import borne_along
 
-KILO, MILLI = 1.0e3, 1.0e-3
 # A part of what others bear that is none.
 ROUND_OFF = 1.0e-9
+# Moments in N·m that are none.
+_NO_MOMENT = 1.0e-3
 
 
 class Statics(NamedTuple):
@@ -96,8 +98,8 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     console.print(_line(found), highlight=False)
     for tilt in tilts(found.played.boom, found.played.system, found.played.position):
         console.print(
-            f"Play turns {tilt.inner!r} by {tilt.rotation / MILLI:.4g} mrad in {tilt.outer!r}, "
-            f"which moves the tip by {tilt.tip / MILLI:.4g} mm.",
+            f"Play turns {tilt.inner!r} by {tilt.rotation * TO_MILLI:.4g} mrad in {tilt.outer!r}, "
+            f"which moves the tip by {tilt.tip * TO_MILLI:.4g} mm.",
             highlight=False,
             markup=False,
         )
@@ -172,12 +174,12 @@ def _holds(rest: Rest, system: System) -> Table:
     table = Table("holds at rest", x, *headings)
     deep = _depths(rest)
     for hold in _told(rest):
-        moment = f"{hold.moment / KILO:.4g}" if abs(hold.moment) > MILLI else ""
-        depth = f"{deep[hold[:2]] / MILLI:.3g}" if hold[:2] in deep else ""
-        cells = [f"{hold.force / KILO:.4g}", moment, depth]
+        moment = f"{hold.moment * TO_KILO:.4g}" if abs(hold.moment) > _NO_MOMENT else ""
+        depth = f"{deep[hold[:2]] * TO_MILLI:.3g}" if hold[:2] in deep else ""
+        cells = [f"{hold.force * TO_KILO:.4g}", moment, depth]
         if any(along.values()):
             here = along.get(hold[:2])
-            cells.insert(1, f"{here / KILO:.4g}" if here else "")
+            cells.insert(1, f"{here * TO_KILO:.4g}" if here else "")
         where = f"{system.of(hold.x, 'm'):g}"
         table.add_row(rest.boom.segments[hold.segment].name, where, *cells)
     return table
@@ -196,7 +198,7 @@ def _cylinders(rest: Rest, system: System) -> Table:
             f"{system.of(cylinder.x, 'm'):g}",
             f"{system.of(cylinder.length, 'm'):.5g}",
             "" if arm is None else f"{system.of(arm, 'm'):.5g}",
-            f"{force / KILO:.4g}",
+            f"{force * TO_KILO:.4g}",
         )
     return table
 
@@ -211,7 +213,7 @@ def _line(found: Statics) -> str:
         float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi) for rest in found
     ]
     return (
-        f"At rest the tip is at {found.played.tip / MILLI:.4g} mm, without play at "
-        f"{found.tied.tip / MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
+        f"At rest the tip is at {found.played.tip * TO_MILLI:.4g} mm, without play at "
+        f"{found.tied.tip * TO_MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
         f"joints pressed, {hertz[1]:.4g} Hz without play."
     )

@@ -5,11 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from geometry.typography import listed
+from geometry.typography import TO_PERCENT, listed
 from runs.pipeline.answers import Answers, Known, ModelAnswers
 from runs.pipeline.summary import Summary
-
-_PERCENT = 100.0
 
 # The part of the tip's range apart at which members of an ensemble count as parted.
 _PARTED = 0.2
@@ -36,7 +34,7 @@ def known(summary: Summary, answers: Answers, duration: float) -> list[Known]:
 
 def percent(part: float) -> str:
     """With two digits, or one that is not 0."""
-    return f"{_PERCENT * part:.2g} %"
+    return f"{TO_PERCENT * part:.2g} %"
 
 
 def _agreement(answers: Answers) -> Iterator[str]:

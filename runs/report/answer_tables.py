@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 from runs.pipeline.answers import Added, AtRest, Moved, Peak, PlayAdds
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
@@ -12,8 +13,6 @@ from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, number
-
-MILLI, PER_KILO, PER_MEGA, PERCENT = 1.0e3, 1.0e-3, 1.0e-6, 100.0
 
 # A part of a number that is next to nothing.
 HARDLY = 0.005
@@ -35,7 +34,7 @@ def play_table(results: Results) -> Table | None:
             "play adds",
             ["next to nothing" if hardly(one) else amount(one.added, one.unit) for one in rows],
         ),
-        Column("%", [None if hardly(one) else one.share for one in rows], ".3g", PERCENT),
+        Column("%", [None if hardly(one) else one.share for one in rows], ".3g", TO_PERCENT),
     )
     notes = ("By their absolute values.",)
     return Table(f"What play adds: {found.model}", columns, notes, "play")
@@ -55,8 +54,8 @@ def rest_tables(results: Results) -> list[Table]:
         columns = (
             Column("model", [name for name, _ in tilts]),
             Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
-            Column("rotation\nmrad", [tilt.rotation for _, tilt in tilts], ".3g", MILLI),
-            Column("moves the tip\nmm", [tilt.tip for _, tilt in tilts], ".1f", MILLI),
+            Column("rotation\nmrad", [tilt.rotation for _, tilt in tilts], ".3g", TO_MILLI),
+            Column("moves the tip\nmm", [tilt.tip for _, tilt in tilts], ".1f", TO_MILLI),
         )
         tables.append(
             Table(
@@ -77,11 +76,11 @@ def rest_tables(results: Results) -> list[Table]:
         beside = [tied.get((one.segment, one.x)) for one in answers.reactions]
         held = (
             Column("holds", [f"{one.segment} at {one.x:g} m" for one in answers.reactions]),
-            Column("force\nkN", [one.force for one in answers.reactions], ".4g", PER_KILO),
+            Column("force\nkN", [one.force for one in answers.reactions], ".4g", TO_KILO),
             *_unless_none("along the boom\nkN", [one.along for one in answers.reactions], ".4g"),
             *_unless_none("moment\nkN m", [one.moment for one in answers.reactions], ".3g"),
             Column(
-                "tied: force\nkN", [one.force if one else None for one in beside], ".4g", PER_KILO
+                "tied: force\nkN", [one.force if one else None for one in beside], ".4g", TO_KILO
             ),
         )
         notes = (
@@ -97,7 +96,7 @@ def _unless_none(heading: str, borne: Sequence[float], form: str) -> Iterator[Co
     most = max(map(abs, borne), default=0.0)
     if most > 0.0:
         told = [each if abs(each) > ROUND_OFF * most else 0.0 for each in borne]
-        yield Column(heading, told, form, PER_KILO)
+        yield Column(heading, told, form, TO_KILO)
 
 
 def _pressed_table(rests: dict[str, AtRest], places: Sequence[str], as_drawn: str) -> Table:
@@ -106,7 +105,7 @@ def _pressed_table(rests: dict[str, AtRest], places: Sequence[str], as_drawn: st
         forces = {one.place: one for one in rest.stations}
         if forces:
             cells = [forces[place].force if place in forces else None for place in places]
-            columns.append(Column(f"{name}\nkN", cells, ".4g", PER_KILO))
+            columns.append(Column(f"{name}\nkN", cells, ".4g", TO_KILO))
     what = "Forces of stations, positive where the inner segment presses up, or to larger y."
     return Table(
         "At rest under the largest loads: what presses", columns, (what + as_drawn,), "pressed"
@@ -172,7 +171,7 @@ def stress_table(results: Results) -> Table | None:
     columns = [
         Column("model", [name for name, _, _ in rows]),
         Column("segment", [fibre.segment for _, fibre, _ in rows]),
-        Column("outer fibre\nMPa", [abs(f.stress) for _, f, _ in rows], ".4g", PER_MEGA),
+        Column("outer fibre\nMPa", [abs(f.stress) for _, f, _ in rows], ".4g", TO_MEGA),
         Column("at x\nm", [fibre.x for _, fibre, _ in rows], ".4g"),
         Column("at\ns", [fibre.time for _, fibre, _ in rows], ".3f"),
     ]
@@ -182,11 +181,11 @@ def stress_table(results: Results) -> Table | None:
                 "wall, over a patch\nMPa",
                 [w.patch if w else None for _, _, w in rows],
                 ".4g",
-                PER_MEGA,
+                TO_MEGA,
             )
         )
     if any(used):
-        columns.append(Column("of the yield strength\n%", used, ".3g", PERCENT))
+        columns.append(Column("of the yield strength\n%", used, ".3g", TO_PERCENT))
     notes = (
         "Outer fibre: along x, of section forces. Wall: von Mises, the mean over a patch of half a "
         "wall near stations and supports, where plates bend besides.",
@@ -210,8 +209,8 @@ def life_table(results: Results) -> Table | None:
         Column("segment", [life.segment for _, life in rows]),
         Column("at x\nm", [life.x for _, life in rows], ".4g"),
         Column("cycles", [life.cycles for _, life in rows], ".3g"),
-        Column("largest range\nMPa", [life.largest for _, life in rows], ".4g", PER_MEGA),
-        Column("equivalent range\nMPa", [life.equivalent for _, life in rows], ".4g", PER_MEGA),
+        Column("largest range\nMPa", [life.largest for _, life in rows], ".4g", TO_MEGA),
+        Column("equivalent range\nMPa", [life.equivalent for _, life in rows], ".4g", TO_MEGA),
     ]
     if any(life.damage is not None for _, life in rows):
         damages = [life.damage for _, life in rows]
@@ -275,8 +274,8 @@ def _peak_cell(peak: Peak | None) -> str:
     return f"{amount(peak.largest, peak.unit)}{factor}"
 
 
-SHOWN = {"m": ("mm", MILLI), "N": ("kN", PER_KILO), "N m": ("kN m", PER_KILO)}
-SHOWN |= {"Pa": ("MPa", PER_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
+SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
 
 
 def amount(value: float, unit: str) -> str:

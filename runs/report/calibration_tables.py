@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from itertools import groupby
 
+from geometry.typography import TO_MEGA, TO_PERCENT
 from runs.pipeline.results import Results
 from runs.pipeline.summary import CalibrationCard, StationSpring
 from runs.report.tables import Column, Table
 
-MEGA, PERCENT = 1.0e-6, 100.0
 _ALONG = "z", "y"
 
 
@@ -35,24 +35,24 @@ def _segments(card: CalibrationCard, names: str, number: int) -> Table:
     columns = [
         Column("segment", [beam.segment for beam, _, _ in rows]),
         Column("bends along", [along for _, _, along in rows]),
-        Column("E J\nMN m²", [beam.bending[plane] for beam, plane, _ in rows], ".4g", MEGA),
+        Column("E J\nMN m²", [beam.bending[plane] for beam, plane, _ in rows], ".4g", TO_MEGA),
         Column(
             "of the section's\n%",
             [beam.bending_part[plane] for beam, plane, _ in rows],
             ".2f",
-            PERCENT,
+            TO_PERCENT,
         ),
-        Column("G A\nMN", [beam.shear[plane] for beam, plane, _ in rows], ".4g", MEGA),
+        Column("G A\nMN", [beam.shear[plane] for beam, plane, _ in rows], ".4g", TO_MEGA),
         Column(
             "of the shear flow's\n%",
             [beam.shear_part[plane] for beam, plane, _ in rows],
             ".1f",
-            PERCENT,
+            TO_PERCENT,
         ),
     ]
     if any(beam.torsion is not None for beam in card.segments):
         torsion = [beam.torsion for beam, _, _ in rows]
-        columns.append(Column("G J\nMN m²", torsion, ".4g", MEGA))
+        columns.append(Column("G J\nMN m²", torsion, ".4g", TO_MEGA))
     return Table(
         f"The segments as beams, for {names}",
         tuple(columns),
@@ -68,7 +68,7 @@ def _springs(card: CalibrationCard, names: str, number: int) -> Table:
         (
             Column("station\nm", [f"{spring.x:g}" for spring in springs]),
             Column("pressed wall of the outer segment", [spring.side for spring in springs]),
-            Column("spring\nMN/m", [spring.stiffness for spring in springs], ".4g", MEGA),
+            Column("spring\nMN/m", [spring.stiffness for spring in springs], ".4g", TO_MEGA),
         ),
         (
             "In another program put each between the beams in series with its gap: it is what both "

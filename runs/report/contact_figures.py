@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from geometry.arrays import Array
+from geometry.typography import TO_KILO, TO_MILLI
 from runs.report.charts import Chart
 from runs.report.drawn_axis import drawn_axis, of_start
-from runs.report.figure_context import KILO, MILLI, Figure, Pen, highest, new_sheet, no_closer
+from runs.report.figure_context import Figure, Pen, highest, new_sheet, no_closer
 
 # Over a whole run only the largest force of each of so many intervals can be seen.
 FORCE_BINS = 100
@@ -37,7 +38,7 @@ def first_contacts(pen: Pen) -> list[Figure]:
     curves = []
     for i, (axes, station) in enumerate(zip(panels, stations, strict=True)):
         for name in pen.with_play:
-            mean = running_mean(pen, pen.of(name, "contact_force")[:, i] / KILO)
+            mean = running_mean(pen, pen.of(name, "contact_force")[:, i] * TO_KILO)
             pen.line(axes, name, pen.time[shown], mean[shown], linewidth=1.3)
             curves.append(pen.curve(name, mean, i))
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, end))
@@ -46,7 +47,7 @@ def first_contacts(pen: Pen) -> list[Figure]:
     panels[-1].set_xlabel("time (s)")
     title = f"Mean contact forces, first {end:g} s"
     caption = (
-        f"Contact force at each station, mean over {MILLI * FORCE_WINDOW:g} ms"
+        f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
         + ("" if pen.stays_pressed else ": what the many short impacts of a press amount to")
         + ". Positive where the inner segment presses up."
         + of_start(pen.case)
@@ -69,18 +70,18 @@ def contact_peaks(pen: Pen) -> list[Figure]:
             force = np.abs(pen.of(name, "contact_force_peak")[:, i])
             largest = np.array([highest(force[part]) for part in bins])
             largest[~(largest > LEAST_FORCE)] = np.nan
-            drawn.append(largest / KILO)
-            pen.line(axes, name, middle, largest / KILO, linewidth=1.1, marker="o")
+            drawn.append(largest * TO_KILO)
+            pen.line(axes, name, middle, largest * TO_KILO, linewidth=1.1, marker="o")
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
         drawn_axis(pen, axes)
     _log_scale(panels, np.concatenate(drawn))
     panels[-1].set_xlabel("time (s)")
     peaks = [pen.summary[name].peak_contact_force for name in pen.with_play]
     known = [peak for peak in peaks if peak is not None]
-    title = "Peak contact forces" + (f": up to {max(known) / KILO:.0f} kN" if known else "")
+    title = "Peak contact forces" + (f": up to {max(known) * TO_KILO:.0f} kN" if known else "")
     caption = (
         f"Largest contact force at each station in every {pen.time[-1] / len(bins):.2g} s, up or "
-        f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE / KILO:g} kN."
+        f"down, on a logarithmic scale; no mark where it stays below {LEAST_FORCE * TO_KILO:g} kN."
         + of_start(pen.case)
     )
     return [pen.finish(sheet, panels[0], "contact-peaks", title, caption)]
@@ -91,7 +92,7 @@ def friction(pen: Pen) -> list[Figure]:
     if "friction_force" not in pen.data or not pen.with_play:
         return []
     name = pen.with_play[-1]
-    force = np.nan_to_num(pen.of(name, "friction_force")) / KILO
+    force = np.nan_to_num(pen.of(name, "friction_force")) * TO_KILO
     places = [(i, label) for i, label in enumerate(pen.stations()) if force[:, i].any()]
     if not places:
         return []
@@ -101,9 +102,10 @@ def friction(pen: Pen) -> list[Figure]:
         axes.set(title=station, ylabel="force (kN)", xlim=(0.0, pen.time[-1]))
     panels[-1].set_xlabel("time (s)")
     caption = (
-        f"Force of dry friction on {name} at each station, mean over {MILLI * FORCE_WINDOW:g} ms. "
-        "Positive where it pushes the inner segment up. Where the segments stick, it is what holds "
-        "them, and less than the coefficient times the normal force."
+        f"Force of dry friction on {name} at each station, mean over "
+        f"{TO_MILLI * FORCE_WINDOW:g} ms. Positive where it pushes the inner segment up. Where the "
+        "segments stick, it is what holds them, and less than the coefficient times the normal "
+        "force."
     )
     title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
     return [pen.finish(sheet, None, "friction", title, caption, ("S7", "S8"))]

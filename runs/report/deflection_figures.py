@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 
 from dynamics.predictability.horizon import SHARES
 from geometry.arrays import Array
+from geometry.typography import TO_MILLI
 from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.drawn_axis import drawn_axis
-from runs.report.figure_context import MILLI, Figure, Pen, farthest, highest, new_sheet
+from runs.report.figure_context import Figure, Pen, farthest, highest, new_sheet
 
 # Of an ensemble this part of the members lies in its band, in percent.
 BAND = (5.0, 95.0)
@@ -26,7 +27,7 @@ def tip(pen: Pen) -> list[Figure]:
     """The tip in all models, over one another."""
     sheet, (axes,) = new_sheet(1, 3.9)
     for name in pen.models:
-        pen.line(axes, name, pen.time, MILLI * pen.of(name, "tip"))
+        pen.line(axes, name, pen.time, TO_MILLI * pen.of(name, "tip"))
         _members(pen, axes, name, "tip")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, pen.time[-1]))
     drawn_axis(pen, axes)
@@ -47,7 +48,7 @@ def close_up(pen: Pen) -> list[Figure]:
     contacts, peakless = [], []
     circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
     for name in pen.models:
-        deflection = MILLI * pen.of(name, "tip")
+        deflection = TO_MILLI * pen.of(name, "tip")
         pen.line(axes, name, pen.time[shown], deflection[shown])
         color = pen.strokes[name].color
         contact = pen.summary[name].first_contact
@@ -59,7 +60,7 @@ def close_up(pen: Pen) -> list[Figure]:
         if peak is None or height is None:
             peakless.append(name)
         elif peak <= end:
-            axes.plot(peak, MILLI * height, "v", color=color, ms=8, zorder=4)
+            axes.plot(peak, TO_MILLI * height, "v", color=color, ms=8, zorder=4)
     if contacts:
         axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
     axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
@@ -96,7 +97,7 @@ def _head(pen: Pen, place: str) -> Figure:
     models = pen.with_play or pen.models
     # One panel alone has room for the names of its axes.
     sheet, panels = new_sheet(len(models), 1.1 + max(1.25 * len(models), 2.2))
-    curves = {name: MILLI * pen.of(name, place) for name in pen.models}
+    curves = {name: TO_MILLI * pen.of(name, place) for name in pen.models}
     for axes, name in zip(panels, models, strict=True):
         for other in pen.play_free:
             if other != name:
@@ -131,7 +132,7 @@ def lateral_tip(pen: Pen) -> list[Figure]:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     for name in pen.models:
-        pen.line(axes, name, pen.time, MILLI * pen.of(name, "tip_lateral"))
+        pen.line(axes, name, pen.time, TO_MILLI * pen.of(name, "tip_lateral"))
     axes.set(xlabel="time (s)", ylabel="displacement (mm)", xlim=(0.0, pen.time[-1]))
     caption = "Displacement of the tip along y, to the sides, all models."
     title = f"Tip, to the sides: {_reach(pen, 'tip_lateral')}"
@@ -142,7 +143,7 @@ def lateral_tip(pen: Pen) -> list[Figure]:
 def _chart(pen: Pen, place: str, heading: str = "deflection (mm)") -> Chart:
     """One place in all models, with the bands of their ensembles."""
     curves = [
-        pen.curve(name, MILLI * pen.of(name, place), band=_band(pen, name, place))
+        pen.curve(name, TO_MILLI * pen.of(name, place), band=_band(pen, name, place))
         for name in pen.models
     ]
     return Chart(pen.time, heading, curves)
@@ -165,7 +166,7 @@ def _reach(pen: Pen, place: str) -> str:
     """How far the models, with play where any have it, deflect at one place, up or down."""
     reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
-    most = theme.fixed(reaches[name], 0, MILLI)
+    most = theme.fixed(reaches[name], 0, TO_MILLI)
     return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 
@@ -188,7 +189,7 @@ def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
     """(num_times,) each in mm, between which most members of an ensemble are."""
     if pen.ensembles is None or name not in pen.ensembles["model"] or place not in pen.ensembles:
         return None
-    members = MILLI * pen.ensembles[place].sel(model=name).values
+    members = TO_MILLI * pen.ensembles[place].sel(model=name).values
     low, high = np.percentile(members, BAND, axis=0)
     return low, high
 

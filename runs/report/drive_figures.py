@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+from geometry.typography import TO_KILO, TO_MILLI
 from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.contact_figures import FORCE_WINDOW, running_mean
 from runs.report.drawn_axis import drawn_axis, driven
-from runs.report.figure_context import KILO, MILLI, Figure, Pen, farthest, new_sheet
+from runs.report.figure_context import Figure, Pen, farthest, new_sheet
 
 
 def drives(pen: Pen) -> list[Figure]:
@@ -25,10 +26,10 @@ def _stick_slip(pen: Pen, suffix: str, inner: str) -> Figure:
     headings = "force of the drive (kN)", "speed (m/s)"
     curves = []
     for panel, (axes, name, unit) in enumerate(
-        zip(panels, ("drive_force", "drawn_speed"), (KILO, 1.0), strict=True)
+        zip(panels, ("drive_force", "drawn_speed"), (TO_KILO, 1.0), strict=True)
     ):
         for model in pen.models:
-            values = pen.of(model, f"{name}{suffix}") / unit
+            values = pen.of(model, f"{name}{suffix}") * unit
             pen.line(axes, model, pen.time, values, linewidth=1.0)
             curves.append(pen.curve(model, values, panel))
         axes.set(ylabel=headings[panel], xlim=(0.0, pen.time[-1]))
@@ -42,7 +43,7 @@ def _stick_slip(pen: Pen, suffix: str, inner: str) -> Figure:
         f"Above the force of the drive of {inner!r} on its own stiffness, with friction and what "
         "speeds up; below the speed at which the segment moves along, which is 0 where it sticks."
     )
-    title = f"Drive of {inner}: sticks {sticks} times, slips by up to {MILLI * slip:.2g} mm"
+    title = f"Drive of {inner}: sticks {sticks} times, slips by up to {TO_MILLI * slip:.2g} mm"
     chart = Chart(pen.time, "force (kN), speed (m/s)", curves, list(headings))
     return pen.finish(sheet, panels[0], f"stick-slip{suffix}", title, caption, chart=chart)
 
@@ -54,7 +55,7 @@ def _drive(pen: Pen, suffix: str, inner: str) -> Figure:
     curves = []
     for panel, (axes, name, heading) in enumerate(zip(panels, names, headings, strict=True)):
         for model in pen.models:
-            values = running_mean(pen, pen.of(model, name)) / KILO
+            values = running_mean(pen, pen.of(model, name)) * TO_KILO
             pen.line(axes, model, pen.time, values, linewidth=1.0)
             curves.append(pen.curve(model, values, panel))
         axes.set(ylabel=heading, xlim=(0.0, pen.time[-1]))
@@ -66,7 +67,7 @@ def _drive(pen: Pen, suffix: str, inner: str) -> Figure:
         "boom, the coefficient times all that presses them; below its power, with what contact "
         "forces do on their slope as it is drawn and what presses along the boom, negative where "
         "the boom would slide by itself. "
-        f"Means over {MILLI * FORCE_WINDOW:g} ms."
+        f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
     title = f"Drive of {inner}: up to {theme.fixed(force, 2)} kN against friction"
     chart = Chart(pen.time, "force (kN), power (kW)", curves, list(headings))

@@ -6,12 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.typography import TO_KILO, TO_MILLI
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import driven
 from runs.report.tables import Column, Table
-
-PER_KILO = 1.0e-3
-MILLI = 1.0e3
 
 
 def drive_table(results: Results) -> Table | None:
@@ -33,10 +31,10 @@ def drive_table(results: Results) -> Table | None:
     columns = (
         Column("model", [row[0] for row in rows]),
         Column("drive of", [row[1] for row in rows]),
-        Column("against friction:\nmean, kN", [row[2] for row in rows], ".3g", PER_KILO),
-        Column("at most\nkN", [row[3] for row in rows], ".3g", PER_KILO),
-        Column("power, at most\nkW", [row[4] for row in rows], ".3g", PER_KILO),
-        Column("work\nkJ", [row[5] for row in rows], ".3g", PER_KILO),
+        Column("against friction:\nmean, kN", [row[2] for row in rows], ".3g", TO_KILO),
+        Column("at most\nkN", [row[3] for row in rows], ".3g", TO_KILO),
+        Column("power, at most\nkW", [row[4] for row in rows], ".3g", TO_KILO),
+        Column("work\nkJ", [row[5] for row in rows], ".3g", TO_KILO),
     )
     notes = (
         "Against the friction of pads along the boom, while it is drawn; power and work with what "
@@ -59,11 +57,11 @@ def stick_slip_table(results: Results) -> Table | None:
     columns = (
         Column("model", [model for model, *_ in rows]),
         Column("drive of", [inner for _, inner, _ in rows]),
-        Column("force:\nmean, kN", [one.mean for one in found], ".3g", PER_KILO),
-        Column("at most\nkN", [one.peak for one in found], ".3g", PER_KILO),
+        Column("force:\nmean, kN", [one.mean for one in found], ".3g", TO_KILO),
+        Column("at most\nkN", [one.peak for one in found], ".3g", TO_KILO),
         Column("sticks\ntimes", [one.sticks for one in found]),
-        Column("slips by at most\nmm", [one.slip for one in found], ".3g", MILLI),
-        Column("ends behind by\nmm", [one.behind for one in found], ".3g", MILLI),
+        Column("slips by at most\nmm", [one.slip for one in found], ".3g", TO_MILLI),
+        Column("ends behind by\nmm", [one.behind for one in found], ".3g", TO_MILLI),
         Column("at most\nm/s", [one.speed for one in found], ".3g"),
         Column("at most\nm/s²", [one.acceleration for one in found], ".3g"),
     )
@@ -85,10 +83,12 @@ def swing_table(results: Results) -> Table | None:
     swings = list(rows.values())
     columns = (
         Column("model", list(rows)),
-        Column("tip swings\nmm", [one.tip for one in swings], ".4g", MILLI),
+        Column("tip swings\nmm", [one.tip for one in swings], ".4g", TO_MILLI),
         Column("at\ns", [one.time for one in swings], ".3f"),
-        Column("at rest where\nit begins, mm", [one.where_begun for one in swings], ".4g", MILLI),
-        Column("at rest where\nit ends, mm", [one.where_ended for one in swings], ".4g", MILLI),
+        Column(
+            "at rest where\nit begins, mm", [one.where_begun for one in swings], ".4g", TO_MILLI
+        ),
+        Column("at rest where\nit ends, mm", [one.where_ended for one in swings], ".4g", TO_MILLI),
     )
     notes = (
         "The largest distance of the tip from where it would rest, drawn out as far as it is and "

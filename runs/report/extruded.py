@@ -12,8 +12,9 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
+from geometry.typography import TO_MEGA
 from runs.pipeline.beam_output import BeamOutput, MovedSegment
-from runs.report.moving_surface import MEGA, MovingSurface, few_shapes
+from runs.report.moving_surface import MovingSurface, few_shapes
 from shell_model.pictures.boom import DISPLACEMENT_DRAWN, PLAY_OF_SECTION, SECTION_DRAWN
 from shell_model.pictures.deformation import SAME_PLACE, WALL_DRAWN, round_scale
 
@@ -65,7 +66,7 @@ def of_beam(boom: Boom, model: str, output: BeamOutput) -> MovingSurface:
     first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
     moved = np.concatenate([tube.moved for tube in tubes], axis=1)
     parts, shapes = few_shapes(moved.reshape(output.time.size, -1))
-    stress = np.concatenate([tube.stress for tube in tubes], axis=1) / MEGA
+    stress = np.concatenate([tube.stress for tube in tubes], axis=1) * TO_MEGA
     return MovingSurface(
         model=model,
         time=output.time,

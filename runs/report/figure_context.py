@@ -22,8 +22,6 @@ from runs.report.charts import Chart, Curve
 # Where in the report a figure belongs.
 Part = Literal["case", "motion", "rest", "knowledge", "numerics"]
 
-MILLI = 1.0e3
-KILO = 1.0e3
 # Widths of the curves that stand behind the leading ones, as a part of theirs.
 BEHIND = 0.5
 # A close-up lasts so many times as long as the first peak takes.

@@ -8,16 +8,12 @@ from math import log, pi
 from typing import NamedTuple
 
 from geometry.arrays import Array
-from geometry.typography import listed, signed
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.results import Results
 from runs.pipeline.trust import off_at_rest
 from runs.report.answer_tables import (
-    MILLI,
-    PER_KILO,
-    PER_MEGA,
-    PERCENT,
     SHOWN,
     amount,
     hardly,
@@ -87,7 +83,7 @@ def trust_line(results: Results) -> str:
     loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
     offs = {name: off_at_rest(answers.models[reference], answers.models[name]) for name in loose}
     told = [
-        f"{name} {signed(f'{PERCENT * off:+.2g}')} %"
+        f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
         if off is not None
     ]
@@ -139,13 +135,13 @@ def strength_sentence(results: Results) -> str:
     used: list[tuple[float, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
-            bears = f"{number(PERCENT * most.part)} % of their yield strength ({_place(most)})"
+            bears = f"{number(TO_PERCENT * most.part)} % of their yield strength ({_place(most)})"
             used.append((most.part, f"{what} bear {bears}"))
     if pad is not None and pad.utilisation is not None:
-        bears = f"{number(PERCENT * pad.utilisation)} % of their allowable pressure"
+        bears = f"{number(TO_PERCENT * pad.utilisation)} % of their allowable pressure"
         used.append((pad.utilisation, f"pads bear {bears}"))
     if (damage := _life_damage(own)) is not None:
-        used.append((damage, f"{number(PERCENT * damage)} % of a life is used"))
+        used.append((damage, f"{number(TO_PERCENT * damage)} % of a life is used"))
     if not used:
         return ""
     used.sort(reverse=True)
@@ -175,7 +171,7 @@ def play_note(results: Results) -> str:
 
 
 def _more(one: Added) -> str:
-    share = "" if one.share is None else f" ({signed(f'{PERCENT * one.share:+.0f}')} %)"
+    share = "" if one.share is None else f" ({signed(f'{TO_PERCENT * one.share:+.0f}')} %)"
     return f"{amount(one.added, one.unit)}{share}"
 
 
@@ -221,10 +217,10 @@ def _pressure(pad: PressedPad) -> tuple[float, float]:
 def _pad(pad: PressedPad) -> str:
     """Force and pressure of one, and where it is."""
     used = pad.utilisation
-    part = "" if used is None else f", {number(PERCENT * used)} %"
+    part = "" if used is None else f", {number(TO_PERCENT * used)} %"
     beyond = "\nbeyond allowable" if used and used > 1.0 else ""
     return (
-        f"{number(PER_KILO * pad.force)} kN\n{number(PER_MEGA * pad.pressure)} MPa{part}{beyond}\n"
+        f"{number(TO_KILO * pad.force)} kN\n{number(TO_MEGA * pad.pressure)} MPa{part}{beyond}\n"
         f"{pad.joint.inner} {_FACES[pad.place]}, {pad.x:g} m"
     )
 
@@ -236,9 +232,9 @@ def _stress(largest: _Largest | None) -> str:
     if largest is None:
         return NONE
     stress, _, _, part = largest
-    of = "" if part is None else f", {number(PERCENT * part)} %"
+    of = "" if part is None else f", {number(TO_PERCENT * part)} %"
     beyond = "\nbeyond yield" if part and part > 1.0 else ""
-    return f"{number(PER_MEGA * stress)}{of}{beyond}\n{_place(largest)}"
+    return f"{number(TO_MEGA * stress)}{of}{beyond}\n{_place(largest)}"
 
 
 def _place(largest: _Largest) -> str:
@@ -261,7 +257,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Tip swings while it is drawn, mm" in told:
         yield "It swings: about where it would rest; standing, where drives begin and end."
     if "Swings fade to a tenth in, s" in told:
-        ratio = number(PERCENT * results.case.damping.modal)
+        ratio = number(TO_PERCENT * results.case.damping.modal)
         yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} % alone."
     if "Pad that presses most" in told:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
@@ -272,7 +268,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
         yield f"Stresses: % of the yield strength, {strengths}."
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
-        most = [f"{number(PER_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
+        most = [f"{number(TO_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
         yield (
             f"Single triangles beside lines of contact have more ({listed(most)}), the more the "
             "finer the mesh; the table of what the walls carry tells where."
@@ -287,31 +283,31 @@ def _model(model: Model) -> str:
 
 def _span(values: Iterable[float | None]) -> str:
     """From the least to the largest in MPa; empty where none is known."""
-    known = sorted({PER_MEGA * value for value in values if value is not None})
+    known = sorted({TO_MEGA * value for value in values if value is not None})
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
 
 def _at_rest(rests: Sequence[AtRest]) -> str:
-    return fixed(max((rest.tip for rest in rests), key=abs, default=None), 1, MILLI)
+    return fixed(max((rest.tip for rest in rests), key=abs, default=None), 1, TO_MILLI)
 
 
 def _farthest(own: ModelAnswers, tip: Array) -> str:
     """With its sign, and how many times the rest that is."""
     peaks = [peak for peak in own.moved.peaks if peak.what == "deflection"] if own.moved else []
-    return fixed(farthest(tip), 1, MILLI) + (_times(peaks[0]) if peaks else "")
+    return fixed(farthest(tip), 1, TO_MILLI) + (_times(peaks[0]) if peaks else "")
 
 
 def _travels(tip: Array) -> str:
     """From where it starts; what starts in the straight line has no need of it."""
-    return fixed(farthest(tip - tip[0]), 1, MILLI) if tip[0] else NONE
+    return fixed(farthest(tip - tip[0]), 1, TO_MILLI) if tip[0] else NONE
 
 
 def _swings(own: ModelAnswers) -> str:
     """About where it would rest, and the same boom where drives begin and end."""
     if (swing := own.swing) is None:
         return NONE
-    ends = [fixed(end, 1, MILLI) for end in (swing.where_begun, swing.where_ended)]
-    return f"{fixed(swing.tip, 1, MILLI)}\nstanding {ends[0]}\nand {ends[1]}"
+    ends = [fixed(end, 1, TO_MILLI) for end in (swing.where_begun, swing.where_ended)]
+    return f"{fixed(swing.tip, 1, TO_MILLI)}\nstanding {ends[0]}\nand {ends[1]}"
 
 
 def _largest_of(own: ModelAnswers, what: str) -> str:

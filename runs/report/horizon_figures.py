@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.typography import TO_MILLI
 from runs.report import theme
-from runs.report.figure_context import MILLI, Figure, Pen, new_sheet
+from runs.report.figure_context import Figure, Pen, new_sheet
 
 # A stroke for each part of the range.
 DASHES = ("-", ":", "--")
@@ -28,9 +29,9 @@ def slow_peaks(pen: Pen) -> list[Figure]:
         stroke = pen.strokes[name]
         axes.errorbar(
             peaks.time,
-            MILLI * np.array(peaks.height),
+            TO_MILLI * np.array(peaks.height),
             xerr=peaks.time_spread,
-            yerr=MILLI * np.array(peaks.height_spread),
+            yerr=TO_MILLI * np.array(peaks.height_spread),
             color=stroke.color,
             linestyle=stroke.linestyle,
             linewidth=0.7,

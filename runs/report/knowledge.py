@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from dynamics.predictability.horizon import SHARES
-from geometry.typography import signed
+from geometry.typography import TO_MILLI, TO_PERCENT, signed
 from runs.pipeline.comparisons import DECIDES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
@@ -22,9 +22,6 @@ from runs.pipeline.summary import (
 from runs.report.model_tables import horizon_column
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, fixed, number, scientific
-
-MILLI = 1.0e3
-PERCENT = 100.0
 
 # What a table says of ``limits``.
 LIMITS = {
@@ -105,7 +102,9 @@ def _growth_table(measured: Mapping[str, Growth]) -> Table:
     sizes = next(iter(measured.values())).relatives
     columns = (
         Column("model", [name for name, _, _ in rows]),
-        Column("part of the range", [f"{PERCENT * found.shares[i]:g} %" for _, found, i in rows]),
+        Column(
+            "part of the range", [f"{TO_PERCENT * found.shares[i]:g} %" for _, found, i in rows]
+        ),
         *(
             Column(
                 f"change {scientific(size)}\ns", [found.times[k][i] for _, found, i in rows], ".2f"
@@ -137,13 +136,13 @@ def _peak_columns(peaks: Mapping[str, Sequence[str]]) -> list[Column]:
 def _heights(found: CommonPeaks) -> list[str]:
     """Time and height of each peak."""
     times = map(partial(_spread, decimals=3), found.time, found.time_spread)
-    heights = map(partial(_spread, decimals=2, factor=MILLI), found.height, found.height_spread)
+    heights = map(partial(_spread, decimals=2, factor=TO_MILLI), found.height, found.height_spread)
     return [f"{time} s\n{height} mm" for time, height in zip(times, heights, strict=True)]
 
 
 def _differences(found: PeaksLevel) -> list[str]:
     """By how much each peak is later and higher than that of the reference."""
-    signed_milli = partial(_spread, factor=MILLI, sign="+")
+    signed_milli = partial(_spread, factor=TO_MILLI, sign="+")
     times = map(partial(signed_milli, decimals=0), found.time, found.time_spread)
     heights = map(partial(signed_milli, decimals=2), found.height, found.height_spread)
     marks = ("" if explained else " *" for explained in found.explained)
@@ -163,9 +162,9 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
             "largest difference\n% of the range",
             [found.largest for found in points],
             ".2f",
-            PERCENT,
+            TO_PERCENT,
         ),
-        Column("rms\n% of the range", [found.rms for found in points], ".2f", PERCENT),
+        Column("rms\n% of the range", [found.rms for found in points], ".2f", TO_PERCENT),
     )
     distributions = (
         models,
@@ -210,7 +209,7 @@ def _both(values: Sequence[float | None]) -> str:
     """The model's / that of the reference, in mm."""
     if all(value is None for value in values):
         return NONE
-    return " / ".join(fixed(value, 1, MILLI) for value in reversed(values))
+    return " / ".join(fixed(value, 1, TO_MILLI) for value in reversed(values))
 
 
 def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
@@ -219,8 +218,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
         largest = [found.largest[i] for found in whole.values()]
         rms = [found.rms[i] for found in whole.values()]
         columns += [
-            Column(f"largest difference\nto {end:g} s, %", largest, ".2f", PERCENT),
-            Column(f"rms\nto {end:g} s, %", rms, ".2f", PERCENT),
+            Column(f"largest difference\nto {end:g} s, %", largest, ".2f", TO_PERCENT),
+            Column(f"rms\nto {end:g} s, %", rms, ".2f", TO_PERCENT),
         ]
     notes = (
         "Parts of the larger range of both within that time. What is well above the change by half "

@@ -4,16 +4,12 @@
 from __future__ import annotations
 
 from dynamics.predictability.horizon import SHARES
+from geometry.typography import TO_KILO, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.case.build import contact_laws
 from runs.case.regularity import regular
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import Cell, Column, Table
-
-MICRO = 1.0e6
-MILLI = 1.0e3
-PER_KILO = 1.0e-3
-PERCENT = 100.0
 
 
 def model_tables(results: Results) -> list[Table]:
@@ -45,16 +41,16 @@ def model_table(results: Results) -> Table:
             [*(str(model.degrees_of_freedom) for model in models), *("failed" for _ in failed)],
         ),
         Column("modes", [str(model.modes) for model in models]),
-        Column("shortest step\nµs", [model.step for model in models], ".3g", MICRO),
+        Column("shortest step\nµs", [model.step for model in models], ".3g", TO_MICRO),
         *([Column("first contact\ns", contacts, ".4f")] if not touching else []),
         Column("first tip peak\ns", [time for time, _ in peaks], ".3f"),
-        Column("\nmm", [height for _, height in peaks], ".1f", MILLI),
+        Column("\nmm", [height for _, height in peaks], ".1f", TO_MILLI),
         *(horizon_column(models, share, duration) for share in shares),
         Column(
             "peak contact force\nkN",
             [model.peak_contact_force for model in models],
             ".3g",
-            PER_KILO,
+            TO_KILO,
         ),
         Column("energy residual\nof the work", [model.energy_residual for model in models], ".1g"),
         Column("wall time\ns", [model.wall_time for model in models], ".1f"),
@@ -78,7 +74,9 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
         time = model.ensemble.horizon(share)
         return f"> {duration:g}" if time is None else time
 
-    return Column(f"horizon {PERCENT * share:g} %\ns", [horizon(model) for model in models], ".2f")
+    return Column(
+        f"horizon {TO_PERCENT * share:g} %\ns", [horizon(model) for model in models], ".2f"
+    )
 
 
 def step_table(results: Results) -> Table:
@@ -86,7 +84,7 @@ def step_table(results: Results) -> Table:
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
-        Column("shortest step\nµs", [model.step for model in models], ".3g", MICRO),
+        Column("shortest step\nµs", [model.step for model in models], ".3g", TO_MICRO),
         Column("steps", [model.steps for model in models]),
         Column("openings and closings", [model.contact_changes for model in models]),
     ]
@@ -101,12 +99,12 @@ def step_table(results: Results) -> Table:
         columns.append(Column("enough for slow peaks\nsteps", fewest))
         notes.append(
             f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
-            f"of them within {PERCENT * within.within:g} %, beyond the ensemble's spread."
+            f"of them within {TO_PERCENT * within.within:g} %, beyond the ensemble's spread."
         )
     doubled = [model.step_doubling for model in models]
     if any(change is not None for change in doubled):
         heading = "change by twice the step\n% of the tip's range"
-        columns.append(Column(heading, doubled, ".2g", PERCENT))
+        columns.append(Column(heading, doubled, ".2g", TO_PERCENT))
     if results.case.statements:
         notes.append(
             "The paper names at most 2000 steps for the series and more than 4000 for beam "
@@ -132,9 +130,9 @@ def law_table(results: Results) -> Table | None:
     columns = (
         Column("model", [name for name, _, _ in found]),
         Column("joint", [f"{joint.inner} in {joint.outer}" for _, joint, _ in found]),
-        Column("play\nmm", [joint.play for _, joint, _ in found], ".1f", MILLI),
+        Column("play\nmm", [joint.play for _, joint, _ in found], ".1f", TO_MILLI),
         Column("law\nk in N/mⁿ", [str(law) for _, _, law in found]),
-        Column("first tip peak\nmm", peaks, ".1f", MILLI),
+        Column("first tip peak\nmm", peaks, ".1f", TO_MILLI),
     )
     notes = ["Force = k · penetrationⁿ, beyond the part of the play that is on its side."]
     if not all(joint.pad or joint.pads for _, joint, _ in found):
@@ -159,12 +157,12 @@ def space_table(results: Results) -> Table | None:
         other = models[reference].first_peak[place].height
         columns += [
             Column(f"{way}\ns", [time for time, _ in shown], ".3f"),
-            Column(f"{way}\nmm", [height for _, height in shown], ".1f", MILLI),
+            Column(f"{way}\nmm", [height for _, height in shown], ".1f", TO_MILLI),
             Column(
                 f"{way}, off {reference}\n%",
                 [_off(p.height, other) for p in peaks],
                 ".2g",
-                PERCENT,
+                TO_PERCENT,
             ),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
@@ -179,12 +177,12 @@ def buckling_table(results: Results) -> Table | None:
     columns = (
         Column("model", list(models)),
         Column("buckling factor", factors, ".4g"),
-        Column("of the critical\n%", [f and 1.0 / f for f in factors], ".3g", PERCENT),
+        Column("of the critical\n%", [f and 1.0 / f for f in factors], ".3g", TO_PERCENT),
         Column(
             "tip at rest, constant loads\nmm",
             [model.static_tip for model in models.values()],
             ".4g",
-            MILLI,
+            TO_MILLI,
         ),
     )
     notes = (

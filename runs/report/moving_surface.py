@@ -14,6 +14,7 @@ import xarray as xr
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.drawing import drives_below
+from geometry.typography import TO_MEGA
 from runs.pipeline.beam_output import frames
 from shell_model.pictures.boom import SECTION_DRAWN, BoomView, Instant
 from shell_model.pictures.deformation import MovingShell
@@ -23,8 +24,6 @@ from shell_model.pictures.stress import StressScale
 LEFT = 2.0e-3
 # Finer meshes are for programs that are made for them.
 MOST_POINTS = 60_000
-
-MEGA = 1.0e6
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +93,10 @@ class MovingSurface:
             segment=segment,
             shapes=shapes.reshape(len(shapes), *rest.shape),
             parts=parts,
-            colors=np.array(stresses) / MEGA,
+            colors=np.array(stresses) * TO_MEGA,
             quantity="von Mises stress (MPa)",
             magnified=scale,
-            end=StressScale.of(shell, instants).end / MEGA,
+            end=StressScale.of(shell, instants).end * TO_MEGA,
             enlarged=SECTION_DRAWN,
         )
 

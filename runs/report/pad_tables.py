@@ -14,10 +14,10 @@ from dynamics.contact import ContactLaw
 from geometry.arrays import Array
 from geometry.boom import Direction, Joint
 from geometry.joint import SIDES
+from geometry.typography import TO_KILO, TO_MEGA
 from runs.case.build import contact_laws
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
 from runs.pipeline.results import Results
-from runs.report.stress_tables import PER_KILO, PER_MEGA
 from runs.report.tables import Column, Table
 
 # Names of sides.
@@ -56,8 +56,8 @@ def pad_tables(results: Results) -> list[Table]:
         Column("joint", [f"{pad.joint.inner} in {pad.joint.outer}" for pad in pads]),
         Column("at\nm", [f"{pad.x:g}" for pad in pads]),
         Column("side", [pad.place for pad in pads]),
-        Column("peak force\nkN", [pad.force for pad in pads], ".3g", PER_KILO),
-        Column("pressure\nMPa", [pad.pressure for pad in pads], ".3g", PER_MEGA),
+        Column("peak force\nkN", [pad.force for pad in pads], ".3g", TO_KILO),
+        Column("pressure\nMPa", [pad.pressure for pad in pads], ".3g", TO_MEGA),
         Column("utilisation\n%", [pad.utilisation for pad in pads], ".0f", 100.0),
     )
     note = (

@@ -9,17 +9,17 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.typography import signed
+from geometry.typography import TO_MILLI, signed
 from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
 from runs.report import theme
 from runs.report.charts import Chart, Curve
 from runs.report.drawn_axis import of_rests, of_start
-from runs.report.figure_context import MILLI, Figure, Pen, new_sheet
+from runs.report.figure_context import Figure, Pen, new_sheet
 
 # Quantity → heading of its panel, and the factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
-    "deflection": ("deflection (mm)", MILLI),
-    "lateral": ("to the sides (mm)", MILLI),
+    "deflection": ("deflection (mm)", TO_MILLI),
+    "lateral": ("to the sides (mm)", TO_MILLI),
     "normal": ("N (kN)", 1e-3),
     "shear": ("V (kN)", 1e-3),
     "moment": ("M (kN m)", 1e-3),
@@ -68,7 +68,7 @@ def at_rest(pen: Pen) -> list[Figure]:
         + of_rests(pen.case, rests.values())
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
-    title = f"At rest under the largest loads: the tip at {signed(f'{MILLI * far:.1f}')} mm"
+    title = f"At rest under the largest loads: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
     return [_stacked(pen, lines, "at-rest", title, caption)]
 
 

@@ -13,14 +13,14 @@ from tempfile import TemporaryDirectory
 
 import xarray as xr
 
-from geometry.typography import signed
+from geometry.typography import TO_MILLI, signed
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.messages import BadInput
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
 from runs.process.workers import workers
-from runs.report.figure_context import MILLI, Figure
+from runs.report.figure_context import Figure
 from shell_model.pictures import opengl
 from shell_model.pictures.rendering import (
     ANIMATED,
@@ -215,4 +215,4 @@ def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
     else:
         return event, ""
     tip = float(motion["tip"].sel(time=time, method="nearest"))
-    return when, f", the tip at {signed(f'{MILLI * tip:+.1f}')} mm"
+    return when, f", the tip at {signed(f'{TO_MILLI * tip:+.1f}')} mm"

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from geometry.typography import TO_MEGA
 from runs.report.figure_context import Figure, Pen, new_sheet
 from runs.report.theme import PALETTE
-
-MEGA = 1.0e6
 
 
 def stress_history(pen: Pen) -> list[Figure]:
@@ -32,7 +31,7 @@ def stress_history(pen: Pen) -> list[Figure]:
                 ):
                     axes.plot(
                         time,
-                        np.array(largest) / MEGA,
+                        np.array(largest) * TO_MEGA,
                         color=color,
                         linewidth=width,
                         label=f"{row.segment}, {label}",
@@ -40,10 +39,10 @@ def stress_history(pen: Pen) -> list[Figure]:
             axes.set(title=f"x = {x:g} m", ylabel="stress (MPa)", xlim=(0.0, pen.time[-1]))
         panels[-1].set(xlabel="time (s)", ylim=(0.0, None))
         fullest = max(panels, key=lambda axes: len(axes.lines))
-        patch = max(max(row.von_mises_patch) for row in rows) / MEGA
+        patch = max(max(row.von_mises_patch) for row in rows) * TO_MEGA
         title = (
             f"{name}: von Mises stress over a patch up to {patch:.3g} MPa, in a triangle up to "
-            f"{stress.von_mises / MEGA:.3g} MPa"
+            f"{stress.von_mises * TO_MEGA:.3g} MPa"
         )
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.case.build import material_of
 from runs.case.schema import Case
 from runs.pipeline.results import Results
@@ -13,8 +14,6 @@ from runs.report.theme import number
 
 if TYPE_CHECKING:
     from shell_model.stress.summary import LargestPatch, StressSummary
-
-PER_KILO, PER_MEGA, PERCENT = 1.0e-3, 1.0e-6, 100.0
 
 
 def wall_tables(results: Results) -> list[Table]:
@@ -33,9 +32,9 @@ def wall_tables(results: Results) -> list[Table]:
         Column("segment", [section.segment for _, section, _, _ in walls]),
         Column("at x\nm", [f"{section.x:g}" for _, section, _, _ in walls]),
         Column("wall", [wall for _, _, wall, _ in walls]),
-        Column("axial force\nkN", [carried.axial for *_, carried in walls], ".2f", PER_KILO),
-        Column("shear force\nkN", [carried.shear for *_, carried in walls], ".2f", PER_KILO),
-        Column("moment\nkN m", [carried.moment for *_, carried in walls], ".2f", PER_KILO),
+        Column("axial force\nkN", [carried.axial for *_, carried in walls], ".2f", TO_KILO),
+        Column("shear force\nkN", [carried.shear for *_, carried in walls], ".2f", TO_KILO),
+        Column("moment\nkN m", [carried.moment for *_, carried in walls], ".2f", TO_KILO),
     )
     largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
     means = (
@@ -51,7 +50,7 @@ def _largest(case: Case, stress: StressSummary) -> str:
     """What is judged, the mean over a patch, before what tells the instant alone."""
     triangle = (
         f"single triangle, beside a line of contact the more the finer the mesh: "
-        f"{number(PER_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
+        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
     )
@@ -59,7 +58,7 @@ def _largest(case: Case, stress: StressSummary) -> str:
         return f"largest von Mises stress of a {triangle}"
     return (
         "largest von Mises stress over a patch of half a wall, which settles as the mesh refines: "
-        f"{number(PER_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
+        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
         f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
     )
 
@@ -70,4 +69,4 @@ def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
     strength = material_of(case, names.index(stress.segment)).yield_strength
     if strength is None:
         return ""
-    return f" ({number(PERCENT * stress.von_mises / strength, 3)} % of the yield strength)"
+    return f" ({number(TO_PERCENT * stress.von_mises / strength, 3)} % of the yield strength)"

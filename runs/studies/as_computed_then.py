@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.typography import TO_PERCENT
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.paper import then
@@ -33,8 +34,6 @@ OUT = Path("runs/out/then")
 TITLE = "Statements of the paper as they were computed then"
 # Figures show energy from nowhere up to so much, in percent, and so many points of a curve.
 CUT, POINTS = 150.0, 1000
-
-_PERCENT = 100.0
 
 
 def study(tell: Callable[[str], None]) -> Study:
@@ -60,7 +59,7 @@ def outcome_table(survey: Survey) -> Table:
         {"statement": "", "shown": "", "by": ""},
         rows,
         (
-            f"Shown: by some numerics in {_PERCENT * MOST:g} % of the runs or more. Runs have "
+            f"Shown: by some numerics in {TO_PERCENT * MOST:g} % of the runs or more. Runs have "
             f"{', '.join(map(str, MODES))} modes of the elements, {MEMBERS} each with loads "
             "changed by 1e-9.",
         ),
@@ -73,7 +72,7 @@ def free_table(survey: Survey) -> Table:
     peak = np.mean([one.elements.first_peak for one in example.well])
     rows: list[Sequence[Cell]] = []
     for how, samples in (("solved well", example.well), *survey.free.items()):
-        off = _PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
+        off = TO_PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
         alike, mixed = (
             [one.peaks(example.cutoff) for one in found]
             for found in (samples, example.mixed(samples))
@@ -101,18 +100,18 @@ def rubbed_table(survey: Survey) -> Table:
     rows: list[Sequence[Cell]] = []
     example = survey.with_friction
     for how, samples in (("solved well", example.well), *survey.rubbed.items()):
-        apart = _PERCENT * np.array([one.apart() for one in samples])
+        apart = TO_PERCENT * np.array([one.apart() for one in samples])
         rows.append(
             (
                 str(how),
                 *_energies([one.elements for one in samples]),
-                _span([_PERCENT * one.elements.unsettled for one in samples]),
-                _span([_PERCENT * example.off(one.elements) for one in samples]),
+                _span([TO_PERCENT * one.elements.unsettled for one in samples]),
+                _span([TO_PERCENT * example.off(one.elements) for one in samples]),
                 _span(apart[:, 0]),
                 _span(apart[:, 1]),
-                _PERCENT * share(one.stratifies() for one in samples),
-                _PERCENT * share(one.stratifies() for one in example.mixed(samples)),
-                _PERCENT * share(map(lost_then, samples)),
+                TO_PERCENT * share(one.stratifies() for one in samples),
+                TO_PERCENT * share(one.stratifies() for one in example.mixed(samples)),
+                TO_PERCENT * share(map(lost_then, samples)),
             )
         )
     return Table.of_rows(
@@ -208,7 +207,7 @@ def plots(survey: Survey) -> list[Plot]:
                 f"{what}: energy from nowhere",
                 "time (s)",
                 "% of the energy put in",
-                {label: _cut(run.time, _PERCENT * run.balance) for label, run in runs.items()},
+                {label: _cut(run.time, TO_PERCENT * run.balance) for label, run in runs.items()},
                 f"Gained above, lost below zero; cut at {CUT:g} %.",
                 logarithmic=False,
             ),
@@ -219,15 +218,15 @@ def plots(survey: Survey) -> list[Plot]:
 def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
     """When their energy breaks out, and what is gained or lost where it does not."""
     breaks = [run.breaks for run in runs]
-    ends = [_PERCENT * run.balance[-1] for run in runs]
-    return _span(breaks), _span([end for end in ends if end < _PERCENT])
+    ends = [TO_PERCENT * run.balance[-1] for run in runs]
+    return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
 
 
 def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
     """Medians of how far peaks are apart early and late, and the runs that show S3, in percent."""
     early, late = np.median(peaks, axis=0)
     shown = share(before <= DIVERGENCE < after for before, after in peaks)
-    return _PERCENT * float(early), _PERCENT * float(late), _PERCENT * shown
+    return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown
 
 
 def _span(values: Sequence[float] | Array) -> str:

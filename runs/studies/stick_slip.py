@@ -17,6 +17,7 @@ from dynamics.stick_slip import Followed, Pulled, follow
 from dynamics.trajectory import Trajectory
 from dynamics.travel import SCurve, Stroke
 from geometry.arrays import Array
+from geometry.typography import TO_MILLI
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
@@ -34,7 +35,6 @@ RATIOS = (0.01, 0.1, 0.5)
 # Of the drive of the paper's boom in N/m, damped by 0.5 %, with static friction of 0.3.
 ROPES = (2.0e5, 1.0e6, 5.0e6)
 GRAVITY = 9.80665
-KILO = 1.0e3
 
 ROPE = Pulled(MASS, STIFFNESS, sticking=STICKING)
 CYCLE = "sticking until the spring is taut, slipping on a circle"
@@ -137,7 +137,7 @@ def _one_way(stiffness: float) -> list[float]:
     )
     lag = float(np.abs(data["drive_lag"]).max())
     return [
-        stiffness, told.sticks, KILO * told.slip, 100.0 * lag,
+        stiffness, told.sticks, TO_MILLI * told.slip, 100.0 * lag,
         100.0 * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),
         100.0 * float(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1])),
     ]  # fmt: skip

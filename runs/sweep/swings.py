@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 
 from geometry.arrays import Array
+from geometry.typography import TO_MILLI
 from runs.report import theme
-from runs.report.figure_context import MILLI, new_sheet
+from runs.report.figure_context import new_sheet
 
 # A swing that exceeds the level by no more than this part is no larger: steps and blows move it so.
 _SAME = 1.0e-2
@@ -75,10 +76,10 @@ def said(name: str, swings: Swings) -> Iterator[str]:
     """What a designer asks, a sentence for each end of the way."""
     for end, level in swings.levels.items():
         fastest = fastest_within(swings, end)
-        ends = dict.fromkeys(theme.number(MILLI * of) for of in (level.min(), level.max()))
+        ends = dict.fromkeys(theme.number(TO_MILLI * of) for of in (level.min(), level.max()))
         rest = f"at rest {_ENDS[end][0]}, {' to '.join(ends)} mm"
         if fastest is None:
-            slow, least = swings.speed[0], theme.number(MILLI * float(swings.swing[0]))
+            slow, least = swings.speed[0], theme.number(TO_MILLI * float(swings.swing[0]))
             yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
         elif fastest == swings.speed[-1]:
             yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, the fastest here"
@@ -102,13 +103,18 @@ def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Pat
         color = strokes[name].color
         label = f"{name}, drawn out"
         axes.plot(
-            one.speed, MILLI * one.swing, color=color, marker="o", markersize=4.0, label=label
+            one.speed, TO_MILLI * one.swing, color=color, marker="o", markersize=4.0, label=label
         )
         for end, level in one.levels.items():
             where, dashes = _ENDS[end]
             label = f"{name}, at rest {where}"
             axes.plot(
-                one.speed, MILLI * level, color=color, linestyle=dashes, linewidth=1.0, label=label
+                one.speed,
+                TO_MILLI * level,
+                color=color,
+                linestyle=dashes,
+                linewidth=1.0,
+                label=label,
             )
     axes.set(xlabel="mean speed of the drive (m/s)", ylabel="swing of the tip (mm)")
     axes.set_ylim(bottom=0.0)

@@ -26,7 +26,8 @@ MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-tied")
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
     """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
     case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
-    joints = tuple(joint.model_copy(update={"friction": friction}) for joint in case.joints)
+    rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
+    joints = tuple(joint.model_copy(update=rubbing) for joint in case.joints)
     time = case.time.model_copy(update={"duration": 10.0})
     models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
     asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
