@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A gap system in fewer coordinates: its slow modes, and what else gives way where it is pushed.
 
-The lowest modes stay as they are. Of the others the motions that forces excite are kept, matched
-with ``MOMENTS`` derivatives at rest, so that statics is exact and the inertia of what gives way is
-right to the first orders (MacNeal 1971; Rubin 1975, whose residual modes are the first block).
+Some of the modes stay as they are: a few as the slowest, the others as those whose inertia
+answers most to what pushes. Under a push b a mode gives way by b²/ω², its inertia by b²/ω⁴. Of the
+rest the motions that forces excite are kept, matched with ``MOMENTS`` derivatives at rest, so that
+statics is exact and the inertia of what gives way is right to the first orders (MacNeal 1971; Rubin
+1975, whose residual modes are the first block).
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ from dynamics.gap_system import GapSystem, Observer
 MOMENTS = 2
 # Blocks take no more than this part of the coordinates, unless one alone does.
 _OF_ALL = 1.0 / 3.0
+# Of the coordinates, the slowest modes whether anything pushes them or not.
+_SLOWEST = 1.0 / 8.0
 # A push that is left with less than this part of its size is in the space already.
 _DEPENDENT = 1.0e-6
 
@@ -39,11 +43,12 @@ def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
         raise ValueError("a system is condensed before it is damped")
     if system.num_modes <= most:
         return system, np.eye(system.num_modes)
-    order = np.argsort(system.omega2, kind="stable")
     pushes = _pushes(system)
+    order = _telling_first(system.omega2, pushes, round(_SLOWEST * most))
     count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
     moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
-    slow, fast = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
+    kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
+    slow, fast = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
     omega2, shapes = fewer(system.omega2, pushes, slow, fast, moments)
     return _projected(system, omega2, shapes), shapes
 
@@ -69,6 +74,17 @@ def fewer(
     shapes[slow, np.arange(slow.size)] = 1.0
     shapes[fast, slow.size :] = basis @ turn
     return np.concatenate([omega2[slow], stiffness]), shapes
+
+
+def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:
+    """(num_modes,) positions: so many of the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
+    elastic = omega2 > 0.0
+    gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
+    whole = gives.sum(axis=1, keepdims=True)
+    parts = (gives / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
+    told = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
+    told[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
+    return np.argsort(-told, kind="stable")
 
 
 def _pushes(system: GapSystem) -> Array:
