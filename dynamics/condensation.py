@@ -84,7 +84,7 @@ def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:
     parts = (gives / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
     told = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
     told[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
-    return np.argsort(-told, kind="stable")
+    return np.asarray(np.lexsort((omega2, -told)))
 
 
 def _pushes(system: GapSystem) -> Array:

@@ -86,6 +86,33 @@ def test_a_condensed_system_answers_slow_forces_alike() -> None:
     assert error < 1e-3 * np.abs(answer(cut) - answer(whole)).max()
 
 
+def test_modes_that_are_pushed_are_kept_before_slower_ones_that_are_not() -> None:
+    """Reference: analytic, of pushes of one size that leave out every second mode the order by
+    b²/ω⁴ is that of ω; of 16 modes beside two blocks of four the slowest eighth of 24 is kept.
+    """
+    whole = system()
+    signs = np.sign(np.vstack([whole.rows, whole.friction_rows, whole.load]))
+    signs[:, 1::2] = 0.0
+    few, _ = condensed(replace(whole, rows=signs[:2], friction_rows=signs[2:3], load=signs[3]), 24)
+    expected = whole.frequencies[np.r_[0, 1, 2, 4:30:2]]
+    np.testing.assert_allclose(few.frequencies[:16], expected, rtol=1e-12, atol=1e-9)
+
+
+def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
+    """Reference: analytic, the compliance of the whole system, whose rigid motion comes last."""
+    rows = np.random.default_rng(4).normal(size=(24, MODES))
+    whole = replace(
+        system(),
+        omega2=system().omega2[::-1],
+        rows=rows,
+        laws=[PowerContact(1e7, 1.0, clearance=0.01)] * 24,
+        station_of_row=np.arange(24) % 2,
+    )
+    few, _ = condensed(whole, 24)
+    assert few.omega2.min() == 0.0
+    np.testing.assert_allclose(elastic_compliance(few), elastic_compliance(whole), rtol=1e-8)
+
+
 def test_few_coordinates_are_left_as_they_are() -> None:
     """Reference: non-regression, the same object."""
     few = system(12)
