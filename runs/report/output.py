@@ -198,6 +198,8 @@ def _draw_figures(results: Results, folder: Path) -> list[Figure]:
         shutil.rmtree(figures)
         figures.mkdir()
     drawn = draw(results, figures)
+    for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
+        earlier.unlink()
     _write_text(known, drawn_of)
     return drawn
 
