@@ -33,7 +33,8 @@ def print_models(results: Results, console: Console) -> None:
     """Print the table of a run's models, and what they are not worth."""
     found = model_table(results)
     columns = [column for column in found.columns if column.heading in SHOWN]
-    models = Table(title=Text(results.case.title), title_justify="left", box=SIMPLE_HEAD)
+    title = Text(results.case.title)
+    models = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     for i, column in enumerate(columns):
         heading = SHOWN[column.heading]
         justify: Literal["left", "right"] = "right" if i else "left"
