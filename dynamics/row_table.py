@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from dynamics.arrays import Array
 
@@ -87,6 +86,8 @@ class RowTable:
 
         Its third derivative does not jump at the first knot inside nor at the last one.
         """
+        from scipy.interpolate import CubicSpline
+
         lengths = np.diff(knots)[:, None, None]
         powers = CubicSpline(knots, rows).c[::-1]
         pieces = [cubic * lengths**power for power, cubic in enumerate(powers)]
