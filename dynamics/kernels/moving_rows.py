@@ -68,6 +68,18 @@ def _stretches(cubics: Array) -> list[tuple[int, int]]:
 
 
 @njit(**SUMS)
+def knot_before(knots: Array, low: int, high: int, way: float) -> int:
+    """The last of the knots from ``low`` to before ``high`` that a way in m has passed."""
+    while high - low > 1:
+        middle = (low + high) // 2
+        if knots[middle] <= way:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@njit(**SUMS)
 def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
     """Set those of all rows that move to where travels have come, ``ways`` (num_travels,) in m."""
     knots, starts, coefficients, moving = tables
@@ -75,13 +87,8 @@ def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
     for m in range(moving.shape[0]):
         row, travel, first, begin, end = moving[m]
         if travel != found:
-            found, low, high = travel, starts[travel], starts[travel + 1] - 1
-            while high - low > 1:
-                middle = (low + high) // 2
-                if knots[middle] <= ways[travel]:
-                    low = middle
-                else:
-                    high = middle
+            found = travel
+            low = knot_before(knots, starts[travel], starts[travel + 1] - 1, ways[travel])
             u = (ways[travel] - knots[low]) / (knots[low + 1] - knots[low])
         piece = first + low - starts[travel]
         for i in range(np.uint64(begin), np.uint64(end)):

@@ -9,6 +9,7 @@ from numba import njit
 from dynamics.arrays import Array, Indices
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.moving_rows import knot_before
 
 # Of each thrust in a plane: its force in N (num_thrusts,); its travel, its first and its last knot,
 # the first of its pieces, and how many modes it moves (num_thrusts, 5); which these are
@@ -78,14 +79,8 @@ def press_along(ways: Array, thrusts: Thrusts, a: Array, force: Array, slopes: A
     own, total = scratch
     force[:] = 0.0
     for t in range(forces.size):
-        travel, low, high, first, count = where[t]
-        start = low
-        while high - low > 1:
-            middle = (low + high) // 2
-            if knots[middle] <= ways[travel]:
-                low = middle
-            else:
-                high = middle
+        travel, start, end, first, count = where[t]
+        low = knot_before(knots, start, end, ways[travel])
         length = knots[low + 1] - knots[low]
         u = (ways[travel] - knots[low]) / length
         p = first + low - start

@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from concurrent.futures import Executor
-from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
-from tempfile import gettempdir
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -21,7 +17,6 @@ from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.schema import Case, EnsembleTable, Model
-from runs.folder.files import in_turn
 from runs.pipeline.models import damped
 from runs.pipeline.summary import Growth
 
@@ -35,9 +30,6 @@ _Found = TypeVar("_Found")
 
 # How often a step that leaves energy unaccounted for is halved.
 HALVINGS = 2
-
-# Of a user's processes that compile.
-_COMPILING = f"protractile-{os.getuid()}.compiling"
 
 # Days of computing: what asks for more is a slip of the pen.
 MOST_STEPS = 1.0e10
@@ -95,14 +87,8 @@ class Plan:
         return self.halved(lambda plan: plan.integrator(plan.motion))[0]
 
     def warm(self) -> None:
-        """One output compiles the time loop, so that a wall time is the motion's own.
-
-        Of processes that want the same loops at a time one compiles, and the others find its work.
-        """
-        with ExitStack() as stack:
-            with suppress(OSError):
-                stack.enter_context(in_turn(Path(gettempdir()) / _COMPILING))
-            self.integrator(replace(self.motion, duration=self.motion.output_step))
+        """One output compiles the time loop, so that a wall time is the motion's own."""
+        self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Progress) -> Trajectory:
         """The motion itself."""

@@ -37,7 +37,7 @@ from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
-from runs.pipeline.summary import Ensembles, ModelSummary, Peak, StickSlips, Summary
+from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
 
 
 class Stages:
@@ -323,9 +323,7 @@ def _move_at(
         trajectory = plan.trajectory(told)
     summary = _summary(model, system, trajectory, num_dofs)
     if stick_slip := trajectory.data.attrs.get("stick_slip"):
-        summary.stick_slip = {
-            name: StickSlips.model_validate(of) for name, of in stick_slip.items()
-        }
+        summary.stick_slip = stick_slip
     if system.frictions and regular(case):
         with stages.stage("twice the step") as told:
             summary.step_doubling = plan.change_by_longer_steps(trajectory, told)

@@ -15,6 +15,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
 
+from dynamics.stick_slip import StickSlip
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
 from shell_model.stress.summary import StressSummary
@@ -155,19 +156,6 @@ class CalibrationCard(Entry):
     springs: list[StationSpring]
 
 
-class StickSlips(Measured):
-    """Of :class:`dynamics.stick_slip.StickSlip`, in N, m, m/s and m/s²."""
-
-    mean: float
-    peak: float
-    sticks: int
-    slip: float
-    speed: float
-    acceleration: float
-    behind: float
-    energy_residual: float
-
-
 class ModelSummary(Entry):
     """What one model has found: ``frequencies`` in Hz, ``seconds`` of wall time by the stage.
 
@@ -208,7 +196,7 @@ class ModelSummary(Entry):
     mesh_error: Known = None
     stress: StressSummary | None = None
     calibration: CalibrationCard | None = None
-    stick_slip: dict[str, StickSlips] = {}
+    stick_slip: dict[str, StickSlip] = {}
 
 
 class PointwiseLevel(Measured):

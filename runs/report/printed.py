@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from geometry.typography import TO_MILLI, TO_PERCENT
 from runs.pipeline.results import Results
 from runs.process.shown import message, shown
 from runs.process.terminal import say
@@ -53,7 +54,7 @@ def print_models(results: Results, console: Console) -> None:
         if (error := model.mesh_error) is not None:
             console.print(
                 f"{name}: where the segments touch, the walls give way by "
-                f"{number(100.0 * error, 2)} % more or less than on an infinitely fine mesh",
+                f"{number(TO_PERCENT * error, 2)} % more or less than on an infinitely fine mesh",
                 markup=False,
             )
     _print_swings(results, console)
@@ -68,10 +69,10 @@ def _print_swings(results: Results, console: Console) -> None:
         if (swing := own.swing) is None:
             continue
         levels = swing.where_begun, swing.where_ended
-        ends = (number(None if level is None else 1.0e3 * level) for level in levels)
+        ends = (number(None if level is None else TO_MILLI * level) for level in levels)
         console.print(
             f"{name}: drawn out at {number(swing.speed)} m/s in the mean the tip swings by "
-            f"{number(1.0e3 * swing.tip)} mm, at rest by {' and '.join(ends)} mm where that "
+            f"{number(TO_MILLI * swing.tip)} mm, at rest by {' and '.join(ends)} mm where that "
             "begins and ends",
             markup=False,
             highlight=False,

@@ -19,6 +19,7 @@ from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import Member, Vary, run_members
 from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
+from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
 from runs.case.regularity import regular
 from runs.case.schema import Case, Model
@@ -35,11 +36,11 @@ if TYPE_CHECKING:
 TIP_OFF = "tip_off"
 # Each as a part of the reference's.
 DISTANCES = (
-    Quantity("first_peak_off", "1", "first peak off", 100.0, "%"),
-    Quantity("slow_period_off", "1", "slow period off", 100.0, "%"),
-    Quantity("pad_force_off", "1", "pad force off", 100.0, "%"),
-    Quantity("stress_off", "1", "stress off", 100.0, "%"),
-    Quantity(TIP_OFF, "1", "tip off", 100.0, "%"),
+    Quantity("first_peak_off", "1", "first peak off", TO_PERCENT, "%"),
+    Quantity("slow_period_off", "1", "slow period off", TO_PERCENT, "%"),
+    Quantity("pad_force_off", "1", "pad force off", TO_PERCENT, "%"),
+    Quantity("stress_off", "1", "stress off", TO_PERCENT, "%"),
+    Quantity(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
 )
 # Up to when tips are compared, in s: of a point, and of all its models.
 UNTIL = "compared_until"

@@ -21,6 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.theme import number
@@ -33,9 +34,9 @@ RC = {**theme.RC, "axes.formatter.useoffset": False}
 # Cells of a map that can be read, along each axis.
 MOST_CELLS = 10
 # From so many of a unit on, or below so many, the numbers of a key are shown in another one.
-_LARGE = {"N": (1.0e3, 1.0e-3, "kN"), "N m": (1.0e3, 1.0e-3, "kN m"), "Pa": (1.0e5, 1.0e-6, "MPa"),
-          "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
-_SMALL = {"m": (1.0, 1.0e3, "mm")}
+_LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
+          "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
+_SMALL = {"m": (1.0, TO_MILLI, "mm")}
 # What changes by less than this part is the same.
 SAME = 1.0e-6
 # From this ratio of the largest to the smallest value on an axis is logarithmic.

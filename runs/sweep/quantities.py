@@ -9,6 +9,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.results import Results
 
@@ -47,28 +48,34 @@ class Quantity:
 
 
 # Of the tip, as a part of its range, where friction makes motions regular.
-DOUBLED = Quantity("step_doubling", "1", "what twice the step changes", 100.0, "%", charted=False)
+DOUBLED = Quantity(
+    "step_doubling", "1", "what twice the step changes", TO_PERCENT, "%", charted=False
+)
 
 # Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
-    Quantity("tip_at_rest", "m", "tip at rest", 1.0e3, "mm"),
-    Quantity("tip_amplitude", "m", "tip amplitude", 1.0e3, "mm"),
+    Quantity("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
+    Quantity("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
     Quantity("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
-    Quantity("contact_force", "N", "contact force", 1.0e-3, "kN"),
-    Quantity("stress", "Pa", "stress", 1.0e-6, "MPa"),
-    Quantity("wall_stress", "Pa", "wall stress", 1.0e-6, "MPa"),
+    Quantity("contact_force", "N", "contact force", TO_KILO, "kN"),
+    Quantity("stress", "Pa", "stress", TO_MEGA, "MPa"),
+    Quantity("wall_stress", "Pa", "wall stress", TO_MEGA, "MPa"),
     Quantity("damage", "1", "damage", 1.0, "–", logarithmic=True),
     Quantity("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
     Quantity("mass", "kg", "mass", 1.0, "kg"),
     Quantity("settling_time", "s", "settling time", 1.0, "s"),
     Quantity("first_contact", "s", "first contact", 1.0, "s"),
-    Quantity("swing", "m", "swing while drawn out", 1.0e3, "mm"),
-    Quantity("swing_where_begun", "m", "swing at rest where it begins", 1.0e3, "mm", charted=False),
-    Quantity("swing_where_ended", "m", "swing at rest where it ends", 1.0e3, "mm", charted=False),
-    Quantity("drive_force", "N", "largest force of a drive that gives way", 1.0e-3, "kN"),
-    Quantity("drive_slip", "m", "longest slip on a drive", 1.0e3, "mm"),
+    Quantity("swing", "m", "swing while drawn out", TO_MILLI, "mm"),
+    Quantity(
+        "swing_where_begun", "m", "swing at rest where it begins", TO_MILLI, "mm", charted=False
+    ),
+    Quantity(
+        "swing_where_ended", "m", "swing at rest where it ends", TO_MILLI, "mm", charted=False
+    ),
+    Quantity("drive_force", "N", "largest force of a drive that gives way", TO_KILO, "kN"),
+    Quantity("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
     Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
-    Quantity("peak_contact_force", "N", "peak of a blow", 1.0e-3, "kN", charted=False),
+    Quantity("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
     Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
     DOUBLED,
 )

@@ -111,6 +111,15 @@ def test_other_drives_push() -> None:
 Friction = Callable[[Array | float], Array]
 
 
+class Stops:
+    """An event that ends a slip, for solve_ivp."""
+
+    terminal, direction = True, -1
+
+    def __call__(self, _: float, y: Array, sign: float) -> float:
+        return float(sign * y[1] + (1e-14 if y[1] == 0.0 else 0.0))
+
+
 def by_runge_kutta(
     pulled: Pulled, way: SCurve, end: float, friction: Friction
 ) -> tuple[float, int]:
@@ -124,10 +133,6 @@ def by_runge_kutta(
     def slides(t: float, y: Array, sign: float) -> list[float]:
         return [y[1], float(force(t, *y) - sign * friction(t)) / pulled.mass]
 
-    def stops(_: float, y: Array, sign: float) -> float:
-        return float(sign * y[1] + (1e-14 if y[1] == 0.0 else 0.0))
-
-    stops.terminal, stops.direction = True, -1  # type: ignore[attr-defined]
     time, place, sticks = 0.0, 0.0, 0
     while time < end:
 
@@ -142,7 +147,7 @@ def by_runge_kutta(
         sign = float(np.sign(force(time, place, 0.0)))
         run = solve_ivp(
             slides, (time, end), [place, 0.0],
-            args=(sign,), events=stops, rtol=1e-11, atol=1e-13, max_step=0.01,
+            args=(sign,), events=Stops(), rtol=1e-11, atol=1e-13, max_step=0.01,
         )  # fmt: skip
         time, place = float(run.t[-1]), float(run.y[0, -1])
         sticks += run.t_events[0].size

@@ -238,13 +238,16 @@ def test_a_report_is_not_replaced_around_its_reader(
         assert protractile(command, ".") == (2, "", f"protractile: {line}\n")
 
 
-def test_a_shell_without_fenicsx_is_one_line(
-    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def without_fenicsx(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.startswith("shell_model.")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "dolfinx", None)
     monkeypatch.setitem(sys.modules, "mpi4py", None)
+
+
+@pytest.mark.usefixtures("without_fenicsx")
+def test_a_shell_without_fenicsx_is_one_line(protractile: Protractile) -> None:
     status, out, err = protractile("run", "case.toml", "--out", "out")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(
@@ -257,14 +260,9 @@ def test_a_shell_without_fenicsx_is_one_line(
     assert not Path("out").exists()
 
 
-def test_a_beam_is_exported_without_fenicsx(
-    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.usefixtures("without_fenicsx")
+def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
     """Reference: by hand, the last model of beam elements with play; a shell calibrates another."""
-    for name in [name for name in sys.modules if name.startswith("shell_model.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "dolfinx", None)
-    monkeypatch.setitem(sys.modules, "mpi4py", None)
     assert protractile("export", "case.toml", "--to", "opensees") == (0, "case.py\n", "")
     edit('name = "beam-fe"\n', 'name = "beam-fe"\ncalibrated_by = "shell"\n')
     to = "export", "case.toml", "--to", "opensees", "--model"
