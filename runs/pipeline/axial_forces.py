@@ -11,7 +11,7 @@ from rich.table import Table
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA
 from runs.case.schema import Case
-from runs.pipeline.cautions import of_buckling
+from runs.pipeline.proportions import of_buckling
 
 
 def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:

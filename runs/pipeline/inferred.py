@@ -20,11 +20,11 @@ from runs.case.contact import JointTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.axial_forces import print_axial_forces
-from runs.pipeline.cautions import slips
+from runs.pipeline.cautions import of_case
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.estimates import of_run
 from runs.pipeline.models import build, damped
-from runs.pipeline.slipping import slip_cautions, slip_lines
+from runs.pipeline.slipping import slip_lines
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
@@ -55,8 +55,8 @@ def print_inferred(case: Case, console: Console) -> None:
     print_statics(case, boom, console)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
-    for slip in (*slips(case, boom), *slip_cautions(case, boom)):
-        console.print(slip, markup=False, highlight=False)
+    for caution in of_case(case, boom):
+        console.print(caution, markup=False, highlight=False)
     console.print(f"A run may take {of_run(case)}.", highlight=False)
 
 

@@ -20,14 +20,12 @@ from geometry.cylinder import forces
 from geometry.observation import KINDS
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.actions import series_notes
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
-from runs.pipeline.cautions import of_buckling, of_tip, slips
+from runs.pipeline.cautions import of_run as cautions_of
 from runs.pipeline.comparisons import leading, reference_of
 from runs.pipeline.place_names import place_names
-from runs.pipeline.slipping import lag_cautions, slip_cautions
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -38,9 +36,6 @@ ENSEMBLES = "ensembles.nc"
 
 # Of climate and forecast data (CF), as far as a boom's motion can follow it.
 CONVENTIONS = "CF-1.8"
-
-# Relative error of a reduction, or of a mesh, beyond which a run says so.
-POOR = 0.01
 
 
 @dataclass(frozen=True)
@@ -103,7 +98,10 @@ class Results:
                 raise BadInput(
                     str(folder), name, f"is not of the case in {CASE}; run the case again"
                 )
-        return cls(case, trajectories, summary, ensembles)
+        results = cls(case, trajectories, summary, ensembles)
+        if "cautions" not in summary.model_fields_set:
+            summary.cautions = cautions_of(case, results.boom, trajectories, summary)
+        return results
 
     @property
     def ran(self) -> list[Model]:
@@ -126,56 +124,6 @@ class Results:
         names = list(self.summary.models)
         first = leading(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
-
-    def cautions(self) -> list[str]:
-        """What the results are not worth, a line each."""
-        boom = self.boom
-        largest = np.abs(self.trajectories["tip"].values).max(axis=1)
-        models = self.summary.models.items()
-        far = [
-            f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of the "
-            "boom's length: small displacements do not hold; check units and loads"
-            for name, move in zip(self.trajectories["model"].values, largest, strict=True)
-            if move > 0.1 * boom.length
-        ]
-        poor = [
-            f"caution: the {model.modes} coordinates of {name} err by {100.0 * error:.2g} % "
-            "where the segments touch; allow more modes, or --modes auto"
-            for name, model in models
-            if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR
-        ]
-        coarse = [
-            f"caution: the mesh of {name} errs by {100.0 * error:.2g} % of what the walls give way "
-            "where the segments touch; give a smaller mesh_size"
-            for name, model in models
-            if (error := model.mesh_error or 0.0) > POOR
-        ]
-        bent = [
-            caution
-            for name, model in models
-            for caution in (
-                *of_buckling(name, model.critical_factor),
-                *of_tip(f"in {name}", model.static_tip, boom),
-            )
-        ]
-        failed = [f"failed: {name}: {why}" for name, why in self.summary.failures.items()]
-        halved = [
-            f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
-            for name, model in models
-            if (refused := model.refused_steps)
-        ]
-        return (
-            slips(self.case, boom)
-            + slip_cautions(self.case, boom)
-            + lag_cautions(boom, self.trajectories)
-            + failed
-            + bent
-            + far
-            + poor
-            + coarse
-            + halved
-            + series_notes(self.case)
-        )
 
 
 def read_fields(path: Path) -> xr.Dataset:

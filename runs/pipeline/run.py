@@ -23,18 +23,18 @@ from runs.case.kinds.model import Built
 from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
-from runs.pipeline import members
+from runs.pipeline import cautions, members
 from runs.pipeline.answering import of_model, of_run
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
 from runs.pipeline.card import card
-from runs.pipeline.cautions import static_tip
 from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
+from runs.pipeline.proportions import static_tip
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
@@ -92,7 +92,7 @@ class Run:
         }
 
     def answer(self) -> None:
-        """Put what a designer asks, answered, into the summary.
+        """Put what a designer asks, answered, and what the results are not worth, into the summary.
 
         A model that has moved and cannot be answered for is in ``failures``, too.
         """
@@ -110,6 +110,7 @@ class Run:
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
         summary.answers = of_run(boom, case, summary, answers)
+        summary.cautions = cautions.of_run(case, boom, self.results.trajectories, summary)
 
 
 def run_case(case: Case, file: str, means: Means) -> Run | None:

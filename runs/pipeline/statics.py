@@ -21,7 +21,7 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.answers import Reaction
 from runs.pipeline.at_rest import pressed, tilts
-from runs.pipeline.cautions import of_tip
+from runs.pipeline.proportions import of_tip
 from runs.pipeline.section_forces import borne_along
 
 # A part of what others bear that is none.

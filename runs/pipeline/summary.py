@@ -265,7 +265,10 @@ class Snapshots(Entry):
 
 
 class Summary(Entry):
-    """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not."""
+    """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not.
+
+    ``cautions`` are lines that say what the results are not worth.
+    """
 
     title: str
     case_hash: str
@@ -274,6 +277,7 @@ class Summary(Entry):
     failures: dict[str, str]
     ensemble: Ensembles | None = None
     answers: Answers | None = None
+    cautions: list[str] = []
     comparisons: Comparisons | None = None
     snapshots: Snapshots = Snapshots(written=[], skipped=None)
 

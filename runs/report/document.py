@@ -78,7 +78,7 @@ def render(
         "report.html",
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
-        cautions=results.cautions(),
+        cautions=results.summary.cautions,
         counts={kind: judged.count(kind) for kind in MARKS},
         verdicts=[
             (v, _measured(v.measured, v), _measured(v.threshold, v), _evidence(v, shown))

@@ -58,7 +58,7 @@ def print_models(results: Results, console: Console) -> None:
                 markup=False,
             )
     _print_swings(results, console)
-    for caution in results.cautions():
+    for caution in results.summary.cautions:
         console.print(caution, markup=False)
 
 

@@ -30,8 +30,8 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.pipeline.cautions import static_tip
 from runs.pipeline.models import build, workshop
+from runs.pipeline.proportions import static_tip
 from runs.report.tables import Cell, Table
 from runs.studies.calibrated_beams import EULER, PLAIN, SHELL, SPRUNG, Moved, calibrated
 from runs.studies.motions import model_of, shell_of

@@ -161,7 +161,7 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
     case = case_file.load(str(written(tmp_path, text + TIED)))
     shown = io.StringIO()
     print_inferred(case, Console(file=shown, width=200))
-    checked, told = shown.getvalue().splitlines(), run_case(case, models=["tied"]).cautions()
+    checked, told = shown.getvalue().splitlines(), run_case(case, models=["tied"]).summary.cautions
     if caution is None:
         assert told == []
         assert not any(line.startswith("caution") for line in checked)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from typing import Any
 
-import pytest
 import xarray as xr
 
 from dynamics.predictability.comparison import Distributions, PeakDifferences, Pointwise
@@ -102,7 +101,7 @@ def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
     assert horizons.text.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
 
 
-def test_peaks_that_no_model_has_make_no_table(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_peaks_that_no_model_has_make_no_table() -> None:
     none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
     values = {key: [None, None] for key in ("range", "mean", "deviation")}
     level = LEVELS | {
@@ -111,7 +110,6 @@ def test_peaks_that_no_model_has_make_no_table(monkeypatch: pytest.MonkeyPatch) 
     }
     nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
     found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
-    monkeypatch.setattr(Results, "cautions", lambda self: [])
     page = render(found, [], [], [])
     assert "Horizons" in page
     assert "Distribution of the tip" in page

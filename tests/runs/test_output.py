@@ -142,3 +142,21 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     }
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "cannot be computed (Singular matrix)" in page
+    assert found.summary.cautions == [
+        f"failed: {name}: {why}" for name, why in found.summary.failures.items()
+    ]
+
+
+def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
+    """Reference: those of a tip at rest that nobody has found small, by the summary's number."""
+    content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert content.pop("cautions") == []
+    content["models"]["kantorovich-4"]["static_tip"] = -1.9
+    (folder / "summary.json").write_text(json.dumps(content), encoding="utf-8")
+    write_report(Results.load(folder), [], folder)
+    (told,) = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["cautions"]
+    assert told == (
+        "caution: in kantorovich-4 the tip rests at -1.9 m, 10 % of the boom's length and more "
+        "than 5 %: small displacements do not hold; check units and loads"
+    )
+    assert told.replace("'", "&#39;") in (folder / "report.html").read_text(encoding="utf-8")

@@ -71,12 +71,11 @@ def test_runs_that_are_not_judged_show_no_table() -> None:
     assert printed({"boom": []}) == ""
 
 
-def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_run_tells_how_near_its_reduction_is() -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = case_file.load(str(CASES / "paper.toml"))
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
-    monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)
     print_models(results, console)
     assert isinstance(console.file, StringIO)
@@ -88,13 +87,12 @@ def test_every_run_tells_how_near_its_reduction_is(monkeypatch: pytest.MonkeyPat
     ]
 
 
-def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings() -> None:
     """Reference: the summary's numbers in mm."""
     case = case_file.load(str(CASES / "drawn-out.toml"))
     swing = Swing(0.0182, 1.0, 0.8, 0.0181, None)
     summary = summary_of({"beam": model_summary()})
     summary.answers = Answers({"beam": ModelAnswers(swing=swing)})
-    monkeypatch.setattr(Results, "cautions", lambda self: [])
     console = Console(file=StringIO(), width=160)
     print_models(Results(case, xr.Dataset(), summary), console)
     assert isinstance(console.file, StringIO)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.cautions import slips
+from runs.pipeline.proportions import slips
 
 README = Path(__file__).parents[2] / "README.md"
 

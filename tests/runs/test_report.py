@@ -22,6 +22,7 @@ from runs.case import toml
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdict_table import print_verdicts
+from runs.pipeline.cautions import of_run
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
@@ -205,11 +206,9 @@ def test_shows_what_was_computed_then_where_it_was(results: Results, figures: li
 
 
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
-    wild = results.trajectories.copy(deep=True)
-    wild["tip"][0, -1] = 2.0
-    far = replace(results, trajectories=wild)
-    text = Page(render(far, judge(far), figures, [])).text
-    assert text.index(far.cautions()[0]) < text.index("Verdicts")
+    summary = results.summary.model_copy(update={"cautions": ["caution: <of> the tip"]})
+    text = Page(render(replace(results, summary=summary), judge(results), figures, [])).text
+    assert text.index("caution: <of> the tip") < text.index("Verdicts")
 
 
 def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
@@ -269,29 +268,34 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
     assert "[red]play[/nothing]" in printed(replace(results, case=case))
 
 
+def cautions(results: Results) -> list[str]:
+    return of_run(results.case, results.boom, results.trajectories, results.summary)
+
+
 def test_cautions_against_what_is_no_small_displacement(results: Results) -> None:
     """A tenth of the boom's 19 m: 1.9 m."""
-    assert results.cautions() == []
+    assert results.summary.cautions == []
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0
-    (line,) = replace(results, trajectories=wild).cautions()
+    (line,) = cautions(replace(results, trajectories=wild))
     name = str(wild["model"].values[0])
     assert line == (
         f"caution: in {name} the tip moves by 2 m, more than a tenth of the boom's length: small "
         "displacements do not hold; check units and loads"
     )
-    assert line in printed(replace(results, trajectories=wild), width=200)
+    summary = results.summary.model_copy(update={"cautions": [line]})
+    assert line in printed(replace(results, summary=summary), width=200)
 
 
 def test_cautions_against_a_poor_reduction(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
-    for error, cautions in ((0.009, []), (0.93, [name])):
+    for error, names in ((0.009, []), (0.93, [name])):
         errors = {"contact_compliance": error, "readings": 0.0}
         poor = changed(results, name, modes=6, reduction_errors=errors)
-        assert poor.cautions() == [
+        assert cautions(poor) == [
             f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow "
             "more modes, or --modes auto"
-            for name in cautions
+            for name in names
         ]
 
 
@@ -309,12 +313,12 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
 
 def test_cautions_against_a_poor_mesh(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
-    for error, cautions in ((0.009, []), (0.34, [name]), (None, [])):
+    for error, names in ((0.009, []), (0.34, [name]), (None, [])):
         poor = changed(results, name, mesh_error=error)
-        assert poor.cautions() == [
+        assert cautions(poor) == [
             f"caution: the mesh of {name} errs by 34 % of what the walls give way where the "
             "segments touch; give a smaller mesh_size"
-            for name in cautions
+            for name in names
         ]
 
 

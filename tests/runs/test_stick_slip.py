@@ -246,7 +246,7 @@ def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
     results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])
     lag = float(np.abs(results.trajectories["drive_lag"]).max())
     assert 0.09 < lag < 0.15
-    assert results.cautions()[-1] == (
+    assert results.summary.cautions[-1] == (
         f"caution: 'inner' lags up to {lag:.2g} m behind its drive, more than 1 % of the 1 m of "
         "overlap: the motion across the boom, which goes by the drive, does not feel that"
     )

@@ -10,7 +10,7 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.cautions import slips
+from runs.pipeline.proportions import slips
 from tests.runs.case_texts import STEEL, box, joint
 
 CASE = f"""
