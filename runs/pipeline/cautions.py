@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from geometry.boom import Boom
 from geometry.typography import TO_PERCENT
@@ -14,7 +14,11 @@ from runs.case.actions import series_notes
 from runs.case.schema import Case
 from runs.pipeline.proportions import of_buckling, of_tip, slips
 from runs.pipeline.slipping import lag_cautions, slip_cautions
-from runs.pipeline.summary import ModelSummary, Summary
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from runs.pipeline.summary import ModelSummary, Summary
 
 # Relative error of a reduction, or of a mesh, beyond which a run says so.
 POOR = 0.01
