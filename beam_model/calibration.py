@@ -100,13 +100,9 @@ def stiffened(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
 
 
 def effective_stiffness(segment: Segment, far: FarField) -> Stiffness:
-    """What makes a beam answer the probes as the shell has answered them.
+    """What makes a beam answer the probes as the shell of a segment has answered them.
 
     Of a segment that tapers it is the beam's own, half-way.
-
-    Args:
-        segment: with a section.
-        far: of its shell.
     """
     in_plane = _bending(segment, far, "z")
     if "y" not in far.compliance:

@@ -122,10 +122,5 @@ def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
 
 
 def products(values: Array, weights: Array) -> Array:
-    """∫ f_i f_j dx, (num_functions, num_functions), from values at quadrature points.
-
-    Args:
-        values: (num_functions, num_points).
-        weights: (num_points,) of the rule in m.
-    """
+    """∫ f_i f_j dx from values (num_functions, num_points) and weights of the rule in m."""
     return np.asarray((values * weights) @ values.T)

@@ -35,11 +35,7 @@ def travels(
 ) -> list[Travel]:
     """What moves the rows of a boom: the drive of each joint, several together for stops.
 
-    Args:
-        boom: its joints may have drives.
-        models: one for each segment.
-        rows_at: positions of joints and their m → what touches, rubs and drags.
-        reads: the modes at any place.
+    ``rows_at`` takes positions of joints and their m.
     """
     return [_travel(boom, models, rows_at, reads, course) for course in courses(boom)]
 
@@ -49,11 +45,7 @@ def moving_thrusts(
 ) -> list[MovingThrust]:
     """The axial force, if there is one, that goes along as a joint is drawn out.
 
-    Args:
-        boom: whose joint has a drive.
-        models: one for each segment.
-        reads: the deflection, in any coordinates.
-        joint: its position.
+    ``reads`` may be in any coordinates.
     """
     found = entry(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive

@@ -34,12 +34,7 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
-    """One for each segment.
-
-    Args:
-        boom: its joints say what is tied.
-        models: of its segments; those that do not bend have no section forces.
-    """
+    """One for each segment; those that do not bend have no section forces."""
     modes = BoomModes(boom, models)
     return [_line(boom, number, modes, model) for number, model in enumerate(models)]
 

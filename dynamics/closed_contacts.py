@@ -122,11 +122,9 @@ class ClosedContacts:
             contact_forces(state[1], self.system.rows, self.terms, state[3], state[4])
 
     def leave(self, state: State, before: Array, out: tuple[Array, ...]) -> None:
-        """Take a state and what was recorded on the way to it back to the modes of the segments.
+        """Take a state, and ``out`` of the compiled loop, back to the modes of the segments.
 
-        Args:
-            before: (num_rows,) gaps in m at the start of the way.
-            out: of the compiled loop of the splitting.
+        ``before`` (num_rows,) are the gaps in m at the start of the way.
         """
         if not self.any:
             return

@@ -71,11 +71,9 @@ def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
 
 
 def with_ratio(system: GapSystem, ratio: float) -> GapSystem:
-    """The system with a damping ratio ζ in the first modes of the pressed boom.
+    """The system with ζ = ``ratio`` in the first modes of the pressed boom, beside its own damping.
 
-    Args:
-        system: of a boom, with its own damping, to which this is added.
-        ratio: ζ of the first ``DAMPED_MODES``, or of as many as its segments can bend.
+    These are ``DAMPED_MODES``, or as many as its segments can bend.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))

@@ -142,12 +142,9 @@ def _work_of(system: GapSystem, drives: Array) -> list[Array]:
 
 
 def rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:
-    """(num_times,) μ Σ|N| in N of the pads that a travel moves.
+    """(num_times,) μ Σ|N| in N of the pads that one of a system's travels moves.
 
-    Args:
-        system: whose friction prescribes N besides.
-        travel: one of its.
-        forces: (num_times, num_rows) of contacts in N; of a motion means of output intervals.
+    ``forces`` (num_times, num_rows) are those of contacts in N, of a motion means of outputs.
     """
     coefficients = {friction.station: friction.coefficient for friction in system.frictions}
     total = np.zeros(len(forces))

@@ -43,11 +43,9 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 
 
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """The system with the positive part of a residual compliance as springs.
+    """The system with the positive part of a (num_resisting, num_resisting) residual as springs.
 
-    Args:
-        system: the coarse model.
-        residual: (num_resisting, num_resisting) in m/N.
+    That is in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0

@@ -20,9 +20,7 @@ _ROUND_OFF = 1.0e-9
 def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
     """ω² (num_modes,), rising, and combinations (num_modes, num_modes) of the modes as they were.
 
-    Args:
-        omega2: (num_modes,) without axial forces, rigid motions exactly 0.
-        geometric: (num_modes, num_modes) G.
+    ``omega2`` is without axial forces, rigid motions exactly 0; ``geometric`` is G.
     """
     # The upper triangle leaves the low modes their digits, see ``natural_modes`` of the beams.
     found, combination = eigh(np.diag(omega2) - geometric, lower=False)
@@ -37,11 +35,7 @@ def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
 def buckling_factor(stiffness: Array, geometric: Array) -> float:
     """The factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
 
-    Infinite where no factor makes it.
-
-    Args:
-        stiffness: (num_dofs, num_dofs) K of a boom that is held, in any coordinates.
-        geometric: (num_dofs, num_dofs) K_G.
+    Infinite where no factor makes it. The boom is held; coordinates (num_dofs,) are any.
     """
     last = len(stiffness) - 1
     if last < 0:

@@ -152,12 +152,10 @@ def cellwise_space(domain: Any) -> Any:
 
 
 def cellwise_function(domain: Any, values: Array) -> Any:
-    """A function that is constant on each cell.
+    """A function that is constant on each cell of a mesh.
 
-    Args:
-        domain: the mesh.
-        values: (num_cells,) in the order in which the cells were given to
-            :func:`create_triangle_mesh`, the same on every rank.
+    ``values`` (num_cells,) have the order in which the cells were given to
+    :func:`create_triangle_mesh`, the same on every rank.
     """
     function = fem.Function(cellwise_space(domain))
     function.x.array[:] = values[domain.topology.original_cell_index]

@@ -129,12 +129,7 @@ class Outline:
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
-        """u_z of a flange, averaged over the two points ±y, in m.
-
-        Args:
-            side: 1 for the top flange, −1 for the bottom one.
-            y: distance from the middle in m.
-        """
+        """u_z of a flange, ``side`` 1 the top, −1 the bottom, averaged over the points ±y, in m."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
         right, left = (self._interpolated(nodes, along, place) for place in (y, -y))

@@ -180,9 +180,7 @@ class DrawnShell:
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
         """Of what pads move at the readings, relative to the geometric mean of both compliances.
 
-        Args:
-            many: ω², rows of the pads, and of the readings.
-            few: ω², and shapes in these.
+        ``many`` are ω², rows of the pads and of the readings; ``few`` ω², and shapes in these.
         """
         omega2, rows, observed = many
         shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]

@@ -15,10 +15,7 @@ from shell_model.segment_shell import SegmentShell
 def far_field(boom: Boom, number: int, shell: SegmentShell) -> FarField:
     """Probe a segment, all degrees of freedom in. Collective.
 
-    Args:
-        boom: in space sideways and about its axis, too.
-        number: of the segment.
-        shell: of it, with mesh lines at its places.
+    Of a boom in space sideways and about its axis, too; the mesh has lines at its places.
     """
     places = far_places(boom, number)
     probes: dict[Bent, list[Array]] = {

@@ -45,13 +45,7 @@ def standard_laws(boom: Boom, laws: Sequence[ContactLaw]) -> list[ContactLaw]:
 def with_plays_and_loads(
     shell: ReducedShell, boom: Boom, laws: Mapping[Direction, Sequence[ContactLaw]]
 ) -> ReducedShell:
-    """The shell of a boom from that of its :func:`standard_boom`.
-
-    Args:
-        shell: with the boom's :func:`standard_laws`.
-        boom: as it is.
-        laws: of its joints along each direction.
-    """
+    """The shell of a boom from that of its :func:`standard_boom` under :func:`standard_laws`."""
     system = shell.system
     more = [
         0.0 if _shimmed(joint) else law.clearance

@@ -35,13 +35,7 @@ class Pointwise:
 
     @classmethod
     def of(cls, one: Array, other: Array, time: Array, until: float) -> Pointwise:
-        """Compare two curves.
-
-        Args:
-            one, other: (num_times,) of one quantity.
-            time: (num_times,) in s.
-            until: in s.
-        """
+        """Compare two curves (num_times,) of one quantity, up to ``until``; times in s."""
         before = time <= until
         apart = np.abs(one - other)[before]
         scale = max(np.ptp(one[before]), np.ptp(other[before]))
@@ -118,12 +112,9 @@ class Distributions:
 
     @classmethod
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
-        """Compare all values of all members from a time on.
+        """Compare all values (num_members, num_times) of one quantity; times in s.
 
-        Args:
-            one, other: (num_members, num_times) of one quantity.
-            time: (num_times,) in s.
-            since: in s, NaN where a model stays predictable.
+        They count from ``since`` on, NaN where a model stays predictable.
         """
         both = [members[:, time >= since].ravel() for members in (one, other)]
         if both[0].size == 0:

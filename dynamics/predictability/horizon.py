@@ -41,24 +41,17 @@ _STAGE = 0.5 / len(_PARTS)
 
 
 def spread(members: Array) -> Array:
-    """(num_times,) half the distance between the largest and the smallest member.
+    """(num_times,) half the distance between the largest and the smallest member (…, num_times).
 
     That is the largest error of the best single prediction. A standard deviation would be
     smaller the more members are still together, and would name a horizon after some have left.
-
-    Args:
-        members: (num_members, num_times) of one quantity.
     """
     return np.asarray(0.5 * np.ptp(members, axis=0))
 
 
 def horizon(members: Array, time: Array, share: float) -> float:
-    """When the spread first passes a share of the range of member 0, in s; NaN if never.
-
-    Args:
-        members: (num_members, num_times) of one quantity.
-        time: (num_times,) in s.
-        share: part of the range.
+    """When the spread of members (num_members, num_times) first passes a share of the range of
+    member 0, in s; NaN if never.
     """
     passed = np.flatnonzero(spread(members) > share * np.ptp(members[0]))
     return float(time[passed[0]]) if passed.size else float("nan")
@@ -81,12 +74,7 @@ class Growth:
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
-        """Least squares of T over ln ε.
-
-        Args:
-            relatives: (num,) ε.
-            times: (num,) T in s, NaN where there is none.
-        """
+        """Least squares of T (num,) in s, NaN where there is none, over ln ε."""
         known = np.isfinite(times)
         if known.sum() < 2:
             return cls(np.nan, np.nan, np.nan)

@@ -51,10 +51,7 @@ def slow(signal: Array, output_step: float, cutoff: float) -> Array:
 def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
     """Times in s and heights of the peaks of the slow motion, (num_peaks,) each.
 
-    Args:
-        signal: (num_times,).
-        time: (num_times,) in s, equal steps.
-        cutoff: in Hz.
+    Of a signal (num_times,) at times of equal steps; the cut-off in Hz.
     """
     filtered = slow(signal, float(time[1] - time[0]), cutoff)
     at, _ = find_peaks(filtered, prominence=PROMINENCE * np.ptp(filtered))
@@ -88,13 +85,8 @@ class SlowPeaks:
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
         """Peaks of an ensemble, in order, up to the first that a member does not have.
 
-        A member has a peak of member 0 if one of its own is nearer than half a period of the
-        cut-off: two peaks of the slow motion are not that close to one another.
-
-        Args:
-            members: (num_members, num_times).
-            time: (num_times,) in s, equal steps.
-            cutoff: in Hz.
+        A member (num_times,) has a peak of member 0 if one of its own is nearer than half a period
+        of the cut-off in Hz: two peaks of the slow motion are not that close to one another.
         """
         found = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []

@@ -27,12 +27,7 @@ SLOW = 20.0
 
 
 def compliance(omega2: Array, rows: Array) -> Array:
-    """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)².
-
-    Args:
-        omega2: (num_modes,) in rad²/s².
-        rows: (num_rows, num_modes).
-    """
+    """(num_rows, num_rows) B (Ω² + σ)⁻¹ Bᵀ in m/N at σ = (2π · ``SLOW``)²: B are the rows."""
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
@@ -48,12 +43,9 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
 
 
 def shell_compliance(shell: SegmentShell, rows: Array, frequency: float = SLOW) -> Array:
-    """(num_rows, num_rows) in m/N what forces on the rows of a shell do to each other. Collective.
+    """(num_rows, num_rows) in m/N what forces on the rows of a full shell do to each other.
 
-    Args:
-        shell: not reduced.
-        rows: (num_owned, num_rows).
-        frequency: of the shift in Hz.
+    Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
     """
     jobs = Folding(shell).jobs(rows, rows[:, :0])
     found = np.zeros((rows.shape[1], rows.shape[1]))

@@ -63,10 +63,6 @@ class Passage:
     def told_apart(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
         """(num_ways · num_moving) whether rows read other places of a segment as they are drawn,
         and the first of each of those that read the same place. Collective.
-
-        Args:
-            comm: the ranks that share the segment.
-            columns: of all ways.
         """
         rows = columns.T.reshape(self.ways.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)

@@ -79,10 +79,9 @@ class Touching:
         return cls(boom, laws, line, [CornerLines(shell) for shell in shells], walls, points)
 
     def rows(self, ways: Mapping[int, float]) -> GapBuilder[Reading]:
-        """Rows of every pad, surface, stop and dashpot. Collective.
+        """Rows of every pad, surface, stop and dashpot where joints are drawn out by ``ways`` in m.
 
-        Args:
-            ways: position of a joint → m by which it is drawn out; not at all unless given.
+        Collective.
         """
         boom, points = self.boom, self.points
         rows = GapBuilder([Contact(point.reading, point.law, point.station) for point in points])

@@ -25,12 +25,7 @@ _ON_EDGE = 1.0e-8
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """One face of a section.
-
-    Args:
-        normal: its direction.
-        side: 1 for the wall on the positive side of the axis, −1 for the other.
-    """
+    """A face of a section, on the positive side of the axis where ``side`` is 1, else −1."""
 
     normal: Direction
     side: int
@@ -139,12 +134,7 @@ def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
 
 
 def _shares(corners: Array, place: Array) -> Array:
-    """(num_triangles, 3) barycentric coordinates of a place.
-
-    Args:
-        corners: (num_triangles, 3, 2).
-        place: (2,).
-    """
+    """(num_triangles, 3) barycentric coordinates of a place, of (num_triangles, 3, 2) corners."""
     sides = corners[:, 1:] - corners[:, :1]
     offset = place - corners[:, 0]
     area = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]

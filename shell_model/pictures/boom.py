@@ -223,9 +223,7 @@ def _rod(section: Array, lug: Lug) -> tuple[Array, Triangles]:
     """Points and triangles of a cylinder: a bar from a flange towards the ground, cut where wedges
     end.
 
-    Args:
-        section: (num_points, 3) in m, the outline at the lug, where it is drawn.
-        lug: the line of the bar.
+    ``section`` (num_points, 3) in m is the outline at the lug, where it is drawn.
     """
     low, high = section[:, 2].min(), section[:, 2].max()
     size, line = 0.35 * (high - low), -np.array([lug.along, lug.up])
@@ -242,12 +240,9 @@ def _rod(section: Array, lug: Lug) -> tuple[Array, Triangles]:
 
 
 def _wedge(held: Array, side: float = -1.0, gap: float = 0.0) -> tuple[Array, Triangles]:
-    """Points and triangles of a support: a prism whose edge carries a flange.
+    """Points and triangles of a support: a prism whose edge carries a flange, at a gap in m.
 
-    Args:
-        held: (num_points, 3) in m, the outline that is held, where it is drawn.
-        side: -1 for the bottom flange, 1 for the top one.
-        gap: from the flange to the edge in m.
+    ``held`` (num_points, 3) in m is the outline where it is drawn, ``side`` -1 at the bottom.
     """
     x, across = held[:, 0].mean(), np.ptp(held[:, 1])
     low, high = held[:, 2].min(), held[:, 2].max()

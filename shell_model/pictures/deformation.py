@@ -209,13 +209,9 @@ class MovingShell:
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
         """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.
 
-        What moves and turns the part as a whole in the picture's plane is taken from all points:
-        magnified it would tilt a sloping boom, and tells nothing of what touches what.
-
-        Args:
-            t: time in s.
-            segment: whose part seems to rest.
-            between: x of the part's ends in m.
+        What moves and turns the part, ``between`` two x in m, as a whole in the picture's plane is
+        taken from all points: magnified it would tilt a sloping boom, and tells nothing of what
+        touches what.
         """
         moved = self.displacement(t)
         mine = self.members[segment]
@@ -259,11 +255,9 @@ class MovingShell:
         return [held[np.abs(held[:, 0] - x) < SAME_PLACE] for x in np.unique(held[:, 0].round(6))]
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """(num_points,) the points of a flange in the plane of bending, from base to tip.
+        """(num_points,) points of a flange in the plane of bending, from base to tip.
 
-        Args:
-            segment: which.
-            side: 1 for the top, -1 for the bottom.
+        ``side`` is 1 for the top, -1 for the bottom.
         """
         mine = self.members[segment]
         _, y, z = self.points[mine].T
@@ -284,12 +278,7 @@ class MovingShell:
         """(num_points + 1, 2) y and z in m once around a section, and how they change.
 
         What moves and turns the section as a whole is left out: two shifts and a turn, fitted
-        by least squares.
-
-        Args:
-            moved: (num_points, 3) displacement in m.
-            segment: which.
-            x: of the section in m, a mesh line.
+        by least squares. ``moved`` (num_points, 3) is in m, x a mesh line.
         """
         walls = (self.segment == segment) & (self.stress.wall < len(self.stress.plates[segment]))
         mine = np.unique(self.triangles[walls])

@@ -201,13 +201,7 @@ class OverlapView:
 def draw_overlap(
     shell: MovingShell, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """An overlap without its half before the plane of bending, and what presses where.
-
-    Args:
-        shell: in motion.
-        instants: of the pictures.
-        overlap: one of the shell's.
-    """
+    """An overlap without its half before the plane of bending, and what presses where."""
     view = OverlapView.of(shell, instants, overlap, PIXELS)
     sheet = Sheet(PIXELS, floor=90)
     sheet.figure.legend(

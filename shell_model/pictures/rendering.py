@@ -134,15 +134,12 @@ def _instants(views: Sequence[MovingShell], when: Mapping[str, float]) -> list[I
 
 
 def telling_instants(motion: xr.Dataset) -> dict[str, float]:
-    """Times in s that are worth a look, by what happens then.
+    """Times in s of a model's trajectories that are worth a look, by what happens then.
 
     ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
     ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
     ``first-contact``, unless something is pressed from the start. Without contact there is the
     first alone.
-
-    Args:
-        motion: trajectories of one model.
     """
     time = np.asarray(motion["time"].values)
     peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()

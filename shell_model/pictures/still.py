@@ -29,10 +29,6 @@ CHANGE_DRAWN = 0.05
 def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
     """The triangles at an overlap; those walls of the outer segment that hide the inner one are
     left out.
-
-    Args:
-        shell: at rest here.
-        overlap: one of the shell's.
     """
     corners = shell.points[shell.triangles]
     inside = shell.points[shell.members[overlap.inner], 0].min()
@@ -82,13 +78,7 @@ def draw_mesh(shell: MovingShell, overlap: Overlap) -> Image.Image:
 
 
 def draw_sections(shell: MovingShell, instant: Instant, overlap: Overlap) -> Image.Image:
-    """How the sections at the stations of an overlap change their shape.
-
-    Args:
-        shell: in motion.
-        instant: of the picture.
-        overlap: one of the shell's.
-    """
+    """How the sections at the stations of an overlap change their shape."""
     moved = shell.displacement(instant.time)
     motion = shell.motion.isel(station=overlap.stations)
     now = motion.sel(time=instant.time, method="nearest")

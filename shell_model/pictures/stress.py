@@ -154,12 +154,7 @@ def apart(points: Array, triangles: Triangles) -> tuple[Array, Triangles]:
 
 
 def smoothed(shell: MovingShell, values: npt.ArrayLike) -> Array:
-    """(num_triangles, 3) at the corners: means of the triangles of the same wall around a point.
-
-    Args:
-        shell: whose triangles they are.
-        values: (num_triangles,).
-    """
+    """(num_triangles, 3) at the corners: means of the triangles of the same wall around a point."""
     walls = int(shell.stress.wall.max()) + 1
     of = (shell.triangles.astype(np.int64) * walls + shell.stress.wall[:, None]).ravel()
     _, corner = np.unique(of, return_inverse=True)

@@ -97,11 +97,7 @@ class Camera:
         return np.asarray(self.centre - distance * self.axes[2])
 
     def project(self, points: npt.ArrayLike) -> Array:
-        """(..., 2) pixels to the right of and above the picture's lower left corner.
-
-        Args:
-            points: (..., 3) in m.
-        """
+        """(..., 2) pixels right of and above the lower left corner, of points (..., 3) in m."""
         right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
         magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
         middle = 0.5 * np.array(self.pixels)
@@ -184,9 +180,7 @@ class Scene:
 def sharp_edges(points: Array, triangles: Triangles) -> Edges:
     """(num_edges, 2) point numbers of the free and the sharp edges of a surface.
 
-    Args:
-        points: (num_points, 3) in m.
-        triangles: (num_triangles, 3) point numbers.
+    Of points (num_points, 3) in m and triangles (num_triangles, 3).
     """
     import pyvista
 
@@ -241,12 +235,7 @@ class Sheet:
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:
-        """Put ticks where the camera sees round x at the depth of its centre.
-
-        Args:
-            camera: the picture's.
-            first, last: the range of x in m.
-        """
+        """Put ticks where the camera sees round x in m at the depth of its centre."""
         _, y, z = camera.centre
         ticks = np.asarray(MaxNLocator(20, steps=[1, 2, 5, 10]).tick_values(first, last))
         ticks = ticks[(ticks > first - 1.0e-9) & (ticks < last + 1.0e-9)]
@@ -268,13 +257,7 @@ class Sheet:
         self._seen[round(self._part * left), round(self._part * bottom)] = pixels
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
-        """Draw a vertical arrow and write beside it.
-
-        Args:
-            foot: (2,) pixels, as of :meth:`Camera.project`.
-            length: in pixels, negative for an arrow that points down.
-            text: to the right of the arrow.
-        """
+        """Draw an upright arrow from (2,) pixels, down by negative lengths, and write beside it."""
         x, y = (float(pixel) for pixel in foot)
         shaft = {"width": 8, "headwidth": 24, "headlength": 22, "color": FORCE}
         self._arrows += [

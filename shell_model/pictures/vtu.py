@@ -27,12 +27,7 @@ _TRIANGLE = 5
 
 
 class TriangleFiles:
-    """Writes files of the same triangles.
-
-    Args:
-        points: (num_points, 3) in m.
-        triangles: (num_triangles, 3) point numbers.
-    """
+    """Writes files of the same points (num_points, 3) in m and triangles (num_triangles, 3)."""
 
     def __init__(self, points: Array, triangles: npt.NDArray[np.int32]) -> None:
         count = len(triangles)
@@ -51,13 +46,7 @@ class TriangleFiles:
     def write(
         self, path: Path, at_points: Mapping[str, Values], on_triangles: Mapping[str, Values]
     ) -> None:
-        """Write a file.
-
-        Args:
-            path: of the file.
-            at_points: by their names (num_points, ...).
-            on_triangles: by their names (num_triangles, ...).
-        """
+        """Write values at points (num_points, ...), on triangles (num_triangles, ...), by names."""
         data = [
             f"<{kind}>\n{''.join(_packed(*entry) for entry in arrays.items())}</{kind}>\n"
             for kind, arrays in (("PointData", at_points), ("CellData", on_triangles))

@@ -80,12 +80,7 @@ class BoomCoordinates:
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
-        """(num_modes,) modal load of a force on a segment.
-
-        Args:
-            number: of the segment.
-            force: (num_owned,) this rank's rows of it.
-        """
+        """(num_modes,) modal load of a force (num_owned,), this rank's rows of it, on a segment."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
@@ -133,12 +128,8 @@ def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     """(num_columns,) products with all columns, to the same bit on any number of ranks. Collective.
 
-    Sums are carried with twice the digits, so that their order does not show.
-
-    Args:
-        comm: the ranks that share the rows.
-        left: (num_owned,).
-        right: (num_owned, num_columns).
+    Sums are carried with twice the digits, so that their order does not show; of (num_owned,) and
+    (num_owned, num_columns).
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]

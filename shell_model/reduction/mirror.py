@@ -107,15 +107,10 @@ def matches(places: Array, among: Array) -> Indices | None:
 
 
 def quarter_mesh(mesh: SegmentMesh, thickness: Array, mirrors: Sequence[Direction]) -> SegmentMesh:
-    """The part of a mesh on the positive side of the mirrors.
-
-    Args:
-        mesh: of a segment.
-        thickness: (num_triangles,) in m.
-        mirrors: of its section.
+    """The part of a segment's mesh on the positive side of its section's mirrors.
 
     Raises:
-        NumericsError: the mesh or its thickness is not its own image.
+        NumericsError: the mesh or its thickness (num_triangles,) is not its own image.
     """
     ours = _sorted(mesh.triangles, thickness)
     for axis in mirrors:

@@ -73,9 +73,7 @@ def _answers(test: float, _: int, job: Job) -> Array:
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     """ω² (num_springs,) in rad²/s², and rows (num_ways, num_rows, num_springs) in 1/√kg.
 
-    Args:
-        residual: (num_ways, num_rows, num_rows) R in m/N at the shift ``SLOW``.
-        inertia: R′ in m s²/N.
+    Of R (num_ways, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in m s²/N.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)

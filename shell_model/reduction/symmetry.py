@@ -161,8 +161,7 @@ class Folding:
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
         """One for each family that an input excites, on rank 0; none elsewhere. Collective.
 
-        Args:
-            inputs, readings: (num_owned, num_columns) of the whole segment.
+        Inputs and readings are (num_owned, num_columns) of the whole segment.
         """
         shell = self._shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
@@ -186,10 +185,7 @@ class Folding:
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
         """(num_owned, num_shapes) shapes of a family on the whole segment. Collective.
 
-        Args:
-            shapes: (num_rows, num_shapes) on the quarter, on one rank; None elsewhere.
-            family: theirs.
-            root: the rank that has them.
+        On the quarter they are (num_rows, num_shapes) on the rank ``root``, None elsewhere.
         """
         comm = self._comm
         count = comm.bcast(None if shapes is None else shapes.shape[1], root)
@@ -230,13 +226,7 @@ class Folding:
 def shared(
     comm: MPI.Comm, jobs: Sequence[Job], compute: Callable[[int, Job], _Found]
 ) -> Iterator[tuple[int, _Found | None]]:
-    """The rank that computes each job, and what it found there; None elsewhere. Collective.
-
-    Args:
-        comm: the ranks that share the jobs.
-        jobs: on rank 0.
-        compute: of a job and its number.
-    """
+    """The rank that computes each job of rank 0, and what it found; None elsewhere. Collective."""
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {number: job for number, job in enumerate(_sent(comm, jobs, roots)) if job is not None}
     found = together(comm, lambda: {number: compute(number, job) for number, job in mine.items()})

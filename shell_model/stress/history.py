@@ -91,12 +91,7 @@ def near_places(shell: ShellStress, places: Sequence[float], names: Sequence[str
 
 
 def sum_up(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """The largest stress of a run, that of a patch, and what the walls carry then.
-
-    Args:
-        shell: in motion.
-        history: of :func:`near_places`.
-    """
+    """The largest stress of :func:`near_places`, that of a patch, and what the walls carry then."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)

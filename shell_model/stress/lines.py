@@ -27,12 +27,7 @@ _NOTHING = 1.0e-300
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
-    """One for each segment.
-
-    Args:
-        fields: of :func:`shell_model.stress.fields.gather_fields`.
-        boom: that it is a shell of; cuts are where something acts on it, too.
-    """
+    """One for each segment, cut where something acts on the boom, too."""
     still = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )

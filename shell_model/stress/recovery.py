@@ -26,14 +26,9 @@ from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
-    """Bring the stresses of displacement shapes to rank 0. Collective; None elsewhere.
+    """(num_modes, num_triangles, 6) ``COMPONENTS`` in Pa of displacement shapes on rank 0.
 
-    Args:
-        shell: the full model.
-        shapes: (num_owned, num_modes) this rank's rows of each shape.
-
-    Returns:
-        (num_modes, num_triangles, 6) ``COMPONENTS`` in Pa for a unit of each shape.
+    Shapes are (num_owned, num_modes), this rank's rows. Collective; None elsewhere.
     """
     form, component = _stress_form(shell.space, shell.segment)
     columns = []

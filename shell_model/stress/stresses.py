@@ -123,13 +123,7 @@ class ShellStress:
 
     @classmethod
     def still(cls, mesh: SegmentMesh, thickness: Array, modes: Modes) -> ShellStress:
-        """Of one segment in one state.
-
-        Args:
-            mesh: of the segment.
-            thickness: (num_triangles,) in m.
-            modes: (1, num_triangles, 6) ``COMPONENTS`` of the state in Pa.
-        """
+        """Of one segment in one state: (1, num_triangles, 6) ``COMPONENTS`` in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
             thickness=thickness,
@@ -216,11 +210,7 @@ class ShellStress:
 
 
 def lines_around(spans: Array) -> Array:
-    """x in m, rising, of mesh lines that no triangle crosses.
-
-    Args:
-        spans: (num_triangles, 2) the smallest and the largest x of each in m.
-    """
+    """x in m, rising, of mesh lines that none of the triangles' (num_triangles, 2) spans cross."""
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     begun = np.searchsorted(first, lines - SAME_LINE)

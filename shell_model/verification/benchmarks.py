@@ -25,9 +25,7 @@ SHEAR_RIGID = 100.0
 class TwistedBeam(NamedTuple):
     """Deflections of the middle of a pretwisted cantilever's tip along unit forces on it.
 
-    Args:
-        in_plane: along the tip's width.
-        out_of_plane: across it.
+    One along the tip's width, one across it.
     """
 
     in_plane: float
@@ -49,12 +47,8 @@ PUBLISHED = Published(0.3024, 1.8248e-5, 0.0940, TwistedBeam(5.4245e-3, 1.7532e-
 def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Array, Indices]:
     """Triangles between points on a surface, their diagonals in turns one way and the other.
 
-    Args:
-        surface: (num, 3) places of parameters (num,) from 0 to 1.
-        n, m: number of edges along the first parameter and the second.
-
-    Returns:
-        points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
+    ``surface`` has (num, 3) places of parameters (num,) from 0 to 1, with n and m edges along.
+    Gives points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
     """
     first, second = np.meshgrid(
         np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, m + 1), indexing="ij"
@@ -72,11 +66,7 @@ def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
     """Sag of the middle of the free edges of a barrel vault under its own weight.
 
     Scordelis and Lo (1964): radius 25, length 50, thickness 0.25, 40° to either side, on
-    diaphragms at its ends. A quarter of it.
-
-    Args:
-        n: edges along each side of the quarter.
-        drilling: see ``forms.ShellForms``.
+    diaphragms at its ends. A quarter of it, of n edges along each side.
     """
     radius, half_length, opening = 25.0, 25.0, np.radians(40.0)
 
@@ -127,11 +117,7 @@ def pinched_cylinder(
 def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
     """How far two pairs of forces of 2, one pair out and one in, move the equator they act on.
 
-    Radius 10, thickness 0.04, a hole of 18° at the pole. A quarter of it.
-
-    Args:
-        n: edges along each side of the quarter.
-        drilling: see ``forms.ShellForms``.
+    Radius 10, thickness 0.04, a hole of 18° at the pole. A quarter of it, of n edges each side.
     """
     radius, top = 10.0, np.radians(72.0)
 
@@ -154,9 +140,7 @@ def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 def twisted_beam(n: int, drilling: float = DRILLING_OF_CURVED) -> TwistedBeam:
     """A strip that turns by 90° over its length: length 12, width 1.1, thickness 0.32.
 
-    Args:
-        n: edges over the width; there are six times as many along.
-        drilling: see ``forms.ShellForms``.
+    Of n edges over the width and 6 n along.
     """
     length, width = 12.0, 1.1
 

@@ -168,12 +168,8 @@ class Patch:
 
 @dataclass(frozen=True, slots=True)
 class SupportedPlate:
-    """A rectangular plate of steel on hard simple supports: edges keep their places and, along
-    themselves, their direction.
-
-    Args:
-        length, width: a and b in m.
-        thickness: t in m.
+    """A rectangular plate of steel on hard simple supports, a by b by t in m: edges keep their
+    places and, along themselves, their direction.
     """
 
     length: float

@@ -59,12 +59,7 @@ class Member:
         return np.array([*self.corners, *last])
 
     def mesh(self, n: int, m: int) -> tuple[Array, Indices]:
-        """Points (num_points, 3) in m and triangles.
-
-        Args:
-            n: edges over the width of each wall.
-            m: edges along it.
-        """
+        """Points (num_points, 3) in m, triangles: n edges over the width of each wall, m along."""
         line = self._line
         count = n * (len(line) - 1)
 
@@ -87,11 +82,8 @@ class Member:
         """J in m⁴ of the shell: torque over G times the rate of twist of its middle half.
 
         The ends turn as stiff sections that are free to warp; the rate is read a quarter of the
-        length away from them, so that their bent walls have no part in it.
-
-        Args:
-            n: edges over the width of each wall.
-            m: edges along it, a multiple of four.
+        length away from them, so that their bent walls have no part in it. n edges over the width
+        of each wall, m along it, a multiple of four.
         """
         shell = StaticShell(*self.mesh(n, m), self.thickness, STEEL)
         turn = np.cross([1.0, 0.0, 0.0], shell.nodes)

@@ -78,12 +78,7 @@ class SolidForms(NamedTuple):
 
 
 def solid_forms(space: Any, material: Material) -> SolidForms:
-    """Linear elasticity in space (Navier 1821).
-
-    Args:
-        space: see :func:`compat.solid_space`.
-        material: isotropic.
-    """
+    """Linear elasticity in space (Navier 1821) of an isotropic material, on a ``solid_space``."""
     domain = space.mesh
     shear, nu = material.shear_modulus, material.poissons_ratio
     mu, lame, density = (
@@ -241,9 +236,7 @@ def _quarter_means(mesh: SolidMesh, nodes: Array) -> tuple[Array, csr_matrix]:
 def _stencils(num_y: int, num_z: int, layers: int) -> Iterator[tuple[Indices, Indices, Array]]:
     """Positions along y and z, and weights, of the nodes that the mean at each place takes.
 
-    Args:
-        num_y, num_z: nodes along y and z.
-        layers: of cells through a wall.
+    With ``layers`` of cells through a wall.
     """
     # Simpson's rule is exact for the quadratic displacement of a cell.
     simpson = np.zeros(2 * layers + 1)

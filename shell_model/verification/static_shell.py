@@ -89,12 +89,7 @@ class StaticShell:
     def hold_at(
         self, axis: int, place: float, along: Sequence[int], about: Sequence[int] = ()
     ) -> dict[int, float]:
-        """What holds all nodes at a place in m along an axis.
-
-        Args:
-            axis, place: of the nodes.
-            along, about: components of their displacements and rotations.
-        """
+        """What holds components along and about axes of all nodes at a place in m along an axis."""
         turned = np.abs(self.rotation_nodes[:, axis] - place) < ON_LINE
         moved = self.node_dofs[self.at(axis, place)]
         return hold(moved[:, list(along)]) | hold(self.rotation_dofs[turned][:, list(about)])
@@ -106,11 +101,9 @@ class StaticShell:
     def surface_load(
         self, force: Array, couple: Array | None = None, on: Mask | None = None
     ) -> Array:
-        """(num_dofs,) of a force (3,) in N/m² and a couple (3,) in N m/m².
+        """(num_dofs,) of a uniform force (3,) in N/m² and couple (3,) in N m/m².
 
-        Args:
-            force, couple: uniform.
-            on: (num_triangles,) which facets feel them; all unless given.
+        On the facets that ``on`` (num_triangles,) names, or all.
         """
         v, eta = ufl.split(ufl.TestFunction(self._plates.space))
         domain = self._plates.space.mesh
@@ -133,9 +126,7 @@ class StaticShell:
     def line_load(self, on_line: Mask, force: Array) -> Array:
         """(num_dofs,) of a force (3,) in N that is spread evenly over a straight line of edges.
 
-        Args:
-            on_line: (num_nodes,) which nodes are on it: points and middles by turns.
-            force: all of it.
+        ``on_line`` (num_nodes,) names nodes: points and middles by turns.
         """
         nodes = np.flatnonzero(on_line)
         places = self.nodes[nodes]
