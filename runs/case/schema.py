@@ -430,6 +430,26 @@ class Case(Table):
         """In whose units tables and sweeps show it."""
         return System(self.shown_units or self.units)
 
+    @property
+    def regular(self) -> bool:
+        """Whether dry friction keeps motions comparable from moment to moment.
+
+        It does under forces that are given, at each station; what contacts press does not.
+        """
+        return all(
+            joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
+            for joint in self.joints
+        )
+
+    @property
+    def driven(self) -> dict[str, str]:
+        """Of each joint with a drive, what ends the names of its results, and the segment."""
+        return {
+            "" if number == 1 else f"-{number}": joint.inner
+            for number, joint in enumerate(self.joints, start=1)
+            if joint.drive is not None
+        }
+
 
 def case_schema() -> dict[str, Any]:
     """The JSON Schema of a case file."""

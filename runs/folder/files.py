@@ -44,6 +44,12 @@ def whole(path: Path) -> Iterator[Path]:
         os.replace(folder / path.name, path)
 
 
+def write_whole(path: Path, text: str) -> None:
+    """A file of text, there when it is complete."""
+    with whole(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
 @contextmanager
 def whole_folder(folder: Path, own: Collection[str] = ()) -> Iterator[Path]:
     """An empty folder to write to, which takes the place of ``folder`` when it is complete.

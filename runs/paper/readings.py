@@ -26,7 +26,7 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
-from runs.folder.files import whole
+from runs.folder.files import write_whole
 from runs.paper.reading import (
     CHANGE,
     JUDGED,
@@ -183,8 +183,7 @@ def survey(
         "conclusion": conclude(judged),
     }
     write(folder, "readings", TITLE, data, tables)
-    with whole(folder / "readings.html") as part:
-        part.write_text(page("tables.html", title=TITLE, tables=tables), encoding="utf-8")
+    write_whole(folder / "readings.html", page("tables.html", title=TITLE, tables=tables))
     return judged
 
 

@@ -17,7 +17,6 @@ from dynamics.predictability.comparison import (
     Pointwise,
     compare,
 )
-from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.pipeline.summary import Comparisons, Levels, Whole
 
@@ -82,7 +81,7 @@ def compare_models(
             str(other["model"].item()): Levels.model_validate(compare(one, other, cutoff))
             for other in others
         }
-    if regular(case):
+    if case.regular:
         found.whole = {
             name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
         }

@@ -21,7 +21,6 @@ from dynamics.step import contact_step
 from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
-from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.pipeline.models import build
 from runs.pipeline.motion import asked
@@ -112,7 +111,7 @@ def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
     if step is None:
         step = contact_step(system, time.output_step, motion.initial_speeds) / stand_in.shorter
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
-    doubled = bool(system.frictions) and regular(case)
+    doubled = bool(system.frictions) and case.regular
     motions = 1 + 0.5 * doubled + members + (_HORIZONS if members else 0)
     outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)

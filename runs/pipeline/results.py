@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,8 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
+from runs.folder.files import write_whole
+from runs.pipeline.answers import PlayAdds
 from runs.pipeline.cautions import of_run as cautions_of
 from runs.pipeline.comparisons import leading, reference_of
 from runs.pipeline.place_names import place_names
@@ -103,6 +107,15 @@ class Results:
             summary.cautions = cautions_of(case, results.boom, trajectories, summary)
         return results
 
+    def save(self, folder: Path) -> None:
+        """All but the summary, which goes on changing, into a run's folder."""
+        # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
+        empty = [name for name, size in self.trajectories.sizes.items() if size == 0]
+        self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
+        if self.ensembles is not None:
+            self.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
+        write_whole(folder / CASE, toml.dumps(self.case))
+
     @property
     def ran(self) -> list[Model]:
         """The models that have not failed."""
@@ -117,6 +130,12 @@ class Results:
     def reference(self) -> str | None:
         """The model that the others are held against."""
         return reference_of(self.ran)
+
+    @property
+    def play(self) -> PlayAdds | None:
+        """What play adds to the model that the others are held against."""
+        known = self.summary.answers.play if self.summary.answers else []
+        return next((one for one in known if one.model == self.reference and one.numbers), None)
 
     @cached_property
     def read_first(self) -> list[str]:
@@ -195,6 +214,35 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
         },
         attrs={"Conventions": CONVENTIONS},
     )
+
+
+def write_csv(trajectories: xr.Dataset, path: Path) -> None:
+    """One line for each model and time; a station's columns are headed ``NAME@X``.
+
+    X is the station's ``place``.
+    """
+    columns = {}
+    places = trajectories["place"].values if "place" in trajectories.coords else ()
+    for name, variable in trajectories.data_vars.items():
+        if "station" in variable.dims:
+            of_stations = variable.drop_vars(["station", "direction", "place"])
+            for place, values in zip(places, of_stations.transpose("station", ...), strict=True):
+                columns[f"{name}@{place}"] = values
+        else:
+            columns[str(name)] = variable
+    values = xr.Dataset(columns).to_array().transpose("model", "time", "variable").values
+    time = trajectories["time"].values
+    line = ",%.9g" * (1 + len(columns)) + "\r\n"
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["model", "time", *columns])
+        for name, rows in zip(trajectories["model"].values, values, strict=True):
+            # A writer's own way with numbers takes four times as long.
+            begin = StringIO()
+            csv.writer(begin, lineterminator="").writerow([name])
+            numbers = np.column_stack([time, rows]).tolist()
+            lines = [(line % tuple(row)).replace("nan", "") for row in numbers]
+            file.writelines(f"{begin.getvalue()}{text}" for text in lines)
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:

@@ -20,7 +20,6 @@ from geometry.boom import Boom
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import Built
-from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import cautions, members
@@ -325,7 +324,7 @@ def _move_at(
     summary = _summary(model, system, trajectory, num_dofs)
     if stick_slip := trajectory.data.attrs.get("stick_slip"):
         summary.stick_slip = stick_slip
-    if system.frictions and regular(case):
+    if system.frictions and case.regular:
         with stages.stage("twice the step") as told:
             summary.step_doubling = plan.change_by_longer_steps(trajectory, told)
     if case.ensemble is None or not system.laws:

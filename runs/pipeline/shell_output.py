@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +19,9 @@ from geometry.drawing import drives_below
 from geometry.load import Load
 from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
+from runs.pipeline.results import CONVENTIONS
 from shell_model.pictures.deformation import DOWN, MASS, SPRING, UP, Sign
+from shell_model.pictures.field_series import series_times, write_field_series
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
 from shell_model.stress.summary import StressSummary
@@ -25,6 +29,10 @@ from shell_model.stress.summary import StressSummary
 if TYPE_CHECKING:
     from geometry.mesh import SegmentMesh
     from shell_model.reduced_shell import ReducedShell
+
+
+STRESSES = "stress.nc"
+SERIES = "fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +90,29 @@ class ShellOutput:
         stresses = near_places(shell, _places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
         return cls(fields, stresses, sum_up(shell, stresses), meshes)
+
+    def write_files(self, folder: Path, prefix: str, gmsh_files: Path) -> None:
+        """Stresses, series and meshes into a run's folder; the fields stand in a file before.
+
+        Args:
+            folder: of the run.
+            prefix: of the files' names.
+            gmsh_files: where gmsh's are, ``SEGMENT.msh``.
+        """
+        self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
+            folder / f"{prefix}{STRESSES}", engine="scipy"
+        )
+        # Of names joined by a hyphen two may be the same.
+        meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
+        for place in (meshes, series):
+            place.mkdir(parents=True, exist_ok=True)
+        write_field_series(self.fields, series, series_times(self.fields))
+        if (modes := self.modes) is not None:
+            of_modes = modes.assign_attrs(model=f"{modes.attrs['model']}-modes")
+            write_field_series(of_modes, series, modes["time"].values.tolist())
+        for segment, mesh in self.meshes.items():
+            mesh.write(meshes / f"{segment}.vtu")
+            shutil.copyfile(gmsh_files / f"{segment}.msh", meshes / f"{segment}.msh")
 
 
 def _places(boom: Boom) -> list[float]:

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
-from runs.pipeline.answers import Added, AtRest, Moved, Peak, PlayAdds
+from runs.pipeline.answers import Added, AtRest, Moved, Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
 from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
 from runs.report.pad_tables import pad_tables
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, number
+from runs.report.theme import NONE, amount, number
 
 # A part of a number that is next to nothing.
 HARDLY = 0.005
@@ -22,7 +22,7 @@ ROUND_OFF = 1.0e-9
 
 def play_table(results: Results) -> Table | None:
     """Every number beside that of the same boom tied."""
-    found = play_of(results)
+    found = results.play
     if found is None:
         return None
     rows = found.numbers
@@ -244,13 +244,6 @@ def answer_tables(results: Results) -> list[Table]:
     return [table for table in found if table is not None]
 
 
-def play_of(results: Results) -> PlayAdds | None:
-    """Of the model that the others are held against."""
-    answers, reference = results.summary.answers, results.reference
-    known = answers.play if answers else []
-    return next((one for one in known if one.model == reference and one.numbers), None)
-
-
 def hardly(one: Added) -> bool:
     """Whether play adds next to nothing."""
     return one.share is not None and abs(one.share) < HARDLY
@@ -272,16 +265,6 @@ def _peak_cell(peak: Peak | None) -> str:
         return NONE
     factor = "" if peak.factor is None else f" (× {number(peak.factor)})"
     return f"{amount(peak.largest, peak.unit)}{factor}"
-
-
-SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
-SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
-
-
-def amount(value: float, unit: str) -> str:
-    """In the unit that is shown for one of the SI."""
-    name, factor = SHOWN[unit]
-    return f"{number(factor * value)} {name}".strip()
 
 
 def _named(what: str, where: str) -> str:

@@ -20,7 +20,6 @@ from runs.report.first_look import (
     play_sentence,
     strength_sentence,
     trust_line,
-    trust_lines,
 )
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
@@ -29,6 +28,9 @@ from runs.report.stress_tables import wall_tables
 from runs.report.tables import Table, TextTable
 from runs.report.theme import NONE, number
 from runs.report.verdict import Verdict
+
+# Kinds of pictures in the order of their numbers.
+PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
 
 
 def render(
@@ -52,25 +54,24 @@ def render(
     Where plotly is not installed the pictures of curves stand alone.
     """
     look = first_table(results)
-    first = _texts([look] if look else [])
-    answers = _texts(answer_tables(results))
-    models = _texts(
-        [
-            *model_tables(results),
-            *calibration_tables(results),
-            *wall_tables(results),
-        ]
-    )
-    known, compared = _texts(known_tables(results)), _texts(compared_tables(results))
-    parts = "case", "motion", "rest", "knowledge", "numerics"
-    case, motion, rest, knowledge, numerics = (
-        [figure for figure in figures if figure.part == part] for part in parts
-    )
+    tables = {
+        "first": _texts([look] if look else []),
+        "answers": _texts(answer_tables(results)),
+        "known": _texts(known_tables(results)),
+        "compared": _texts(compared_tables(results)),
+        "readings": readings,
+        "models": _texts(
+            [*model_tables(results), *calibration_tables(results), *wall_tables(results)]
+        ),
+    }
+    pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
+    pictures |= {"snapshots": [*snapshots]}
     shown = [
-        *_numbered("Table", chain(first, answers, known, compared, readings, models)),
-        *_numbered("Figure", chain(case, motion, rest, snapshots, knowledge, numerics)),
+        *_numbered("Table", chain(*tables.values())),
+        *_numbered("Figure", chain(*pictures.values())),
     ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
+    answers = results.summary.answers
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
@@ -87,31 +88,21 @@ def render(
         then=any(verdict.then for verdict in verdicts),
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
-        case=case,
         adds=play_sentence(results),
         strength=strength_sentence(results),
         of=play_note(results),
-        first=first,
         nearness=trust_line(results),
-        trust=trust_lines(results),
-        answers=answers,
-        rest=rest,
-        numerics=numerics,
+        trust=[known.line for known in answers.trust] if answers else [],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",
-        models=models,
-        motion=motion,
-        known=known,
-        knowledge=knowledge,
-        compared=compared,
-        snapshots=snapshots,
         skipped=results.summary.snapshots.skipped,
-        readings=readings,
         versions={k: v for k, v in results.summary.versions.items() if v is not None},
         case_hash=results.summary.case_hash,
         costs=_costs(results),
         case_text=toml.dumps(results.case),
+        **tables,
+        **pictures,
     )
 
 

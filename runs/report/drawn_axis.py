@@ -15,21 +15,11 @@ from runs.report import theme
 from runs.report.figure_context import Pen
 
 
-def driven(case: Case) -> dict[str, str]:
-    """Of each joint with a drive, what stands behind the names of its results, and the segment."""
-    joints = enumerate(case.joints, start=1)
-    return {
-        "" if number == 1 else f"-{number}": joint.inner
-        for number, joint in joints
-        if joint.drive is not None
-    }
-
-
 def drawn_axis(pen: Pen, axes: Axes) -> None:
     """How far segments are drawn out, on a second axis to the right."""
     # Segments that go together are one line.
     together: dict[tuple[float, ...], list[str]] = {}
-    for suffix, inner in driven(pen.case).items():
+    for suffix, inner in pen.case.driven.items():
         if f"drawn_out{suffix}" in pen.data:
             drawn = pen.of(pen.models[0], f"drawn_out{suffix}")
             together.setdefault(tuple(drawn.tolist()), []).append(inner)
@@ -48,10 +38,10 @@ def drawn_axis(pen: Pen, axes: Axes) -> None:
 
 def of_start(case: Case) -> str:
     """A sentence for what stands over x, or is named by it; empty where nothing is drawn out."""
-    return " Places are those of t = 0, and go with their segments." if driven(case) else ""
+    return " Places are those of t = 0, and go with their segments." if case.driven else ""
 
 
 def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
     """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Drawn out as it is at {listed(times)} s." if driven(case) else ""
+    return f" Drawn out as it is at {listed(times)} s." if case.driven else ""

@@ -7,7 +7,7 @@ from geometry.typography import TO_KILO, TO_MILLI
 from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.contact_figures import FORCE_WINDOW, running_mean
-from runs.report.drawn_axis import drawn_axis, driven
+from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import Figure, Pen, farthest, new_sheet
 
 
@@ -15,7 +15,7 @@ def drives(pen: Pen) -> list[Figure]:
     """Force and power of each drive; of one that gives way its own force, and how it follows."""
     return [
         draw(pen, suffix, inner)
-        for suffix, inner in driven(pen.case).items()
+        for suffix, inner in pen.case.driven.items()
         for name, draw in (("drive_power", _drive), ("drive_force", _stick_slip))
         if f"{name}{suffix}" in pen.data
     ]

@@ -8,7 +8,6 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MILLI
 from runs.pipeline.results import Results
-from runs.report.drawn_axis import driven
 from runs.report.tables import Column, Table
 
 
@@ -22,7 +21,7 @@ def drive_table(results: Results) -> Table | None:
             data["time"].values,
             *(_of(results, str(model), n + suffix) for n in _READ),
         )
-        for suffix, inner in driven(results.case).items()
+        for suffix, inner in results.case.driven.items()
         if f"drive_power{suffix}" in data
         for model in data["model"].values
     ]
@@ -47,7 +46,7 @@ def stick_slip_table(results: Results) -> Table | None:
     """Of every model and drive of a given stiffness; None where all are stiff."""
     rows = [
         (str(model), inner, own.stick_slip[name])
-        for suffix, inner in driven(results.case).items()
+        for suffix, inner in results.case.driven.items()
         for model, own in results.summary.models.items()
         if (name := f"drive_force{suffix}") in own.stick_slip
     ]

@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
-from runs.case.regularity import regular
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve
@@ -71,7 +70,7 @@ class Pen:
         self.ensembles = results.ensembles
         self.summary = results.summary.models
         self.of_the_paper = bool(results.case.statements)
-        self.regular = regular(results.case)
+        self.regular = results.case.regular
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
         self.models = [str(name) for name in self.data["model"].values]

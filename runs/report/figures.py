@@ -3,12 +3,18 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 from collections.abc import Callable, Sequence
+from hashlib import sha256
 from pathlib import Path
 
 import matplotlib
 
-from runs.pipeline.results import Results
+from runs.folder.files import write_whole
+from runs.folder.versions import program
+from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
+from runs.pipeline.summary import Snapshots
 from runs.report import theme
 from runs.report.boom_drawing import boom
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
@@ -19,6 +25,9 @@ from runs.report.figure_context import Figure, Pen
 from runs.report.horizon_figures import horizons, slow_peaks
 from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 from runs.report.stress_figures import stress_history
+
+FOLDER = "figures"
+DRAWN_OF = ".drawn-of"
 
 FIGURES: Sequence[Callable[[Pen], list[Figure]]] = (
     boom,
@@ -51,3 +60,27 @@ def draw(results: Results, folder: Path) -> list[Figure]:
     with matplotlib.rc_context(theme.RC):
         pen = Pen(results, folder)
         return [figure for figures in FIGURES for figure in figures(pen)]
+
+
+def draw_in(results: Results, folder: Path) -> list[Figure]:
+    """Draw them into a run's folder, in place of all earlier ones of anything else."""
+    figures, known = folder / FOLDER, folder / DRAWN_OF
+    drawn_of = _drawn_of(results, folder)
+    figures.mkdir(exist_ok=True)
+    if not known.is_file() or known.read_text(encoding="utf-8") != drawn_of:
+        shutil.rmtree(figures)
+        figures.mkdir()
+    drawn = draw(results, figures)
+    for earlier in set(figures.iterdir()) - {figure.path for figure in drawn}:
+        earlier.unlink()
+    write_whole(known, drawn_of)
+    return drawn
+
+
+def _drawn_of(results: Results, folder: Path) -> str:
+    """SHA-256 of all that decides what figures look like: data and this program."""
+    bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
+    digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
+    for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):
+        digest.update(path.read_bytes() if path.is_file() else b"")
+    return digest.hexdigest()

@@ -3,27 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import log, pi
 from typing import NamedTuple
 
 from geometry.arrays import Array
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
+from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.results import Results
 from runs.pipeline.trust import off_at_rest
-from runs.report.answer_tables import (
-    SHOWN,
-    amount,
-    hardly,
-    play_of,
-)
-from runs.report.drawn_axis import driven
+from runs.report.answer_tables import hardly
 from runs.report.figure_context import farthest
 from runs.report.pad_tables import PressedPad, pressed_pads
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, fixed, number
+from runs.report.theme import NONE, SHOWN, amount, fixed, number
 
 # To which part a swing has died that nobody heeds any more.
 TENTH = 0.1
@@ -37,40 +31,38 @@ def first_table(results: Results) -> Table | None:
     if answers is None:
         return None
     names = results.read_first
-    own = {name: answers.models[name] for name in names}
-    tips = {name: results.trajectories["tip"].sel(model=name).values for name in names}
-    walls = {name: _walls(own[name]) for name in names}
-    fibres = {name: _fibres(own[name]) for name in names}
-    pads = _hardest_pads(results)
-    questions: dict[str, Callable[[str], str]] = {
-        "Tip at rest, t = 0, mm": lambda name: _at_rest(own[name].rests[:1]),
-        "Tip at rest, largest loads, mm": lambda name: _at_rest(own[name].rests[1:]),
-        "Tip at rest where it is drawn to, mm": lambda name: _at_rest(own[name].drawn),
-        "Tip in motion, farthest, mm": lambda name: _farthest(own[name], tips[name]),
-        "Tip travels, mm": lambda name: _travels(tips[name]),
-        "Tip swings while it is drawn, mm": lambda name: _swings(own[name]),
-        "Tip to the sides, farthest, mm": lambda name: _largest_of(own[name], "lateral deflection"),
-        "First frequency, Hz": lambda name: _frequency(own[name]),
-        "One swing takes, s": lambda name: _period(own[name]),
-        "Swings fade to a tenth in, s": lambda name: _fading(results.case, own[name]),
-        "Pad that presses most": lambda name: _pad(pads[name]) if name in pads else NONE,
-        "Station pressed most, kN": lambda name: NONE if pads else _station(own[name]),
-        "Cylinder, at most, kN": lambda name: _largest_of(own[name], "cylinder force"),
-        "Pin of the foot, at most, kN": lambda name: _largest_of(
-            own[name], "reaction, across and along"
-        ),
-        "Outer fibre, MPa": lambda name: _stress(fibres[name]),
-        "Walls over a patch, MPa": lambda name: _stress(walls[name]),
-        "Damage of its life": lambda name: _damage(own[name]),
-    }
-    rows = {asked: [answer(name) for name in names] for asked, answer in questions.items()}
+    own = [answers.models[name] for name in names]
+    tips = [results.trajectories["tip"].sel(model=name).values for name in names]
+    walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
+    hardest = _hardest_pads(results)
+    pads = [hardest.get(name) for name in names]
+    damages = [_life_damage(one) for one in own]
+    asked = (
+        Column("Tip at rest, t = 0, mm", [_at_rest(one.rests[:1]) for one in own], *_MM),
+        Column("Tip at rest, largest loads, mm", [_at_rest(one.rests[1:]) for one in own], *_MM),
+        Column("Tip at rest where it is drawn to, mm", [_at_rest(one.drawn) for one in own], *_MM),
+        Column("Tip in motion, farthest, mm", [*map(_farthest, own, tips)]),
+        Column("Tip travels, mm", [*map(_travels, tips)], *_MM),
+        Column("Tip swings while it is drawn, mm", [_swings(one) for one in own]),
+        Column("Tip to the sides, farthest, mm", _largest_of(own, "lateral deflection")),
+        Column("First frequency, Hz", [_frequency(one) for one in own], ".3g"),
+        Column("One swing takes, s", [_period(one) for one in own], ".3g"),
+        Column("Swings fade to a tenth in, s", [_fading(results.case, one) for one in own], ".2g"),
+        Column("Pad that presses most", [pad and _pad(pad) for pad in pads]),
+        Column("Station pressed most, kN", [None if hardest else _station(one) for one in own]),
+        Column("Cylinder, at most, kN", _largest_of(own, "cylinder force")),
+        Column("Pin of the foot, at most, kN", _largest_of(own, "reaction, across and along")),
+        Column("Outer fibre, MPa", [one and _stress(one) for one in fibres]),
+        Column("Walls over a patch, MPa", [one and _stress(one) for one in walls]),
+        Column("Damage of its life", damages, ".3g"),
+    )
+    rows = {column.heading: column.text for column in asked}
     told = {asked: cells for asked, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(told))]
     columns += [Column(name, [told[asked][i] for asked in told]) for i, name in enumerate(names)]
-    found = [one for each in (walls, fibres) for one in each.values() if one is not None]
-    strong = [_stress(one) for one in found if (one.part or 0.0) >= NEAR]
-    strong += [_pad(one) for one in pads.values() if (one.utilisation or 0.0) >= NEAR]
-    strong += [_damage(one) for one in own.values() if (_life_damage(one) or 0.0) >= NEAR]
+    strong = [_stress(one) for one in (*walls, *fibres) if one and (one.part or 0.0) >= NEAR]
+    strong += [_pad(pad) for pad in pads if pad and (pad.utilisation or 0.0) >= NEAR]
+    strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
     notes = " ".join(_notes(results, told))
     return Table("The answers", columns, [notes], "answers", strong=strong)
 
@@ -97,15 +89,9 @@ def trust_line(results: Results) -> str:
     )
 
 
-def trust_lines(results: Results) -> list[str]:
-    """How far the numbers can be trusted."""
-    answers = results.summary.answers
-    return [] if answers is None else [known.line for known in answers.trust]
-
-
 def play_sentence(results: Results) -> str:
     """What play adds, of the model that the others are held against; else empty."""
-    found = play_of(results)
+    found = results.play
     if found is None:
         return ""
     by_kind: dict[str, list[Added]] = {}
@@ -119,7 +105,7 @@ def play_sentence(results: Results) -> str:
     said += [f"It hardly changes {listed(same)}."] if same else []
     frequency = first.get("first frequency")
     if frequency is not None and frequency.tied and not hardly(frequency):
-        both = f"{number(frequency.played)} Hz in place of {number(frequency.tied)} Hz"
+        both = f"{amount(frequency.played, 'Hz')} in place of {amount(frequency.tied, 'Hz')}"
         said.append(f"The first frequency is {both}.")
     return " ".join(said)
 
@@ -135,13 +121,13 @@ def strength_sentence(results: Results) -> str:
     used: list[tuple[float, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
-            bears = f"{number(TO_PERCENT * most.part)} % of their yield strength ({_place(most)})"
+            bears = f"{_percent(most.part)} of their yield strength ({_place(most)})"
             used.append((most.part, f"{what} bear {bears}"))
     if pad is not None and pad.utilisation is not None:
-        bears = f"{number(TO_PERCENT * pad.utilisation)} % of their allowable pressure"
+        bears = f"{_percent(pad.utilisation)} of their allowable pressure"
         used.append((pad.utilisation, f"pads bear {bears}"))
     if (damage := _life_damage(own)) is not None:
-        used.append((damage, f"{number(TO_PERCENT * damage)} % of a life is used"))
+        used.append((damage, f"{_percent(damage)} of a life is used"))
     if not used:
         return ""
     used.sort(reverse=True)
@@ -164,7 +150,7 @@ _SAID = {
 
 def play_note(results: Results) -> str:
     """Whose numbers the sentences have."""
-    found = play_of(results)
+    found = results.play
     if found is None:
         return ""
     return f"Of the model {found.model}, beside the same without play."
@@ -216,25 +202,27 @@ def _pressure(pad: PressedPad) -> tuple[float, float]:
 
 def _pad(pad: PressedPad) -> str:
     """Force and pressure of one, and where it is."""
-    used = pad.utilisation
-    part = "" if used is None else f", {number(TO_PERCENT * used)} %"
-    beyond = "\nbeyond allowable" if used and used > 1.0 else ""
-    return (
-        f"{number(TO_KILO * pad.force)} kN\n{number(TO_MEGA * pad.pressure)} MPa{part}{beyond}\n"
-        f"{pad.joint.inner} {_FACES[pad.place]}, {pad.x:g} m"
-    )
+    used = _used(pad.utilisation, "allowable")
+    force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
+    return f"{force}\n{pressure}{used}\n{pad.joint.inner} {_FACES[pad.place]}, {pad.x:g} m"
 
 
 _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
 
 
-def _stress(largest: _Largest | None) -> str:
-    if largest is None:
-        return NONE
-    stress, _, _, part = largest
-    of = "" if part is None else f", {number(TO_PERCENT * part)} %"
-    beyond = "\nbeyond yield" if part and part > 1.0 else ""
-    return f"{number(TO_MEGA * stress)}{of}{beyond}\n{_place(largest)}"
+def _stress(largest: _Largest) -> str:
+    return f"{number(TO_MEGA * largest.stress)}{_used(largest.part, 'yield')}\n{_place(largest)}"
+
+
+def _used(part: float | None, borne: str) -> str:
+    """A part of what may be borne."""
+    if part is None:
+        return ""
+    return f", {_percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
+
+
+def _percent(part: float) -> str:
+    return f"{number(TO_PERCENT * part)} %"
 
 
 def _place(largest: _Largest) -> str:
@@ -252,13 +240,13 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Tip travels, mm" in told:
         yield "It travels: the farthest from where it is at t = 0."
     if any("×" in cell for cells in told.values() for cell in cells):
-        drawn = ", wherever it is drawn to" if driven(results.case) else ""
+        drawn = ", wherever it is drawn to" if results.case.driven else ""
         yield f"×: so many times what is at rest under the largest loads{drawn}."
     if "Tip swings while it is drawn, mm" in told:
         yield "It swings: about where it would rest; standing, where drives begin and end."
     if "Swings fade to a tenth in, s" in told:
-        ratio = number(TO_PERCENT * results.case.damping.modal)
-        yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} % alone."
+        ratio = _percent(results.case.damping.modal)
+        yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} alone."
     if "Pad that presses most" in told:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
@@ -268,7 +256,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
         yield f"Stresses: % of the yield strength, {strengths}."
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
-        most = [f"{number(TO_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
+        most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
             f"Single triangles beside lines of contact have more ({listed(most)}), the more the "
             "finer the mesh; the table of what the walls carry tells where."
@@ -287,39 +275,46 @@ def _span(values: Iterable[float | None]) -> str:
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
 
 
-def _at_rest(rests: Sequence[AtRest]) -> str:
-    return fixed(max((rest.tip for rest in rests), key=abs, default=None), 1, TO_MILLI)
+# Form and factor of a column in mm.
+_MM = ".1f", TO_MILLI
+
+
+def _at_rest(rests: Sequence[AtRest]) -> float | None:
+    return max((rest.tip for rest in rests), key=abs, default=None)
 
 
 def _farthest(own: ModelAnswers, tip: Array) -> str:
     """With its sign, and how many times the rest that is."""
     peaks = [peak for peak in own.moved.peaks if peak.what == "deflection"] if own.moved else []
-    return fixed(farthest(tip), 1, TO_MILLI) + (_times(peaks[0]) if peaks else "")
+    return _milli(farthest(tip)) + (_times(peaks[0]) if peaks else "")
 
 
-def _travels(tip: Array) -> str:
+def _travels(tip: Array) -> float | None:
     """From where it starts; what starts in the straight line has no need of it."""
-    return fixed(farthest(tip - tip[0]), 1, TO_MILLI) if tip[0] else NONE
+    return farthest(tip - tip[0]) if tip[0] else None
 
 
-def _swings(own: ModelAnswers) -> str:
+def _swings(own: ModelAnswers) -> str | None:
     """About where it would rest, and the same boom where drives begin and end."""
     if (swing := own.swing) is None:
-        return NONE
-    ends = [fixed(end, 1, TO_MILLI) for end in (swing.where_begun, swing.where_ended)]
-    return f"{fixed(swing.tip, 1, TO_MILLI)}\nstanding {ends[0]}\nand {ends[1]}"
+        return None
+    begun, ended = _milli(swing.where_begun), _milli(swing.where_ended)
+    return f"{_milli(swing.tip)}\nstanding {begun}\nand {ended}"
 
 
-def _largest_of(own: ModelAnswers, what: str) -> str:
-    peak = _peak_of(own, what)
-    if peak is None:
-        return NONE
-    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{_times(peak)}"
+def _milli(deflection: float | None) -> str:
+    return fixed(deflection, 1, TO_MILLI)
 
 
-def _station(own: ModelAnswers) -> str:
+def _largest_of(own: Sequence[ModelAnswers], what: str) -> list[str | None]:
+    """Of each model, in kN or mm."""
+    peaks = [_peak_of(one, what) for one in own]
+    return [None if peak is None else _largest(peak) for peak in peaks]
+
+
+def _station(own: ModelAnswers) -> str | None:
     peak = _peak_of(own, "contact force")
-    return NONE if peak is None else f"{_largest_of(own, peak.what)}\nat {peak.where} m"
+    return None if peak is None else f"{_largest(peak)}\nat {peak.where} m"
 
 
 def _peak_of(own: ModelAnswers, what: str) -> Peak | None:
@@ -328,29 +323,28 @@ def _peak_of(own: ModelAnswers, what: str) -> Peak | None:
     return max(peaks, key=lambda one: one.largest, default=None)
 
 
+def _largest(peak: Peak) -> str:
+    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{_times(peak)}"
+
+
 def _times(peak: Peak) -> str:
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
-def _frequency(own: ModelAnswers) -> str:
-    return number(own.modes[0].frequency) if own.modes else NONE
+def _frequency(own: ModelAnswers) -> float | None:
+    return own.modes[0].frequency if own.modes else None
 
 
-def _period(own: ModelAnswers) -> str:
-    return number(1.0 / own.modes[0].frequency) if own.modes else NONE
+def _period(own: ModelAnswers) -> float | None:
+    return 1.0 / own.modes[0].frequency if own.modes else None
 
 
-def _fading(case: Case, own: ModelAnswers) -> str:
+def _fading(case: Case, own: ModelAnswers) -> float | None:
     """By its modal damping, of an oscillation that nothing else takes energy from."""
     ratio = case.damping.modal
     if not own.modes or ratio == 0.0:
-        return NONE
-    return number(log(1.0 / TENTH) / (2.0 * pi * ratio * own.modes[0].frequency), 2)
-
-
-def _damage(own: ModelAnswers) -> str:
-    most = _life_damage(own)
-    return NONE if most is None else number(most)
+        return None
+    return log(1.0 / TENTH) / (2.0 * pi * ratio * own.modes[0].frequency)
 
 
 def _life_damage(own: ModelAnswers) -> float | None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_KILO, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.case.build import contact_laws
-from runs.case.regularity import regular
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
 from runs.report.tables import Cell, Column, Table
@@ -110,7 +109,7 @@ def step_table(results: Results) -> Table:
             "The paper names at most 2000 steps for the series and more than 4000 for beam "
             "elements, and 4375 for these with friction."
         )
-    statements = ("S8", "S10") if regular(results.case) else ("S10",)
+    statements = ("S8", "S10") if results.case.regular else ("S10",)
     return Table("Steps", columns, notes, "steps", statements)
 
 

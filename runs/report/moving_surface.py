@@ -84,7 +84,7 @@ class MovingSurface:
         segment = np.zeros(len(rest), dtype=np.int32)
         for number, members in enumerate(shell.members):
             segment[members] = number
-        stresses = [smooth(shell, s.largest()) for s in shell.stress.instants(time.tolist())]
+        stresses = [shell.smooth(s.largest()) for s in shell.stress.instants(time.tolist())]
         return cls(
             model=str(fields.attrs["model"]),
             time=time,
@@ -144,15 +144,6 @@ def few_shapes(moved: Array) -> tuple[Array, Array]:
         if np.abs(parts @ right[:count] - moved).max() <= LEFT * largest:
             break
     return parts, right[:count]
-
-
-def smooth(shell: MovingShell, values: npt.ArrayLike) -> Array:
-    """(num_points,) the mean of the triangles around each point, by their areas."""
-    areas = shell.stress.areas
-    around, count = shell.triangles.ravel(), len(shell.points)
-    weights = np.repeat(areas, 3)
-    total = np.bincount(around, weights * np.repeat(np.asarray(values), 3), count)
-    return np.asarray(total / np.maximum(np.bincount(around, weights, count), 1e-300))
 
 
 def packed(surface: MovingSurface) -> dict[str, Any]:

@@ -33,7 +33,7 @@ from runs.case.kinds.model import Joined, of_kind
 from runs.case.messages import BadInput, choices
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.folder.files import whole
+from runs.folder.files import write_whole
 from runs.pipeline.models import build, workshop
 
 if TYPE_CHECKING:
@@ -345,5 +345,4 @@ def write(
         text = script(case, joined_as_seen_by(case, boom, model), model, calibration)
     except BoomError as error:
         raise BadInput(file, error.where, error.what) from None
-    with whole(path) as part:
-        part.write_text(text, encoding="utf-8")
+    write_whole(path, text)

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table as Grid
 from rich.text import Text
 
-from runs.folder.files import whole
+from runs.folder.files import write_whole
 from runs.report.theme import NONE, count, fixed, number, repeated
 
 # Letters that fit in a line of the report with its usual font, on a telephone, and in a file.
@@ -232,5 +232,4 @@ def write(
         "md": "\n".join([f"# {title}\n", *(table.markdown() for table in tables)]),
     }
     for suffix, text in texts.items():
-        with whole(folder / f"{name}.{suffix}") as part:
-            part.write_text(text, encoding="utf-8")
+        write_whole(folder / f"{name}.{suffix}", text)

@@ -12,7 +12,7 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 
-from geometry.typography import signed
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, signed
 
 # On a telephone a figure is shown about half as wide as it is drawn: 11 pt stay readable.
 WIDTH = 5.4
@@ -121,6 +121,16 @@ def number(value: float | None, digits: int = 3) -> str:
         whole = abs(rounded) >= 10.0 ** (digits - 1)
         return signed(f"{rounded:.0f}" if whole else f"{rounded:g}")
     return scientific(value, digits)
+
+
+SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
+
+
+def amount(value: float, unit: str) -> str:
+    """In the unit that is shown for one of the SI."""
+    name, factor = SHOWN[unit]
+    return f"{number(factor * value)} {name}".strip()
 
 
 def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:

@@ -20,7 +20,7 @@ from time import perf_counter
 
 from rich.console import Console
 
-from runs.folder.files import whole, whole_folder
+from runs.folder.files import whole_folder, write_whole
 from runs.process import notices
 from runs.report.pages import page
 from runs.report.tables import wide_console, write
@@ -90,8 +90,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
         verification.table(study).show(console)
     tables = [table.text for study in studies for table in study.tables]
     write(folder, "convergence", TITLE, {one.name: one.data for one in studies}, tables)
-    with whole(folder / "verification.md") as part:
-        part.write_text(verification.markdown(studies), encoding="utf-8")
+    write_whole(folder / "verification.md", verification.markdown(studies))
     _write_report(studies, folder)
     return studies
 
@@ -127,8 +126,7 @@ def _write_report(studies: Sequence[Study], folder: Path) -> None:
             figures=drawn,
             proofs={one.name: verification.table(one) for one in studies if one.proofs},
         )
-    with whole(folder / "report.html") as part:
-        part.write_text(content, encoding="utf-8")
+    write_whole(folder / "report.html", content)
 
 
 def _tell(study: str, what: str) -> None:

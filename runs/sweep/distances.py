@@ -21,7 +21,6 @@ from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
-from runs.case.regularity import regular
 from runs.case.schema import Case, Model
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
@@ -149,7 +148,7 @@ def comparable_until(
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
-    if model.play_free or regular(case):
+    if model.play_free or case.regular:
         return end
     tools = None if comm is None else workshop(comm, meshes / model.name, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)

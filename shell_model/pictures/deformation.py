@@ -206,6 +206,13 @@ class MovingShell:
             moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
             yield from moved.astype(np.float64)
 
+    def smooth(self, values: npt.ArrayLike) -> Array:
+        """(num_points,) the mean of the triangles around each point, by their areas."""
+        around, count = self.triangles.ravel(), len(self.points)
+        weights = np.repeat(self.stress.areas, 3)
+        total = np.bincount(around, weights * np.repeat(np.asarray(values), 3), count)
+        return np.asarray(total / np.maximum(np.bincount(around, weights, count), 1e-300))
+
     def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
         """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.
 

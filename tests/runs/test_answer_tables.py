@@ -27,7 +27,6 @@ from runs.report.first_look import (
     play_sentence,
     strength_sentence,
     trust_line,
-    trust_lines,
 )
 from runs.report.tables import Table
 
@@ -214,10 +213,10 @@ def test_every_answer_has_its_table(results: Results) -> None:
     titles = [table.name for table in answer_tables(results)]
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
     assert titles == [*expected, *(["life"] if COUNTS else [])]
-    assert trust_lines(results)
     modes = cells(mode_table(results))
     own = results.summary.answers
     assert own is not None
+    assert own.trust
     first = own.models[TIED].modes[0]
     assert float(modes[f"{first.way} 1"][f"{TIED}\nHz"]) == pytest.approx(first.frequency, rel=1e-3)
     table = stress_table(results)
@@ -231,4 +230,3 @@ def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     assert first_table(without) is None
     assert answer_tables(without) == []
     assert play_sentence(without) == play_note(without) == ""
-    assert trust_lines(without) == []

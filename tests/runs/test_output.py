@@ -22,9 +22,9 @@ from runs.paper.rules import judge
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.means import Means
 from runs.pipeline.place_names import place_names
-from runs.pipeline.results import Results
+from runs.pipeline.results import Results, write_csv
 from runs.pipeline.run import Run, run_case
-from runs.report.output import _write_csv, write, write_report
+from runs.report.output import write, write_report
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
@@ -108,7 +108,7 @@ def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
         [plain, plain.assign(friction_force=np.nan * plain["friction_force"])], "model"
     )
     data = data.assign_coords(model=["a, b", "nan"])
-    _write_csv(data, tmp_path / "ours.csv")
+    write_csv(data, tmp_path / "ours.csv")
     columns = {}
     for name, variable in data.data_vars.items():
         if "station" in variable.dims:
