@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +24,10 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.folder.files import write_whole
-from runs.pipeline.answers import PlayAdds
-from runs.pipeline.cautions import of_run as cautions_of
+from runs.pipeline.answers import Moved, PlayAdds
+from runs.pipeline.cautions import of_run
 from runs.pipeline.comparisons import leading, reference_of
+from runs.pipeline.pads import pressed_pads
 from runs.pipeline.place_names import place_names
 from runs.pipeline.summary import Summary
 
@@ -103,9 +102,25 @@ class Results:
                     str(folder), name, f"is not of the case in {CASE}; run the case again"
                 )
         results = cls(case, trajectories, summary, ensembles)
-        if "cautions" not in summary.model_fields_set:
-            summary.cautions = cautions_of(case, results.boom, trajectories, summary)
+        if not {"pads", "cautions"} <= summary.model_fields_set:
+            results.conclude()
         return results
+
+    @property
+    def moved(self) -> dict[str, Moved]:
+        """What is known of the motions of the models that are read first."""
+        own = self.summary.answers.models if self.summary.answers else {}
+        return {
+            name: moved
+            for name in self.read_first
+            if name in own and (moved := own[name].moved) is not None
+        }
+
+    def conclude(self) -> None:
+        """Put what follows from the motion and the rest of the summary into it."""
+        case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
+        summary.pads = list(pressed_pads(case, boom, data))
+        summary.cautions = of_run(case, boom, data, summary)
 
     def save(self, folder: Path) -> None:
         """All but the summary, which goes on changing, into a run's folder."""
@@ -214,35 +229,6 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
         },
         attrs={"Conventions": CONVENTIONS},
     )
-
-
-def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """One line for each model and time; a station's columns are headed ``NAME@X``.
-
-    X is the station's ``place``.
-    """
-    columns = {}
-    places = trajectories["place"].values if "place" in trajectories.coords else ()
-    for name, variable in trajectories.data_vars.items():
-        if "station" in variable.dims:
-            of_stations = variable.drop_vars(["station", "direction", "place"])
-            for place, values in zip(places, of_stations.transpose("station", ...), strict=True):
-                columns[f"{name}@{place}"] = values
-        else:
-            columns[str(name)] = variable
-    values = xr.Dataset(columns).to_array().transpose("model", "time", "variable").values
-    time = trajectories["time"].values
-    line = ",%.9g" * (1 + len(columns)) + "\r\n"
-    with path.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["model", "time", *columns])
-        for name, rows in zip(trajectories["model"].values, values, strict=True):
-            # A writer's own way with numbers takes four times as long.
-            begin = StringIO()
-            csv.writer(begin, lineterminator="").writerow([name])
-            numbers = np.column_stack([time, rows]).tolist()
-            lines = [(line % tuple(row)).replace("nan", "") for row in numbers]
-            file.writelines(f"{begin.getvalue()}{text}" for text in lines)
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:

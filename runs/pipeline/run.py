@@ -22,7 +22,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
-from runs.pipeline import cautions, members
+from runs.pipeline import members
 from runs.pipeline.answering import of_model, of_run
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.beam_output import BeamOutput
@@ -109,7 +109,7 @@ class Run:
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
         summary.answers = of_run(boom, case, summary, answers)
-        summary.cautions = cautions.of_run(case, boom, self.results.trajectories, summary)
+        self.results.conclude()
 
 
 def run_case(case: Case, file: str, means: Means) -> Run | None:

@@ -257,6 +257,21 @@ class Ensembles(EnsembleTable):
     slow_below: float | None
 
 
+class PressedPad(Entry):
+    """One slide pad of a pair in one model, where it bears most: ``force`` in N at a station at x
+    in m, ``pressure`` in Pa; ``utilisation`` of what it may bear is None where that is not told.
+    """
+
+    model: str
+    outer: str
+    inner: str
+    x: float
+    side: str
+    force: float
+    pressure: float
+    utilisation: float | None
+
+
 class Snapshots(Entry):
     """Names of the pictures, or why there are none."""
 
@@ -267,7 +282,8 @@ class Snapshots(Entry):
 class Summary(Entry):
     """What ``summary.json`` holds; ``models`` those that ran, ``failures`` why others did not.
 
-    ``cautions`` are lines that say what the results are not worth.
+    ``pads`` are those of all models and stations, ``cautions`` lines that say what the results are
+    not worth.
     """
 
     title: str
@@ -277,6 +293,7 @@ class Summary(Entry):
     failures: dict[str, str]
     ensemble: Ensembles | None = None
     answers: Answers | None = None
+    pads: list[PressedPad] = []
     cautions: list[str] = []
     comparisons: Comparisons | None = None
     snapshots: Snapshots = Snapshots(written=[], skipped=None)

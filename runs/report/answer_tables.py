@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
-from runs.pipeline.answers import Added, AtRest, Moved, Peak
+from geometry.typography import TO_KILO, TO_MILLI, TO_PERCENT
+from runs.pipeline.answers import Added, AtRest, Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
 from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
-from runs.report.pad_tables import pad_tables
+from runs.report.strength_tables import life_table, pad_table, stress_table
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, amount, number
 
@@ -136,7 +136,7 @@ def mode_table(results: Results) -> Table | None:
 
 def peak_table(results: Results) -> Table | None:
     """Largest of the motion beside what is at rest, of the models that are read first."""
-    moved = _moved(results)
+    moved = results.moved
     wheres = dict.fromkeys(
         (peak.what, peak.where, peak.unit) for own in moved.values() for peak in own.peaks
     )
@@ -154,79 +154,6 @@ def peak_table(results: Results) -> Table | None:
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 
-def stress_table(results: Results) -> Table | None:
-    """Largest stresses of each segment: outer fibres of all models, walls of shells."""
-    rows = []
-    for name, own in _moved(results).items():
-        walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
-        for fibre in own.fibres:
-            wall = walls.get(fibre.segment)
-            rows.append((name, fibre, wall))
-    if not rows:
-        return None
-    used = [
-        max((part for part in (f.utilisation, w.utilisation if w else None) if part), default=None)
-        for _, f, w in rows
-    ]
-    columns = [
-        Column("model", [name for name, _, _ in rows]),
-        Column("segment", [fibre.segment for _, fibre, _ in rows]),
-        Column("outer fibre\nMPa", [abs(f.stress) for _, f, _ in rows], ".4g", TO_MEGA),
-        Column("at x\nm", [fibre.x for _, fibre, _ in rows], ".4g"),
-        Column("at\ns", [fibre.time for _, fibre, _ in rows], ".3f"),
-    ]
-    if any(wall for _, _, wall in rows):
-        columns.append(
-            Column(
-                "wall, over a patch\nMPa",
-                [w.patch if w else None for _, _, w in rows],
-                ".4g",
-                TO_MEGA,
-            )
-        )
-    if any(used):
-        columns.append(Column("of the yield strength\n%", used, ".3g", TO_PERCENT))
-    notes = (
-        "Outer fibre: along x, of section forces. Wall: von Mises, the mean over a patch of half a "
-        "wall near stations and supports, where plates bend besides.",
-    )
-    return Table("Stress", columns, notes, "stress")
-
-
-def life_table(results: Results) -> Table | None:
-    """Rainflow ranges of each segment, of the models that are read first."""
-    answers = results.summary.answers
-    rows = [
-        (name, life)
-        for name, own in (answers.models.items() if answers else ())
-        if name in results.read_first
-        for life in own.life
-    ]
-    if not rows:
-        return None
-    columns = [
-        Column("model", [name for name, _ in rows]),
-        Column("segment", [life.segment for _, life in rows]),
-        Column("at x\nm", [life.x for _, life in rows], ".4g"),
-        Column("cycles", [life.cycles for _, life in rows], ".3g"),
-        Column("largest range\nMPa", [life.largest for _, life in rows], ".4g", TO_MEGA),
-        Column("equivalent range\nMPa", [life.equivalent for _, life in rows], ".4g", TO_MEGA),
-    ]
-    if any(life.damage is not None for _, life in rows):
-        damages = [life.damage for _, life in rows]
-        columns.append(Column("damage of a run", damages, ".3g"))
-        borne = [1.0 / damage if damage else None for damage in damages]
-        columns.append(Column("runs to failure", borne, ".3g"))
-    if any(life.life_damage is not None for _, life in rows):
-        columns.append(Column("of its life", [life.life_damage for _, life in rows], ".3g"))
-    notes = (
-        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: what, once "
-        "in a run, does as much as all of them at a slope of 3. Runs to failure: how often its "
-        "motion may come until the damage is 1; none where no range does any.",
-    )
-    return Table("Life", columns, notes, "life")
-
-
 def answer_tables(results: Results) -> list[Table]:
     """All but the first look, in the order of the questions."""
     found = [
@@ -237,7 +164,7 @@ def answer_tables(results: Results) -> list[Table]:
         drive_table(results),
         stick_slip_table(results),
         swing_table(results),
-        *pad_tables(results),
+        pad_table(results),
         stress_table(results),
         life_table(results),
     ]
@@ -247,17 +174,6 @@ def answer_tables(results: Results) -> list[Table]:
 def hardly(one: Added) -> bool:
     """Whether play adds next to nothing."""
     return one.share is not None and abs(one.share) < HARDLY
-
-
-def _moved(results: Results) -> dict[str, Moved]:
-    """Of the models that are read first."""
-    answers = results.summary.answers
-    own = answers.models if answers else {}
-    return {
-        name: moved
-        for name in results.read_first
-        if name in own and (moved := own[name].moved) is not None
-    }
 
 
 def _peak_cell(peak: Peak | None) -> str:

@@ -14,13 +14,7 @@ from runs.report.answer_tables import answer_tables
 from runs.report.calibration_tables import calibration_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
-from runs.report.first_look import (
-    first_table,
-    play_note,
-    play_sentence,
-    strength_sentence,
-    trust_line,
-)
+from runs.report.first_look import first_look
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
 from runs.report.pages import MARKS, page
@@ -53,25 +47,28 @@ def render(
 
     Where plotly is not installed the pictures of curves stand alone.
     """
-    look = first_table(results)
-    tables = {
-        "first": _texts([look] if look else []),
-        "answers": _texts(answer_tables(results)),
-        "known": _texts(known_tables(results)),
-        "compared": _texts(compared_tables(results)),
-        "readings": readings,
-        "models": _texts(
-            [*model_tables(results), *calibration_tables(results), *wall_tables(results)]
-        ),
+    look = first_look(results)
+    tables: dict[str, list[Table]] = {
+        "first": [look.answers] if look.answers else [],
+        "answers": answer_tables(results),
+        "known": known_tables(results),
+        "compared": compared_tables(results),
+        "readings": [],
+        "models": [*model_tables(results), *calibration_tables(results), *wall_tables(results)],
     }
+    texts = {
+        part: [text for table in several if (text := table.text).rows]
+        for part, several in tables.items()
+    }
+    texts |= {"readings": [*readings]}
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     shown = [
-        *_numbered("Table", chain(*tables.values())),
+        *_numbered("Table", chain(*texts.values())),
         *_numbered("Figure", chain(*pictures.values())),
     ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
-    answers = results.summary.answers
+    answers, costs = results.summary.answers, _costs(results)
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
@@ -88,10 +85,7 @@ def render(
         then=any(verdict.then for verdict in verdicts),
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
-        adds=play_sentence(results),
-        strength=strength_sentence(results),
-        of=play_note(results),
-        nearness=trust_line(results),
+        look=look,
         trust=[known.line for known in answers.trust] if answers else [],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
@@ -99,16 +93,11 @@ def render(
         skipped=results.summary.snapshots.skipped,
         versions={k: v for k, v in results.summary.versions.items() if v is not None},
         case_hash=results.summary.case_hash,
-        costs=_costs(results),
+        costs=costs,
         case_text=toml.dumps(results.case),
-        **tables,
+        **texts,
         **pictures,
     )
-
-
-def _texts(tables: Sequence[Table]) -> list[TextTable]:
-    """Those that have something to show."""
-    return [text for table in tables if (text := table.text).rows]
 
 
 def _numbered(

@@ -12,10 +12,10 @@ from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.results import Results
+from runs.pipeline.summary import PressedPad
 from runs.pipeline.trust import off_at_rest
 from runs.report.answer_tables import hardly
 from runs.report.figure_context import farthest
-from runs.report.pad_tables import PressedPad, pressed_pads
 from runs.report.tables import Column, Table
 from runs.report.theme import NONE, SHOWN, amount, fixed, number
 
@@ -23,6 +23,35 @@ from runs.report.theme import NONE, SHOWN, amount, fixed, number
 TENTH = 0.1
 # From which part of what it may bear a number stands out.
 NEAR = 0.9
+
+
+class FirstLook(NamedTuple):
+    """What stands on the first screen; a sentence that has nothing to say is empty.
+
+    Args:
+        answers: the table of :func:`first_table`.
+        adds: what play adds.
+        of: whose numbers that has.
+        strength: what steel and pads reach of what they bear.
+        nearness: how far the other models are off.
+    """
+
+    answers: Table | None
+    adds: str
+    of: str
+    strength: str
+    nearness: str
+
+
+def first_look(results: Results) -> FirstLook:
+    """Of one run."""
+    return FirstLook(
+        first_table(results),
+        play_sentence(results),
+        play_note(results),
+        strength_sentence(results),
+        trust_line(results),
+    )
 
 
 def first_table(results: Results) -> Table | None:
@@ -35,7 +64,7 @@ def first_table(results: Results) -> Table | None:
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
     hardest = _hardest_pads(results)
-    pads = [hardest.get(name) for name in names]
+    pads = {name: _pad(pad) for name, pad in hardest.items()}
     damages = [_life_damage(one) for one in own]
     asked = (
         Column("Tip at rest, t = 0, mm", [_at_rest(one.rests[:1]) for one in own], *_MM),
@@ -48,7 +77,7 @@ def first_table(results: Results) -> Table | None:
         Column("First frequency, Hz", [_frequency(one) for one in own], ".3g"),
         Column("One swing takes, s", [_period(one) for one in own], ".3g"),
         Column("Swings fade to a tenth in, s", [_fading(results.case, one) for one in own], ".2g"),
-        Column("Pad that presses most", [pad and _pad(pad) for pad in pads]),
+        Column("Pad that presses most", [pads.get(name) for name in names]),
         Column("Station pressed most, kN", [None if hardest else _station(one) for one in own]),
         Column("Cylinder, at most, kN", _largest_of(own, "cylinder force")),
         Column("Pin of the foot, at most, kN", _largest_of(own, "reaction, across and along")),
@@ -57,11 +86,11 @@ def first_table(results: Results) -> Table | None:
         Column("Damage of its life", damages, ".3g"),
     )
     rows = {column.heading: column.text for column in asked}
-    told = {asked: cells for asked, cells in rows.items() if any(cell != NONE for cell in cells)}
+    told = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(told))]
-    columns += [Column(name, [told[asked][i] for asked in told]) for i, name in enumerate(names)]
+    columns += [Column(name, [cells[i] for cells in told.values()]) for i, name in enumerate(names)]
     strong = [_stress(one) for one in (*walls, *fibres) if one and (one.part or 0.0) >= NEAR]
-    strong += [_pad(pad) for pad in pads if pad and (pad.utilisation or 0.0) >= NEAR]
+    strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
     strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
     notes = " ".join(_notes(results, told))
     return Table("The answers", columns, [notes], "answers", strong=strong)
@@ -190,7 +219,7 @@ def _hardest(found: Sequence[_Largest]) -> _Largest | None:
 def _hardest_pads(results: Results) -> dict[str, PressedPad]:
     """Of each model, nearest to what it may bear, else of the largest pressure."""
     found: dict[str, PressedPad] = {}
-    for pad in pressed_pads(results):
+    for pad in results.summary.pads:
         if pad.model not in found or _pressure(pad) > _pressure(found[pad.model]):
             found[pad.model] = pad
     return found
@@ -204,7 +233,7 @@ def _pad(pad: PressedPad) -> str:
     """Force and pressure of one, and where it is."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
-    return f"{force}\n{pressure}{used}\n{pad.joint.inner} {_FACES[pad.place]}, {pad.x:g} m"
+    return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, {pad.x:g} m"
 
 
 _FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}

@@ -12,7 +12,7 @@ from typing import Any
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
 from runs.folder.files import beside, write_whole
-from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results, write_csv
+from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
@@ -20,6 +20,7 @@ from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.figures import draw_in
 from runs.report.tables import TextTable
+from runs.report.trajectory_csv import write_csv
 from runs.report.verdict import Verdict
 from runs.report.viewer import VIEWER, viewer
 from shell_model.pictures.opengl import RenderingUnavailable
@@ -127,18 +128,22 @@ def _write_pages(
     figures: Sequence[Figure],
     surveyed: Sequence[TextTable] = (),
 ) -> None:
-    write_whole(folder / SUMMARY, str(results.summary))
+    pictures = snapshots.describe(results, folder)
+    there = VIEWER if (folder / VIEWER).is_file() else ""
+    texts = {
+        REPORT: render(results, verdicts, figures, pictures, surveyed, there),
+        SUMMARY: str(results.summary),
+    }
     if cards := {
         name: model.calibration.model_dump()
         for name, model in results.summary.models.items()
         if model.calibration is not None
     }:
-        write_whole(folder / CALIBRATION, _json(cards))
+        texts[CALIBRATION] = _json(cards)
     if verdicts:
-        write_whole(folder / VERDICTS, _json([asdict(verdict) for verdict in verdicts]))
-    pictures = snapshots.describe(results, folder)
-    there = VIEWER if (folder / VIEWER).is_file() else ""
-    write_whole(folder / REPORT, render(results, verdicts, figures, pictures, surveyed, there))
+        texts[VERDICTS] = _json([asdict(verdict) for verdict in verdicts])
+    for name, text in texts.items():
+        write_whole(folder / name, text)
 
 
 def _json(data: Any) -> str:

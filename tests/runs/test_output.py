@@ -22,9 +22,10 @@ from runs.paper.rules import judge
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.means import Means
 from runs.pipeline.place_names import place_names
-from runs.pipeline.results import Results, write_csv
+from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
+from runs.report.trajectory_csv import write_csv
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
@@ -150,7 +151,7 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
 def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
     """Reference: those of a tip at rest that nobody has found small, by the summary's number."""
     content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert content.pop("cautions") == []
+    assert content.pop("cautions") == content.pop("pads") == []
     content["models"]["kantorovich-4"]["static_tip"] = -1.9
     (folder / "summary.json").write_text(json.dumps(content), encoding="utf-8")
     write_report(Results.load(folder), [], folder)

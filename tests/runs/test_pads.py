@@ -20,8 +20,9 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
+from runs.pipeline.summary import Summary
+from runs.report.answer_tables import pad_table
 from runs.report.first_look import first_table
-from runs.report.pad_tables import pad_tables
 from tests.runs.coarse_case import COARSE
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -105,7 +106,8 @@ def results(folder: Path, joint: str) -> Results:
 def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
     """Reference: by hand, half of the station's largest force over 0.01 m², against 20 MPa."""
     found = results(tmp_path, PAD)
-    (table,) = pad_tables(found)
+    table = pad_table(found)
+    assert table is not None
     peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
     assert peaks.min() > 0.0
     assert [row[0:4] for row in table.text.rows] == [
@@ -114,6 +116,8 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
     told = {column.heading: column.cells for column in table.columns}
     assert told["pressure\nMPa"] == pytest.approx((0.5 * peaks / 0.01).tolist())
     assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 2.0e7).tolist())
+    kept = Summary.model_validate_json(str(found.summary)).pads
+    assert [pad.pressure for pad in kept] == told["pressure\nMPa"]
 
 
 def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
@@ -122,7 +126,8 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     table = first_table(found)
     assert table is not None
     told = {row[0]: row[1] for row in table.text.rows}
-    (pads,) = pad_tables(found)
+    pads = pad_table(found)
+    assert pads is not None
     columns = {column.heading: column for column in pads.columns}
     most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
     force, pressure = (columns[name].text[most] for name in ("peak force\nkN", "pressure\nMPa"))
@@ -158,7 +163,7 @@ def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) ->
 
 
 def test_corners_bear_no_pressure(tmp_path: Path) -> None:
-    assert pad_tables(results(tmp_path, LAW)) == []
+    assert pad_table(results(tmp_path, LAW)) is None
 
 
 def pad_on(side: str, width: float, thickness: float, **others: float) -> str:
@@ -212,7 +217,8 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
         pad_on("below", 0.02, 0.02, offset=0.04),
     ]
     found = results(tmp_path, several(*pads))
-    (table,) = pad_tables(found)
+    table = pad_table(found)
+    assert table is not None
     told = {column.heading: column.cells for column in table.columns}
     assert told["side"] == ["above", "below", "below"] * 2
     peaks = found.trajectories["contact_force_peak"].values[0]

@@ -1,81 +1,41 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How hard slide pads are pressed."""
+"""How hard slide pads are pressed while the boom moves."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import count
-from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from scipy.optimize import brentq
 
 from dynamics.contact import ContactLaw
 from geometry.arrays import Array
-from geometry.boom import Direction, Joint
+from geometry.boom import Boom, Direction, Joint
 from geometry.joint import SIDES
-from geometry.typography import TO_KILO, TO_MEGA
 from runs.case.build import contact_laws
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
-from runs.pipeline.results import Results
-from runs.report.tables import Column, Table
+from runs.case.schema import Case, Model
+from runs.pipeline.summary import PressedPad
 
 # Names of sides.
 _ON = {on: side for side, on in SIDES.items()}
 
 
-class PressedPad(NamedTuple):
-    """A pad of one side of a station in one model; ``force`` is the largest in N."""
+def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPad]:
+    """Those of every station of joints with play, in each model.
 
-    model: str
-    joint: JointTable
-    pad: PadTable
-    x: float
-    place: str
-    force: float
-
-    @property
-    def pressure(self) -> float:
-        """In Pa."""
-        return self.force / self.pad.area
-
-    @property
-    def utilisation(self) -> float | None:
-        """Of what it may bear; None where that is not told."""
-        allowable = self.pad.allowable_pressure
-        return None if allowable is None else self.pressure / allowable
-
-
-def pad_tables(results: Results) -> list[Table]:
-    """How hard the pads of each joint are pressed at most; none without pads of a size."""
-    pads = list(pressed_pads(results))
-    if not pads:
-        return []
-    columns = (
-        Column("model", [pad.model for pad in pads]),
-        Column("joint", [f"{pad.joint.inner} in {pad.joint.outer}" for pad in pads]),
-        Column("at\nm", [f"{pad.x:g}" for pad in pads]),
-        Column("side", [pad.place for pad in pads]),
-        Column("peak force\nkN", [pad.force for pad in pads], ".3g", TO_KILO),
-        Column("pressure\nMPa", [pad.pressure for pad in pads], ".3g", TO_MEGA),
-        Column("utilisation\n%", [pad.utilisation for pad in pads], ".0f", 100.0),
-    )
-    note = (
-        "Of one pad. Those of one side of a station share its force as they are stiff, those of a "
-        "pair evenly, and bear it evenly."
-    )
-    return [Table("Slide pads", columns, (note,), "pads")]
-
-
-def pressed_pads(results: Results) -> Iterator[PressedPad]:
-    """Those of every station of joints with play, in each model."""
-    case = results.case
+    Args:
+        case: of the run.
+        boom: of the case.
+        data: the trajectories of its models.
+    """
     if not any(table.pad or table.pads for table in case.joints):
         return
-    boom = results.boom
-    peaks = results.trajectories["contact_force_peak"]
-    for model in (model for model in results.ran if not model.play_free):
-        station, own = count(), peaks.sel(model=model.name)
+    with_play = (model for model in case.models if not model.play_free)
+    for model in (model for model in with_play if model.name in data["model"].values):
+        station, own = count(), data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
         for direction in boom.directions:
             laws = contact_laws(case, model, direction)
@@ -84,12 +44,30 @@ def pressed_pads(results: Results) -> Iterator[PressedPad]:
                     pushed = ends[next(station)]
                     if table.pad is not None:
                         largest = max(pushed, key=abs)
-                        force = _of_a_side(abs(float(largest)), law) / PADS_OF_SIDE
-                        place = _ON[direction, 1 if largest > 0.0 else -1]
-                        yield PressedPad(model.name, table, table.pad, x, place, force)
+                        force = _of_a_side(abs(float(largest)), law)
+                        side = _ON[direction, 1 if largest > 0.0 else -1]
+                        yield _pressed(model, table, table.pad, x, side, force)
                     forces = _of_each(joint, direction, law, pushed)
                     for pad, force in zip(_along(table.pads, direction), forces, strict=True):
-                        yield PressedPad(model.name, table, pad, x, pad.side, force / PADS_OF_SIDE)
+                        yield _pressed(model, table, pad, x, pad.side, force)
+
+
+def _pressed(
+    model: Model, joint: JointTable, pad: PadTable, x: float, side: str, both: float
+) -> PressedPad:
+    """One of a pair that bears a force in N evenly."""
+    force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
+    pressure = force / pad.area
+    return PressedPad(
+        model=model.name,
+        outer=joint.outer,
+        inner=joint.inner,
+        x=x,
+        side=side,
+        force=force,
+        pressure=pressure,
+        utilisation=None if allowable is None else pressure / allowable,
+    )
 
 
 def _along(pads: Sequence[SlidePadTable], direction: Direction) -> list[SlidePadTable]:
