@@ -35,6 +35,7 @@ from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
+from runs.case.limits import described
 from runs.case.messages import choices
 from runs.case.places import at, spans
 from runs.case.pulled import check_pulled
@@ -268,7 +269,7 @@ def material_of(case: Case, index: int) -> Material:
         raise BoomError(
             "material",
             f"missing, and {case.segments[index].name!r} has none of its own; it is "
-            f"{Case.model_fields['material'].description}",
+            f"{described(Case.model_fields['material'])}",
         )
     return Material(**table.model_dump())
 
@@ -360,8 +361,8 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
 
 
 def _missing(index: int, key: str) -> BoomError:
-    description = SegmentTable.model_fields[key].description
-    return BoomError(f"segment[{index + 1}].{key}", f"missing; it is {description}")
+    what = f"missing; it is {described(SegmentTable.model_fields[key])}"
+    return BoomError(f"segment[{index + 1}].{key}", what)
 
 
 def _given_section(table: SegmentTable, index: int) -> Section | None:

@@ -103,33 +103,27 @@ Forces = Annotated[
 class RestitutionTable(Table):
     """How much of its speed a blow gives back."""
 
-    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")] = Field(
-        description="the coefficient of restitution"
-    )
-    speed: Annotated[Positive, In("m/s")] = Field(
-        description="the speed of the impact in m/s at which it holds"
-    )
+    coefficient: Annotated[float, Field(strict=True, gt=0.0, le=1.0), In("1")]
+    """the coefficient of restitution"""
+    speed: Annotated[Positive, In("m/s")]
+    """the speed of the impact in m/s at which it holds"""
 
 
 class PadTable(Table):
     """A slide pad beside a corner: a patch of the inner segment's wall."""
 
-    length: Length = Field(description="the length along x in m")
-    width: Length = Field(description="the width from the corner inwards in m")
-    offset: Annotated[NotNegative, In("m")] = Field(
-        0.0, description="the distance in m between the pad and the corner"
-    )
-    thickness: Length | None = Field(
-        None,
-        description="the thickness in m, from which the joint's stiffness follows unless given",
-    )
-    modulus: Annotated[Positive, In("Pa")] = Field(
-        POLYAMIDE,
-        description="the modulus of compression in Pa; that of moist cast polyamide unless given",
-    )
-    allowable_pressure: Annotated[Positive, In("Pa")] | None = Field(
-        None, description="the pressure in Pa that it may bear; not judged unless given"
-    )
+    length: Length
+    """the length along x in m"""
+    width: Length
+    """the width from the corner inwards in m"""
+    offset: Annotated[NotNegative, In("m")] = 0.0
+    """the distance in m between the pad and the corner"""
+    thickness: Length | None = None
+    """the thickness in m, from which the joint's stiffness follows unless given"""
+    modulus: Annotated[Positive, In("Pa")] = POLYAMIDE
+    """the modulus of compression in Pa; that of moist cast polyamide unless given"""
+    allowable_pressure: Annotated[Positive, In("Pa")] | None = None
+    """the pressure in Pa that it may bear; not judged unless given"""
 
     @property
     def size(self) -> PadSize:
@@ -150,13 +144,12 @@ class PadTable(Table):
 class SlidePadTable(PadTable):
     """One of several pads at each station: a pair of them, beside both corners of a wall."""
 
-    side: Literal["above", "below", "left", "right"] = Field(
-        description="the wall of the inner segment that it is on; right is where y is positive"
-    )
-    thickness: Length = Field(description="the thickness in m, from which its stiffness follows")
-    shim: Annotated[NotNegative, In("m")] = Field(
-        0.0, description="how far in m it stands out beyond the play that the joint leaves"
-    )
+    side: Literal["above", "below", "left", "right"]
+    """the wall of the inner segment that it is on; right is where y is positive"""
+    thickness: Length
+    """the thickness in m, from which its stiffness follows"""
+    shim: Annotated[NotNegative, In("m")] = 0.0
+    """how far in m it stands out beyond the play that the joint leaves"""
 
     @property
     def made(self) -> SlidePad:
@@ -168,117 +161,77 @@ class SlidePadTable(PadTable):
 class JointTable(Table):
     """Where an inner segment slides in an outer one, with play."""
 
-    outer: str = Field(description="the name of the outer segment")
-    inner: str = Field(description="the name of the inner segment")
-    extension: Annotated[NotNegative, In("m")] | None = Field(
-        None,
-        description="the length in m of the inner segment that is out of the outer one, where the "
-        "inner one is given by its length",
-    )
-    drive: DriveTable | None = Field(
-        None,
-        description="the table of what draws the inner segment out while the boom moves, from "
-        "where it is at t = 0; it stays there unless given",
-    )
-    stations: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MOST_STATIONS)] = Field(
-        description="the x in m at which the two may touch, rising; 'tail' is the inner segment's "
-        "start, 'head' the outer one's end, { head = 0.2 } lies 0.2 m before that"
-    )
-    play: Annotated[NotNegative, In("m")] = Field(
-        description="the play in m, the clearance above and below together"
-    )
-    play_above: Annotated[NotNegative, In("m")] | None = Field(
-        None, description="the part of the play in m that is above; half of it unless given"
-    )
-    interference: Annotated[NotNegative, In("m")] = Field(
-        0.0,
-        description="the amount in m by which shims press the inner segment from above and below "
-        "together, where there is no play",
-    )
-    force_table: Forces | None = Field(
-        None,
-        description="pairs of a penetration in m and a force in N, straight lines between them "
-        "from 0 on, instead of stiffness and exponent",
-    )
-    force_file: Text | None = Field(
-        None, description="a CSV file of such pairs, its path seen from the case file"
-    )
-    force_columns: tuple[Text, Text] | None = Field(
-        None,
-        description="the names of two columns in the heading of the file, of the penetrations and "
-        "of the forces; its only two unless given",
-    )
-    stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
-        None, description="the contact stiffness in N/m^n where the inner segment presses up"
-    )
-    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = Field(
-        None,
-        description="the contact stiffness in N/m^n where the inner segment presses down; the "
-        "same as above unless given",
-    )
-    exponent: Exponent | None = Field(
-        None, description="the exponent n of the contact law; 2 unless given"
-    )
-    restitution: RestitutionTable | None = Field(
-        None, description="the table of the contact's own damping; none unless given"
-    )
-    friction: Annotated[NotNegative, In("1")] = Field(
-        0.0, description="the coefficient of dry friction"
-    )
-    normal_forces: Annotated[tuple[Annotated[NotNegative, In("N")], ...], Few] = Field(
-        (),
-        description="the forces in N that press the segments at each station for the friction; in "
-        "space the contact forces of the other plane do unless given",
-    )
-    lateral_play: Annotated[NotNegative, In("m")] | None = Field(
-        None,
-        description="the play to the sides in m, left and right together; with it the boom moves "
-        "in space",
-    )
-    lateral_play_right: Annotated[NotNegative, In("m")] | None = Field(
-        None,
-        description="the part of the lateral play in m on the right, towards larger y; half of it "
-        "unless given",
-    )
-    lateral_interference: Annotated[NotNegative, In("m")] = Field(
-        0.0, description="the amount in m by which shims press from the sides, without lateral play"
-    )
-    lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
-        None, description="the contact stiffness to the sides in N/m^n; the same unless given"
-    )
-    lateral_exponent: Exponent | None = Field(
-        None, description="the exponent n to the sides; the same unless given"
-    )
-    tied: Flag = Field(
-        False, description="whether the two deflect alike at the stations, without play"
-    )
-    pad: PadTable | None = Field(
-        None,
-        description="the table of the slide pads' size, which shells alone heed; the corners of "
-        "the boxes along contact_length unless given",
-    )
-    pads: Annotated[tuple[SlidePadTable, ...], Few] = Field(
-        (),
-        description="the tables of several slide pads at each station, in place of pad and of a "
-        "stiffness: on a side they press together, and share the force as they are stiff",
-    )
-    locked_at: Place | None = Field(
-        None,
-        description="the x in m where the inner segment's axial force enters the outer one: of a "
-        "locking pin, or, below the inner segment, of the foot of the cylinder that pushes its "
-        "tail; the tail unless given. With a drive what is at a distance from the tail goes with "
-        "the inner segment, all else stays on the outer one",
-    )
-    contact_length: Length | None = Field(
-        None,
-        description="the length along x in m on which stations press the corners, as long as a "
-        "slide pad, which shells alone heed; a tenth of the least overlap unless given",
-    )
-    dashpot: Annotated[NotNegative, In("N s/m")] = Field(
-        0.0,
-        description="the linear dashpot across the play at each station in N s/m, to the sides "
-        "too where the boom moves in space",
-    )
+    outer: str
+    """the name of the outer segment"""
+    inner: str
+    """the name of the inner segment"""
+    extension: Annotated[NotNegative, In("m")] | None = None
+    """the length in m of the inner segment that is out of the outer one, where the inner one is
+    given by its length"""
+    drive: DriveTable | None = None
+    """the table of what draws the inner segment out while the boom moves, from where it is at t =
+    0; it stays there unless given"""
+    stations: Annotated[tuple[Place, ...], Field(min_length=1, max_length=MOST_STATIONS)]
+    """the x in m at which the two may touch, rising; 'tail' is the inner segment's start, 'head'
+    the outer one's end, { head = 0.2 } lies 0.2 m before that"""
+    play: Annotated[NotNegative, In("m")]
+    """the play in m, the clearance above and below together"""
+    play_above: Annotated[NotNegative, In("m")] | None = None
+    """the part of the play in m that is above; half of it unless given"""
+    interference: Annotated[NotNegative, In("m")] = 0.0
+    """the amount in m by which shims press the inner segment from above and below together, where
+    there is no play"""
+    force_table: Forces | None = None
+    """pairs of a penetration in m and a force in N, straight lines between them from 0 on, instead
+    of stiffness and exponent"""
+    force_file: Text | None = None
+    """a CSV file of such pairs, its path seen from the case file"""
+    force_columns: tuple[Text, Text] | None = None
+    """the names of two columns in the heading of the file, of the penetrations and of the forces;
+    its only two unless given"""
+    stiffness: Annotated[Positive, In("N/m^n")] | None = None
+    """the contact stiffness in N/m^n where the inner segment presses up"""
+    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
+    """the contact stiffness in N/m^n where the inner segment presses down; the same as above unless
+    given"""
+    exponent: Exponent | None = None
+    """the exponent n of the contact law; 2 unless given"""
+    restitution: RestitutionTable | None = None
+    """the table of the contact's own damping; none unless given"""
+    friction: Annotated[NotNegative, In("1")] = 0.0
+    """the coefficient of dry friction"""
+    normal_forces: Annotated[tuple[Annotated[NotNegative, In("N")], ...], Few] = ()
+    """the forces in N that press the segments at each station for the friction; in space the
+    contact forces of the other plane do unless given"""
+    lateral_play: Annotated[NotNegative, In("m")] | None = None
+    """the play to the sides in m, left and right together; with it the boom moves in space"""
+    lateral_play_right: Annotated[NotNegative, In("m")] | None = None
+    """the part of the lateral play in m on the right, towards larger y; half of it unless given"""
+    lateral_interference: Annotated[NotNegative, In("m")] = 0.0
+    """the amount in m by which shims press from the sides, without lateral play"""
+    lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = None
+    """the contact stiffness to the sides in N/m^n; the same unless given"""
+    lateral_exponent: Exponent | None = None
+    """the exponent n to the sides; the same unless given"""
+    tied: Flag = False
+    """whether the two deflect alike at the stations, without play"""
+    pad: PadTable | None = None
+    """the table of the slide pads' size, which shells alone heed; the corners of the boxes along
+    contact_length unless given"""
+    pads: Annotated[tuple[SlidePadTable, ...], Few] = ()
+    """the tables of several slide pads at each station, in place of pad and of a stiffness: on a
+    side they press together, and share the force as they are stiff"""
+    locked_at: Place | None = None
+    """the x in m where the inner segment's axial force enters the outer one: of a locking pin, or,
+    below the inner segment, of the foot of the cylinder that pushes its tail; the tail unless
+    given. With a drive what is at a distance from the tail goes with the inner segment, all else
+    stays on the outer one"""
+    contact_length: Length | None = None
+    """the length along x in m on which stations press the corners, as long as a slide pad, which
+    shells alone heed; a tenth of the least overlap unless given"""
+    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
+    """the linear dashpot across the play at each station in N s/m, to the sides too where the boom
+    moves in space"""
 
     @property
     def thick_pads(self) -> str | None:
@@ -358,29 +311,21 @@ class JointTable(Table):
 class ContactTable(Table):
     """The contact law that one model uses in all joints, instead of the joints' own."""
 
-    force_table: Forces | None = Field(
-        None, description="pairs of a penetration in m and a force in N, instead of the two below"
-    )
-    force_file: Text | None = Field(
-        None, description="a CSV file of such pairs, its path seen from the case file"
-    )
-    force_columns: tuple[Text, Text] | None = Field(
-        None,
-        description="the names of two columns in the heading of the file, of the penetrations and "
-        "of the forces; its only two unless given",
-    )
-    stiffness: Annotated[Positive, In("N/m^n")] | None = Field(
-        None, description="the contact stiffness in N/m^n"
-    )
-    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = Field(
-        None, description="the contact stiffness in N/m^n below; the same as above unless given"
-    )
-    exponent: Exponent | None = Field(
-        None, description="the exponent n of the contact law; 2 unless given"
-    )
-    restitution: RestitutionTable | None = Field(
-        None, description="the table of the contact's own damping; none unless given"
-    )
+    force_table: Forces | None = None
+    """pairs of a penetration in m and a force in N, instead of the two below"""
+    force_file: Text | None = None
+    """a CSV file of such pairs, its path seen from the case file"""
+    force_columns: tuple[Text, Text] | None = None
+    """the names of two columns in the heading of the file, of the penetrations and of the forces;
+    its only two unless given"""
+    stiffness: Annotated[Positive, In("N/m^n")] | None = None
+    """the contact stiffness in N/m^n"""
+    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
+    """the contact stiffness in N/m^n below; the same as above unless given"""
+    exponent: Exponent | None = None
+    """the exponent n of the contact law; 2 unless given"""
+    restitution: RestitutionTable | None = None
+    """the table of the contact's own damping; none unless given"""
 
     @model_validator(mode="after")
     def _one_law(self) -> Self:

@@ -13,7 +13,7 @@ from dynamics.excitation import Table as TimeTable
 from dynamics.travel import SCurve, Stroke
 from geometry.boom import BoomError
 from geometry.drive import Carrier, Drive
-from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text
+from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text, described
 from runs.case.places import PlaceTable
 
 # A travel in less time, in s, is a slip of the pen; one of fewer m is none.
@@ -30,50 +30,34 @@ Ways = Annotated[
 class DriveTable(Table):
     """How an inner segment is drawn out, or in, while the boom moves."""
 
-    travel: Annotated[Number, In("m")] | None = Field(
-        None, description="the length in m by which it is drawn out; negative where it is drawn in"
-    )
-    time: Annotated[Positive, In("s")] | None = Field(
-        None, description="the time in s that the travel takes, on an S-curve without jerks"
-    )
-    speed: Annotated[Positive, In("m/s")] | None = Field(
-        None, description="the speed in m/s of the travel, in place of its time"
-    )
-    ramp: Annotated[NotNegative, In("s")] = Field(
-        0.0, description="the time in s in which that speed comes, and goes; at once unless given"
-    )
-    start: Annotated[NotNegative, In("s")] = Field(
-        0.0, description="the time in s at which the travel begins"
-    )
-    table: Ways | None = Field(
-        None,
-        description="pairs of a time in s and the length in m drawn out since the start, linear "
-        "between them and constant beyond, in place of a travel",
-    )
-    file: Text | None = Field(
-        None, description="a CSV file of such pairs, its path seen from the case file"
-    )
-    columns: tuple[Text, Text] | None = Field(
-        None,
-        description="the names of two columns in the heading of the file, of the times and of the "
-        "lengths; its only two unless given",
-    )
-    least_overlap: Annotated[NotNegative, In("m")] = Field(
-        0.0, description="the overlap in m that must be left; more than none unless given"
-    )
-    stiffness: Annotated[Positive, In("N/m")] | None = Field(
-        None,
-        description="the stiffness in N/m of the rope, chain or cylinder that draws, on which the "
-        "segment may stick and slip against friction; stiff unless given",
-    )
-    dashpot: Annotated[NotNegative, In("N s/m")] = Field(
-        0.0, description="the damping in N s/m beside that stiffness"
-    )
-    static_friction: Annotated[Positive, In("1")] | None = Field(
-        None,
-        description="the coefficient of friction that has to be overcome where the segment stands; "
-        "the joint's unless given",
-    )
+    travel: Annotated[Number, In("m")] | None = None
+    """the length in m by which it is drawn out; negative where it is drawn in"""
+    time: Annotated[Positive, In("s")] | None = None
+    """the time in s that the travel takes, on an S-curve without jerks"""
+    speed: Annotated[Positive, In("m/s")] | None = None
+    """the speed in m/s of the travel, in place of its time"""
+    ramp: Annotated[NotNegative, In("s")] = 0.0
+    """the time in s in which that speed comes, and goes; at once unless given"""
+    start: Annotated[NotNegative, In("s")] = 0.0
+    """the time in s at which the travel begins"""
+    table: Ways | None = None
+    """pairs of a time in s and the length in m drawn out since the start, linear between them and
+    constant beyond, in place of a travel"""
+    file: Text | None = None
+    """a CSV file of such pairs, its path seen from the case file"""
+    columns: tuple[Text, Text] | None = None
+    """the names of two columns in the heading of the file, of the times and of the lengths; its
+    only two unless given"""
+    least_overlap: Annotated[NotNegative, In("m")] = 0.0
+    """the overlap in m that must be left; more than none unless given"""
+    stiffness: Annotated[Positive, In("N/m")] | None = None
+    """the stiffness in N/m of the rope, chain or cylinder that draws, on which the segment may
+    stick and slip against friction; stiff unless given"""
+    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
+    """the damping in N s/m beside that stiffness"""
+    static_friction: Annotated[Positive, In("1")] | None = None
+    """the coefficient of friction that has to be overcome where the segment stands; the joint's
+    unless given"""
 
     def history(self, where: str) -> History:
         """How far it is drawn out in m.
@@ -163,7 +147,7 @@ class DriveTable(Table):
 
 
 def _said(key: str) -> str:
-    return str(DriveTable.model_fields[key].description)
+    return described(DriveTable.model_fields[key])
 
 
 def _carrier(place: float | PlaceTable, where: str, what: str, inner: str) -> Carrier:

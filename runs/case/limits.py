@@ -37,10 +37,20 @@ class In:
         return {**handler(schema), "unit": ", ".join(self.units)}
 
 
+def _on_one_line(schema: JsonSchemaValue) -> None:
+    for rule in schema.get("properties", {}).values():
+        rule["description"] = " ".join(rule["description"].split())
+
+
 class Table(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        use_attribute_docstrings=True,
+        json_schema_extra=_on_one_line,
+    )
 
     # The key that a number alone stands for, where one may stand in place of the table.
     bare: ClassVar[str] = ""
@@ -60,6 +70,11 @@ class Table(BaseModel):
         n = self.exponent_of(key) or exponent
         powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
         return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
+
+
+def described(field: FieldInfo) -> str:
+    """What a key is, by the string below it in its table, on one line."""
+    return " ".join(str(field.description).split())
 
 
 def declared_units(field: FieldInfo) -> tuple[str, ...]:

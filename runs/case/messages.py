@@ -3,50 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from runs.case import contact, schema, segment
-from runs.case.drive import DriveTable
+from runs.case import schema
 from runs.case.kinds import KINDS
-from runs.case.limits import NAME
+from runs.case.limits import NAME, described
 from runs.case.sections import SHAPES
 from runs.process.shown import shown
-
-_TABLES: Mapping[str, type[BaseModel]] = {
-    "time": schema.TimeTable,
-    "ensemble": schema.EnsembleTable,
-    "material": segment.MaterialTable,
-    "supports": segment.SupportTable,
-    "masses": segment.MassTable,
-    "collars": segment.CollarTable,
-    "diaphragms": segment.DiaphragmTable,
-    "segment": segment.SegmentTable,
-    "restitution": contact.RestitutionTable,
-    "pad": contact.PadTable,
-    "pads": contact.SlidePadTable,
-    "drive": DriveTable,
-    "joint": contact.JointTable,
-    "contact": contact.ContactTable,
-    "stop": schema.StopTable,
-    "cylinder": schema.CylinderTable,
-    "load": schema.LoadTable,
-    "axial": schema.AxialTable,
-    "payload": schema.PayloadTable,
-    "gravity": schema.GravityTable,
-    "base": schema.BaseTable,
-    "observe": schema.ObserveTable,
-    "start": schema.StartTable,
-    "velocity": schema.VelocityTable,
-    "damping": schema.DampingTable,
-    "life": schema.LifeTable,
-    **SHAPES,
-    **KINDS,
-}
 
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")
@@ -54,12 +22,30 @@ _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "obs
 # Names that a message lists of those that would be right.
 MOST_CHOICES = 12
 
-_TYPES = {
+# Before what was given; braces hold the limits of the schema.
+_MUST = {
     "float_type": "a number",
     "int_type": "a whole number",
     "bool_type": "true or false",
     "string_type": "a text",
     "finite_number": "a finite number",
+    "greater_than": "a number greater than {gt:g}",
+    "greater_than_equal": "a number not less than {ge:g}",
+    "less_than": "a number less than {lt:g}",
+    "less_than_equal": "a number not greater than {le:g}",
+    "modes": "a whole number above 0, or 'auto'",
+    "contact_tolerance": "a number from {least} to below 1, or 'any'",
+    "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
+    "{{ tail = 0.2 }}",
+    "literal_error": "{expected}",
+    "tuple_type": "a list",
+}
+# Alone.
+_SAYS = {
+    "unsuitable": "{what}",
+    "too_short": "too short; give {min_length} at least",
+    "too_long": "too many; give {max_length} at most",
+    "string_too_long": "too long; give {max_length} characters at most",
 }
 
 
@@ -106,64 +92,32 @@ def _explain(
     if fault == "missing" and isinstance(location[-1], int):
         return _key(location[:-1]), f"must be {_pair(location)}, got {_shown(value)}"
     if fault == "missing":
-        return key, f"missing; it is {_field(location).description}"
+        return key, f"missing; it is {described(_field(location))}"
     if fault == "union_tag_not_found":
         return f"{key}.kind", f"missing; give {_kinds()}"
     if fault == "extra_forbidden":
         return key, _unknown_key(location)
-    if fault in _TYPES:
-        what = f"must be {_TYPES[fault]}"
-    elif fault == "union_tag_invalid" and location[0] == "model":
+    if fault == "union_tag_invalid" and location[0] == "model":
         return f"{key}.kind", f"must be {_kinds()}, got {_shown(value['kind'])}"
-    elif fault == "union_tag_invalid":
-        return (
-            f"{key}.shape",
-            f"must be {choices(list(SHAPES))}, got {_shown(value['shape'])}",
-        )
-    elif fault == "greater_than":
-        what = f"must be a number greater than {limits['gt']:g}"
-    elif fault == "greater_than_equal":
-        what = f"must be a number not less than {limits['ge']:g}"
-    elif fault == "less_than":
-        what = f"must be a number less than {limits['lt']:g}"
-    elif fault == "less_than_equal":
-        what = f"must be a number not greater than {limits['le']:g}"
-    elif fault == "modes":
-        what = "must be a whole number above 0, or 'auto'"
-    elif fault == "contact_tolerance":
-        what = f"must be a number from {limits['least']} to below 1, or 'any'"
-    elif fault == "place":
-        what = (
-            "must be a number of m, 'tail', 'head' or a distance in m from one of them such as "
-            "{ tail = 0.2 }"
-        )
-    elif fault == "literal_error":
-        what = f"must be {limits['expected']}"
-    elif fault == "unsuitable":
-        return key, str(limits["what"])
-    elif fault == "too_short" and limits["min_length"] > 1:
-        return key, f"too short; give {limits['min_length']} at least"
-    elif fault == "too_short":
+    if fault == "union_tag_invalid":
+        return f"{key}.shape", f"must be {choices(list(SHAPES))}, got {_shown(value['shape'])}"
+    if fault == "too_short" and limits["min_length"] == 1:
         return key, "empty; give at least one"
-    elif fault == "too_long" and limits["max_length"] == 2:
-        what = f"must be {_pair(location)}"
-    elif fault == "too_long":
-        return key, f"too many; give {limits['max_length']} at most"
-    elif fault == "string_too_long":
-        return key, f"too long; give {limits['max_length']} characters at most"
+    if fault == "too_long" and limits["max_length"] == 2:
+        must = _pair(location)
+    elif fault in _SAYS:
+        return key, _SAYS[fault].format(**limits)
     elif fault == "string_pattern_mismatch" and limits["pattern"] == NAME:
-        what = "must be made of letters, digits, blanks and . _ + -, starting with one of the first"
+        must = "made of letters, digits, blanks and . _ + -, starting with one of the first"
     elif fault == "string_pattern_mismatch":
-        what = "must be a line of printable characters"
+        must = "a line of printable characters"
     elif fault == "tuple_type" and key in _ARRAYS:
-        what = f"must be an array of tables, each headed [[{key}]]"
-    elif fault == "tuple_type":
-        what = "must be a list"
+        must = f"an array of tables, each headed [[{key}]]"
     elif fault.startswith(("model_", "dict_")):
-        what = "must be a table"
+        must = "a table"
     else:
-        raise AssertionError(f"the schema has a rule without a message: {fault}")
-    return key, f"{what}, got {_shown(value)}"
+        must = _MUST[fault].format(**limits)
+    return key, f"must be {must}, got {_shown(value)}"
 
 
 def _pair(location: Sequence[int | str]) -> str:
@@ -198,6 +152,21 @@ def _table(location: Sequence[int | str]) -> type[BaseModel]:
     return _TABLES[names[-1]] if names else schema.Case
 
 
+def _tables(table: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
+    """Keys of tables within a table, all the way down."""
+    for key, field in _fields(table).items():
+        for inner in _models(field.annotation):
+            yield key, inner
+            yield from _tables(inner)
+
+
+def _models(annotation: Any) -> Iterator[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _models(part)
+
+
 def _fields(table: type[BaseModel]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in table.model_fields.items()}
 
@@ -221,3 +190,6 @@ def _kinds() -> str:
 def _shown(value: Any) -> str:
     text = repr(value) if not isinstance(value, bool) else str(value).lower()
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+_TABLES = {**dict(_tables(schema.Case)), **SHAPES, **KINDS}

@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from geometry.boom import BoomError
@@ -25,12 +25,10 @@ if TYPE_CHECKING:
 class PlaceTable(Table):
     """A distance from an end: of a segment, or of the overlap of a joint's."""
 
-    tail: Annotated[NotNegative, In("m")] | None = Field(
-        None, description="the distance in m from the segment's start, in a joint the inner one's"
-    )
-    head: Annotated[NotNegative, In("m")] | None = Field(
-        None, description="the distance in m from the segment's end, in a joint the outer one's"
-    )
+    tail: Annotated[NotNegative, In("m")] | None = None
+    """the distance in m from the segment's start, in a joint the inner one's"""
+    head: Annotated[NotNegative, In("m")] | None = None
+    """the distance in m from the segment's end, in a joint the outer one's"""
 
 
 # What a place may be called: an end itself.

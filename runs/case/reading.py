@@ -18,7 +18,7 @@ from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.conversion import in_si
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS
+from runs.case.limits import MOST_MEMBERS, described
 from runs.case.messages import BadInput, choices
 from runs.case.schema import (
     Case,
@@ -228,7 +228,7 @@ def _history(path: str, key: str, table: History, system: System) -> History:
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
     if not read.measured and table.amount not in table.model_fields_set:
-        what = type(table).model_fields[table.amount].description
+        what = described(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
     # What is left out counts as given, in the units of the case as the file is.
     amount = {table.amount: getattr(table, table.amount)}

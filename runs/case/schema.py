@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What a case file may say, in SI units unless it says others; an unknown key is an error.
 
-The descriptions are what the JSON Schema shows, and what the message for a missing key quotes.
+The string below a key is what the JSON Schema shows, and the message for a missing key quotes.
 """
 
 from __future__ import annotations
@@ -46,78 +46,66 @@ from runs.case.units import System, SystemName
 class TimeTable(Table):
     """How long, and how finely reported."""
 
-    duration: Annotated[Positive, In("s")] = Field(
-        description="the simulated time in s, from t = 0"
-    )
-    output_step: Annotated[Positive, In("s")] = Field(
-        1.0e-3, description="the interval of the reported times in s"
-    )
-    step: Annotated[Positive, In("s")] | None = Field(
-        None,
-        description="the step of the integrator in s; each model's own, small enough for its "
-        "contacts, unless given",
-    )
+    duration: Annotated[Positive, In("s")]
+    """the simulated time in s, from t = 0"""
+    output_step: Annotated[Positive, In("s")] = 1.0e-3
+    """the interval of the reported times in s"""
+    step: Annotated[Positive, In("s")] | None = None
+    """the step of the integrator in s; each model's own, small enough for its contacts, unless
+    given"""
 
 
 class EnsembleTable(Table):
     """Every model with play once more, many times, with data changed a little."""
 
-    members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)] = Field(
-        description="the number of runs of each model, the unchanged one among them"
-    )
-    relative: Part = Field(1.0e-9, description="the largest relative change")
-    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = Field(
-        1, description="the seed of the changes: the same one gives the same members"
-    )
-    vary: Literal["load", "clearance"] = Field(
-        "load", description="what is changed, all of it by one factor"
-    )
+    members: Annotated[int, Field(strict=True, ge=2, le=MOST_MEMBERS)]
+    """the number of runs of each model, the unchanged one among them"""
+    relative: Part = 1.0e-9
+    """the largest relative change"""
+    seed: Annotated[int, Field(strict=True, ge=0, lt=2**63)] = 1
+    """the seed of the changes: the same one gives the same members"""
+    vary: Literal["load", "clearance"] = "load"
+    """what is changed, all of it by one factor"""
 
 
 class StopTable(Table):
     """A rest on the ground that a segment may touch across a play."""
 
-    segment: str = Field(description="the name of the segment")
-    x: Place = Field(description="the x in m")
-    play: Annotated[NotNegative, In("m")] = Field(
-        description="the play in m, above and below together"
-    )
-    stiffness: Annotated[NotNegative, In("N/m^n")] = Field(
-        description="the contact stiffness in N/m^n where the segment presses up; 0 for none"
-    )
-    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = Field(
-        None, description="the same where it presses down; the same unless given"
-    )
-    exponent: Exponent = Field(1.0, description="the exponent n of the contact law")
-    contact_length: Length | None = Field(
-        None,
-        description="the length along x in m on which it presses the corners, which shells alone "
-        "heed; a fifth of the box's height unless given",
-    )
+    segment: str
+    """the name of the segment"""
+    x: Place
+    """the x in m"""
+    play: Annotated[NotNegative, In("m")]
+    """the play in m, above and below together"""
+    stiffness: Annotated[NotNegative, In("N/m^n")]
+    """the contact stiffness in N/m^n where the segment presses up; 0 for none"""
+    stiffness_below: Annotated[NotNegative, In("N/m^n")] | None = None
+    """the same where it presses down; the same unless given"""
+    exponent: Exponent = 1.0
+    """the exponent n of the contact law"""
+    contact_length: Length | None = None
+    """the length along x in m on which it presses the corners, which shells alone heed; a fifth of
+    the box's height unless given"""
 
 
 class CylinderTable(Table):
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground."""
 
-    segment: str = Field(description="the name of the segment")
-    x: Place = Field(description="the x of the lug in m")
-    depth: Annotated[Number, In("m")] = Field(
-        0.0, description="how far in m the lug is below the segment's axis"
-    )
-    ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] = Field(
-        description="the other end in m: its x, and how far it is above the boom's axis"
-    )
-    stiffness: Annotated[Positive, In("N/m")] = Field(
-        description="the stiffness in N/m along its line, of two side by side together"
-    )
-    dashpot: Annotated[NotNegative, In("N s/m")] = Field(
-        0.0, description="the linear dashpot in N s/m along its line, of two together"
-    )
-    spread: Annotated[NotNegative, In("m")] = Field(
-        0.0,
-        description="the distance in m across the boom of two side by side, of a boom in space; "
-        "one in the middle unless given",
-    )
+    segment: str
+    """the name of the segment"""
+    x: Place
+    """the x of the lug in m"""
+    depth: Annotated[Number, In("m")] = 0.0
+    """how far in m the lug is below the segment's axis"""
+    ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]]
+    """the other end in m: its x, and how far it is above the boom's axis"""
+    stiffness: Annotated[Positive, In("N/m")]
+    """the stiffness in N/m along its line, of two side by side together"""
+    dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
+    """the linear dashpot in N s/m along its line, of two together"""
+    spread: Annotated[NotNegative, In("m")] = 0.0
+    """the distance in m across the boom of two side by side, of a boom in space; one in the middle
+    unless given"""
 
 
 Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
@@ -126,24 +114,17 @@ Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
 class HistoryTable(Table):
     """How something goes with time: at once and kept, unless one of these is given."""
 
-    ramp: Annotated[Positive, In("s")] | None = Field(
-        None, description="the time in s in which it rises to its value"
-    )
-    frequency: Annotated[Positive, In("Hz")] | None = Field(
-        None, description="the frequency of a sine in Hz"
-    )
-    table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = Field(
-        None,
-        description="pairs of a time in s and a factor, linear between them and constant beyond",
-    )
-    file: Text | None = Field(
-        None, description="a CSV file of such pairs, its path seen from the case file"
-    )
-    columns: tuple[Text, Text] | None = Field(
-        None,
-        description="the names of two columns in the heading of the file, of the times and of the "
-        "factors; its only two unless given",
-    )
+    ramp: Annotated[Positive, In("s")] | None = None
+    """the time in s in which it rises to its value"""
+    frequency: Annotated[Positive, In("Hz")] | None = None
+    """the frequency of a sine in Hz"""
+    table: Annotated[Times, Field(min_length=2, max_length=MOST_TIMES)] | None = None
+    """pairs of a time in s and a factor, linear between them and constant beyond"""
+    file: Text | None = None
+    """a CSV file of such pairs, its path seen from the case file"""
+    columns: tuple[Text, Text] | None = None
+    """the names of two columns in the heading of the file, of the times and of the factors; its
+    only two unless given"""
 
     # The key of what the history multiplies.
     amount: ClassVar[str]
@@ -159,30 +140,23 @@ class HistoryTable(Table):
 class LoadTable(HistoryTable):
     """A load on one segment."""
 
-    segment: str = Field(description="the name of the segment")
-    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
-    x: Place | None = Field(
-        None, description="the x in m of a point load; along the whole segment unless given"
-    )
-    start: Place | None = Field(
-        None,
-        alias="from",
-        description="the x in m from which a load along the segment acts; its start unless given",
-    )
-    end: Place | None = Field(
-        None, alias="to", description="the x in m to which it acts; the segment's end unless given"
-    )
-    magnitude: Annotated[Number, In("N/m")] = Field(
-        1.0,
-        description="the load in N at x, or in N/m along the segment; the moment in N m; a factor, "
-        "1 unless given, where the heading of its file says such a unit",
-    )
-    moment: Flag = Field(
-        False, description="whether it is a moment at x, towards a larger slope of the segment"
-    )
-    released: Flag = Field(
-        False, description="whether it has acted for ever, and is let go at t = 0"
-    )
+    segment: str
+    """the name of the segment"""
+    direction: Literal["z", "y"] = "z"
+    """up, or to the side"""
+    x: Place | None = None
+    """the x in m of a point load; along the whole segment unless given"""
+    start: Place | None = Field(None, alias="from")
+    """the x in m from which a load along the segment acts; its start unless given"""
+    end: Place | None = Field(None, alias="to")
+    """the x in m to which it acts; the segment's end unless given"""
+    magnitude: Annotated[Number, In("N/m")] = 1.0
+    """the load in N at x, or in N/m along the segment; the moment in N m; a factor, 1 unless given,
+    where the heading of its file says such a unit"""
+    moment: Flag = False
+    """whether it is a moment at x, towards a larger slope of the segment"""
+    released: Flag = False
+    """whether it has acted for ever, and is let go at t = 0"""
 
     amount: ClassVar[str] = "magnitude"
 
@@ -197,54 +171,45 @@ class LoadTable(HistoryTable):
 class AxialTable(Table):
     """A force along the boom, constant, that presses it towards the base: a hoist rope, say."""
 
-    segment: str | None = Field(
-        None, description="the name of the segment that it presses; the last one unless given"
-    )
-    x: Place | None = Field(
-        None, description="the x in m where it does; the segment's end unless given"
-    )
-    force: Annotated[Number, In("N")] | None = Field(
-        None, description="the force in N towards the base; that of a hoist rope unless given"
-    )
-    falls: Count | None = Field(
-        None, description="the number of falls of a hoist rope, which share what it carries"
-    )
-    mass: Annotated[Positive, In("kg")] | None = Field(
-        None, description="the mass in kg that the rope carries; the payload's unless given"
-    )
+    segment: str | None = None
+    """the name of the segment that it presses; the last one unless given"""
+    x: Place | None = None
+    """the x in m where it does; the segment's end unless given"""
+    force: Annotated[Number, In("N")] | None = None
+    """the force in N towards the base; that of a hoist rope unless given"""
+    falls: Count | None = None
+    """the number of falls of a hoist rope, which share what it carries"""
+    mass: Annotated[Positive, In("kg")] | None = None
+    """the mass in kg that the rope carries; the payload's unless given"""
 
 
 class PayloadTable(Table):
     """A mass at the tip."""
 
-    mass: Annotated[Positive, In("kg")] = Field(description="the mass in kg")
-    gravity: Annotated[NotNegative, In("m/s^2")] | None = Field(
-        None,
-        description="the acceleration in m/s^2 by which it alone weighs down from t = 0, 0 for "
-        "none; 9.80665 unless given, or that of the table gravity",
-    )
+    mass: Annotated[Positive, In("kg")]
+    """the mass in kg"""
+    gravity: Annotated[NotNegative, In("m/s^2")] | None = None
+    """the acceleration in m/s^2 by which it alone weighs down from t = 0, 0 for none; 9.80665
+    unless given, or that of the table gravity"""
 
 
 class GravityTable(Table):
     """By what everything weighs."""
 
-    acceleration: Annotated[NotNegative, In("m/s^2")] = Field(
-        9.80665, description="the acceleration in m/s^2"
-    )
-    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] = Field(
-        0.0, description="the luffing angle of the boom in degrees, positive where the tip is up"
-    )
+    acceleration: Annotated[NotNegative, In("m/s^2")] = 9.80665
+    """the acceleration in m/s^2"""
+    angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] = 0.0
+    """the luffing angle of the boom in degrees, positive where the tip is up"""
 
 
 class BaseTable(HistoryTable):
     """An acceleration of the ground, which is felt as a load on all masses."""
 
-    direction: Literal["z", "y"] = Field("z", description="up, or to the side")
-    acceleration: Annotated[Number, In("m/s^2")] = Field(
-        1.0,
-        description="the acceleration in m/s^2; a factor, 1 unless given, where the heading of its "
-        "file says such a unit",
-    )
+    direction: Literal["z", "y"] = "z"
+    """up, or to the side"""
+    acceleration: Annotated[Number, In("m/s^2")] = 1.0
+    """the acceleration in m/s^2; a factor, 1 unless given, where the heading of its file says such
+    a unit"""
 
     amount: ClassVar[str] = "acceleration"
 
@@ -254,17 +219,16 @@ class VelocityTable(Table):
 
     bare: ClassVar[str] = "z"
 
-    z: Annotated[Number, In("m/s")] = Field(0.0, description="the velocity along z in m/s")
-    y: Annotated[Number, In("m/s")] = Field(0.0, description="the velocity along y in m/s")
-    turn: Annotated[Number, In("rad/s")] = Field(
-        0.0, description="the rate of rotation in rad/s by which the velocity along z grows with x"
-    )
-    lateral_turn: Annotated[Number, In("rad/s")] = Field(
-        0.0, description="the rate of rotation in rad/s by which the velocity along y grows with x"
-    )
-    x: Place | None = Field(
-        None, description="the x in m that has these velocities; the segment's start unless given"
-    )
+    z: Annotated[Number, In("m/s")] = 0.0
+    """the velocity along z in m/s"""
+    y: Annotated[Number, In("m/s")] = 0.0
+    """the velocity along y in m/s"""
+    turn: Annotated[Number, In("rad/s")] = 0.0
+    """the rate of rotation in rad/s by which the velocity along z grows with x"""
+    lateral_turn: Annotated[Number, In("rad/s")] = 0.0
+    """the rate of rotation in rad/s by which the velocity along y grows with x"""
+    x: Place | None = None
+    """the x in m that has these velocities; the segment's start unless given"""
 
 
 def _velocity(given: Any) -> Any:
@@ -281,59 +245,49 @@ Velocity = Annotated[
 class StartTable(Table):
     """The state at t = 0."""
 
-    state: Literal["rest", "equilibrium"] = Field(
-        "rest", description="straight and unloaded, or at rest under the loads of t = 0"
-    )
-    velocity: dict[str, Velocity] = Field(
-        default_factory=dict,
-        description="segment = velocity along z in m/s, or a table with a turn besides",
-    )
+    state: Literal["rest", "equilibrium"] = "rest"
+    """straight and unloaded, or at rest under the loads of t = 0"""
+    velocity: dict[str, Velocity] = Field(default_factory=dict)
+    """segment = velocity along z in m/s, or a table with a turn besides"""
 
 
 class ObserveTable(Table):
     """What is recorded of every model besides the ends of the segments."""
 
-    name: Name = Field(description="what the results call it")
-    segment: str = Field(description="the name of the segment")
-    x: Place = Field(description="the x in m")
+    name: Name
+    """what the results call it"""
+    segment: str
+    """the name of the segment"""
+    x: Place
+    """the x in m"""
     quantity: Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"] = (
-        Field(
-            "deflection",
-            description="the deflection along z, its velocity, its acceleration as the mean of "
-            "each output interval, the rotation of the cross-section; in space the lateral "
-            "deflection and the twist",
-        )
+        "deflection"
     )
+    """the deflection along z, its velocity, its acceleration as the mean of each output interval,
+    the rotation of the cross-section; in space the lateral deflection and the twist"""
 
 
 class DampingTable(Table):
     """Damping of the boom."""
 
-    modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0), In("1")] = Field(
-        0.0, description="the damping ratio of the boom's modes with pressed joints, 0.02 for 2 %"
-    )
-    mass: Annotated[NotNegative, In("1/s")] = Field(
-        0.0, description="Rayleigh's factor of the mass in 1/s"
-    )
-    stiffness: Annotated[NotNegative, In("s")] = Field(
-        0.0, description="Rayleigh's factor of the stiffness in s"
-    )
+    modal: Annotated[float, Field(strict=True, ge=0.0, lt=1.0), In("1")] = 0.0
+    """the damping ratio of the boom's modes with pressed joints, 0.02 for 2 %"""
+    mass: Annotated[NotNegative, In("1/s")] = 0.0
+    """Rayleigh's factor of the mass in 1/s"""
+    stiffness: Annotated[NotNegative, In("s")] = 0.0
+    """Rayleigh's factor of the stiffness in s"""
 
 
 class LifeTable(Table):
     """What the stresses of a run are held against for fatigue."""
 
-    detail_category: Annotated[Positive, In("1")] | None = Field(
-        None,
-        description="the detail category of the worst weld after EN 1993-1-9, its number: 71 for "
-        "71 N/mm^2; without it ranges are counted, and no damage",
-    )
-    partial_factor: Annotated[Positive, In("1")] = Field(
-        1.0, description="the factor gamma_Ff gamma_Mf by which stress ranges count larger"
-    )
-    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = Field(
-        1, description="how often in a life the motion of the run comes"
-    )
+    detail_category: Annotated[Positive, In("1")] | None = None
+    """the detail category of the worst weld after EN 1993-1-9, its number: 71 for 71 N/mm^2;
+    without it ranges are counted, and no damage"""
+    partial_factor: Annotated[Positive, In("1")] = 1.0
+    """the factor gamma_Ff gamma_Mf by which stress ranges count larger"""
+    repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 1
+    """how often in a life the motion of the run comes"""
 
 
 if TYPE_CHECKING:
@@ -345,76 +299,59 @@ else:
 class Case(Table):
     """A boom, and the models to run on it."""
 
-    title: Text = Field(description="the heading of the report")
-    units: SystemName = Field(
-        "SI",
-        description="the units of all numbers: SI, or mm, t and s with N and MPa ('mm-t-s', the "
-        "same as 'N-mm')",
-    )
-    shown_units: SystemName | None = Field(
-        None,
-        description="the units of check's tables and of sweeps; those of the case unless given",
-    )
-    statements: Annotated[tuple[StatementId, ...], Few] = Field(
-        (), description="the statements of the paper that are judged on the run"
-    )
-    demand: Annotated[tuple[StatementId, ...], Few] = Field(
-        (), description="the statements of the paper that the run must reproduce"
-    )
-    time: TimeTable = Field(description="the table of the duration and the output step")
-    ensemble: EnsembleTable | None = Field(
-        None, description="the table of the ensembles; none are run unless given"
-    )
-    material: MaterialTable | None = Field(
-        None,
-        description="the table of the elastic constants and density of all segments that have "
-        "none of their own",
-    )
+    title: Text
+    """the heading of the report"""
+    units: SystemName = "SI"
+    """the units of all numbers: SI, or mm, t and s with N and MPa ('mm-t-s', the same as 'N-mm')"""
+    shown_units: SystemName | None = None
+    """the units of check's tables and of sweeps; those of the case unless given"""
+    statements: Annotated[tuple[StatementId, ...], Few] = ()
+    """the statements of the paper that are judged on the run"""
+    demand: Annotated[tuple[StatementId, ...], Few] = ()
+    """the statements of the paper that the run must reproduce"""
+    time: TimeTable
+    """the table of the duration and the output step"""
+    ensemble: EnsembleTable | None = None
+    """the table of the ensembles; none are run unless given"""
+    material: MaterialTable | None = None
+    """the table of the elastic constants and density of all segments that have none of their own"""
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
-        Field(
-            alias="segment",
-            description="the segments, one [[segment]] each, from the base to the tip",
-        )
+        Field(alias="segment")
     )
+    """the segments, one [[segment]] each, from the base to the tip"""
     joints: Annotated[tuple[JointTable, ...], Field(max_length=MOST_SEGMENTS)] = Field(
-        (), alias="joint", description="the joints, one [[joint]] each, from the base to the tip"
+        (), alias="joint"
     )
+    """the joints, one [[joint]] each, from the base to the tip"""
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
-        (), alias="stop", description="the rests that segments may touch, one [[stop]] each"
+        (), alias="stop"
     )
-    cylinders: Annotated[tuple[CylinderTable, ...], Few] = Field(
-        (), alias="cylinder", description="the luffing cylinders, one [[cylinder]] each"
-    )
-    loads: Annotated[tuple[LoadTable, ...], Few] = Field(
-        (), alias="load", description="the loads that are not uniform or not constant"
-    )
-    axial: Annotated[tuple[AxialTable, ...], Few] = Field(
-        (), description="the forces along the boom, one [[axial]] each"
-    )
-    payload: PayloadTable | None = Field(None, description="the table of a mass at the tip")
-    gravity: GravityTable | None = Field(
-        None,
-        description="the table of the weight of all masses, across and along the boom; nothing "
-        "weighs but the payload unless given",
-    )
-    base: Annotated[tuple[BaseTable, ...], Few] = Field(
-        (), description="the accelerations of the ground"
-    )
-    observe: Annotated[tuple[ObserveTable, ...], Few] = Field(
-        (), description="the places and quantities that are recorded besides, one [[observe]] each"
-    )
-    start: StartTable = Field(
-        StartTable.model_validate({}), description="the table of the state at t = 0"
-    )
-    damping: DampingTable = Field(
-        DampingTable.model_validate({}), description="the table of the boom's damping"
-    )
-    life: LifeTable = Field(
-        LifeTable.model_validate({}), description="the table of what fatigue is judged by"
-    )
+    """the rests that segments may touch, one [[stop]] each"""
+    cylinders: Annotated[tuple[CylinderTable, ...], Few] = Field((), alias="cylinder")
+    """the luffing cylinders, one [[cylinder]] each"""
+    loads: Annotated[tuple[LoadTable, ...], Few] = Field((), alias="load")
+    """the loads that are not uniform or not constant"""
+    axial: Annotated[tuple[AxialTable, ...], Few] = ()
+    """the forces along the boom, one [[axial]] each"""
+    payload: PayloadTable | None = None
+    """the table of a mass at the tip"""
+    gravity: GravityTable | None = None
+    """the table of the weight of all masses, across and along the boom; nothing weighs but the
+    payload unless given"""
+    base: Annotated[tuple[BaseTable, ...], Few] = ()
+    """the accelerations of the ground"""
+    observe: Annotated[tuple[ObserveTable, ...], Few] = ()
+    """the places and quantities that are recorded besides, one [[observe]] each"""
+    start: StartTable = StartTable.model_validate({})
+    """the table of the state at t = 0"""
+    damping: DampingTable = DampingTable.model_validate({})
+    """the table of the boom's damping"""
+    life: LifeTable = LifeTable.model_validate({})
+    """the table of what fatigue is judged by"""
     models: Annotated[tuple[Model, ...], Field(min_length=1, max_length=MOST_MODELS)] = Field(
-        alias="model", description="the models to run, one [[model]] each"
+        alias="model"
     )
+    """the models to run, one [[model]] each"""
 
     @model_validator(mode="after")
     def _calibrators(self) -> Case:

@@ -33,11 +33,16 @@ class ShapeTable(Table):
 class SectionTable(ShapeTable):
     """A box by its wall mid-lines and thicknesses."""
 
-    shape: Literal["box"] = Field("box", description="the shape of the section")
-    height: Length = Field(description="the distance of the flange mid-lines in m")
-    width: Length = Field(description="the distance of the web mid-lines in m")
-    flange: Length = Field(description="the thickness of the two flanges in m")
-    web: Length = Field(description="the thickness of the two webs in m")
+    shape: Literal["box"] = "box"
+    """the shape of the section"""
+    height: Length
+    """the distance of the flange mid-lines in m"""
+    width: Length
+    """the distance of the web mid-lines in m"""
+    flange: Length
+    """the thickness of the two flanges in m"""
+    web: Length
+    """the thickness of the two webs in m"""
 
     def section(self) -> BoxSection:
         return BoxSection(self.height, self.width, self.flange, self.web)
@@ -46,12 +51,18 @@ class SectionTable(ShapeTable):
 class UnequalBoxTable(ShapeTable):
     """A box with flanges of different thickness, by its wall mid-lines and thicknesses."""
 
-    shape: Literal["unequal box"] = Field(description="the shape of the section")
-    height: Length = Field(description="the distance of the flange mid-lines in m")
-    width: Length = Field(description="the distance of the web mid-lines in m")
-    top: Length = Field(description="the thickness of the upper flange in m")
-    bottom: Length = Field(description="the thickness of the lower flange in m")
-    web: Length = Field(description="the thickness of the two webs in m")
+    shape: Literal["unequal box"]
+    """the shape of the section"""
+    height: Length
+    """the distance of the flange mid-lines in m"""
+    width: Length
+    """the distance of the web mid-lines in m"""
+    top: Length
+    """the thickness of the upper flange in m"""
+    bottom: Length
+    """the thickness of the lower flange in m"""
+    web: Length
+    """the thickness of the two webs in m"""
 
     def section(self) -> UnequalBox:
         return UnequalBox(self.height, self.width, self.top, self.bottom, self.web, self.web)
@@ -60,14 +71,13 @@ class UnequalBoxTable(ShapeTable):
 class PolygonTable(ShapeTable):
     """Flat plates once around a cell, by the corners of their mid-lines."""
 
-    shape: Literal["polygon"] = Field(description="the shape of the section")
-    corners: Annotated[tuple[tuple[Number, Number], ...], Few, In("m")] = Field(
-        description="the corners of the mid-lines in turn, as pairs of y and z in m from anywhere"
-    )
-    thicknesses: Annotated[tuple[Length, ...], Few] = Field(
-        description="the thickness of each plate in m, from each corner to the next; the last one "
-        "closes the cell"
-    )
+    shape: Literal["polygon"]
+    """the shape of the section"""
+    corners: Annotated[tuple[tuple[Number, Number], ...], Few, In("m")]
+    """the corners of the mid-lines in turn, as pairs of y and z in m from anywhere"""
+    thicknesses: Annotated[tuple[Length, ...], Few]
+    """the thickness of each plate in m, from each corner to the next; the last one closes the
+    cell"""
 
     def section(self) -> Section:
         return closed_polygon(self.corners, self.thicknesses)
@@ -76,18 +86,25 @@ class PolygonTable(ShapeTable):
 class _FoldedTable(ShapeTable):
     """What sections of a top, a bottom and folded sides have."""
 
-    height: Length = Field(description="the height of the top's mid-line above the bottom's in m")
-    width: Length = Field(description="the greatest distance of the sides' mid-lines in m")
-    top: Length = Field(description="the thickness of the top in m")
-    bottom: Length = Field(description="the thickness of the bottom, with its bends, in m")
-    web: Length = Field(description="the thickness of the other plates in m")
+    height: Length
+    """the height of the top's mid-line above the bottom's in m"""
+    width: Length
+    """the greatest distance of the sides' mid-lines in m"""
+    top: Length
+    """the thickness of the top in m"""
+    bottom: Length
+    """the thickness of the bottom, with its bends, in m"""
+    web: Length
+    """the thickness of the other plates in m"""
 
 
 class HexagonTable(_FoldedTable):
     """A hexagon that lies on a flat bottom, its sides folded in the middle."""
 
-    shape: Literal["hexagon"] = Field(description="the shape of the section")
-    flat: Length = Field(description="the width of the top, and of the bottom, in m")
+    shape: Literal["hexagon"]
+    """the shape of the section"""
+    flat: Length
+    """the width of the top, and of the bottom, in m"""
 
     def section(self) -> Section:
         return hexagon(self.height, self.width, self.flat, self.top, self.bottom, self.web)
@@ -96,8 +113,10 @@ class HexagonTable(_FoldedTable):
 class OctagonTable(_FoldedTable):
     """A rectangle whose corners are cut at 45°."""
 
-    shape: Literal["octagon"] = Field(description="the shape of the section")
-    chamfer: Length = Field(description="what is cut of the rectangle's sides at each end in m")
+    shape: Literal["octagon"]
+    """the shape of the section"""
+    chamfer: Length
+    """what is cut of the rectangle's sides at each end in m"""
 
     def section(self) -> Section:
         return octagon(self.height, self.width, self.chamfer, self.top, self.bottom, self.web)
@@ -106,11 +125,12 @@ class OctagonTable(_FoldedTable):
 class UTable(_FoldedTable):
     """A U whose bends are folded of flat plates, closed by a flat top."""
 
-    shape: Literal["U"] = Field(description="the shape of the section")
-    radius: Length = Field(description="the radius of the bottom's two bends in m")
-    facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = Field(
-        3, description="the number of flat plates in each bend, which touch its circle"
-    )
+    shape: Literal["U"]
+    """the shape of the section"""
+    radius: Length
+    """the radius of the bottom's two bends in m"""
+    facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = 3
+    """the number of flat plates in each bend, which touch its circle"""
 
     def section(self) -> Section:
         sizes = self.height, self.width, self.radius, self.facets

@@ -20,7 +20,7 @@ from runs.case import reading, toml
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import in_si
-from runs.case.limits import declared_units
+from runs.case.limits import declared_units, described
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
@@ -362,8 +362,8 @@ def test_every_number_declares_its_unit() -> None:
         for unit in units:
             Unit.of(re.sub(r"\^\(?n.*", "", unit))
             said = {"1": "", "deg": "degrees", "rad/s": "rad/s"}.get(unit, unit)
-            described = str(field.description)
-            assert said in described or "the same" in described or "such pairs" in described, name
+            text = described(field)
+            assert said in text or "the same" in text or "such pairs" in text, name
 
 
 def test_editors_see_the_units() -> None:

@@ -10,7 +10,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from pydantic import Field
 
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
@@ -26,12 +25,9 @@ if TYPE_CHECKING:
 class CalibratedTable(BeamTable):
     """A beam as it is, or with its stiffness and the springs of its stations read from a shell."""
 
-    calibrated_by: ShellTable | Name | None = Field(
-        None,
-        description="the name of a shell of the case, or the table of another one, from which the "
-        "stiffness of the segments and the springs of the stations are read; the beam is as it is "
-        "unless given",
-    )
+    calibrated_by: ShellTable | Name | None = None
+    """the name of a shell of the case, or the table of another one, from which the stiffness of the
+    segments and the springs of the stations are read; the beam is as it is unless given"""
 
     @property
     def needs_plates(self) -> bool:

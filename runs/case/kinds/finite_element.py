@@ -36,17 +36,17 @@ _BUILT = 400
 class FiniteElementTable(CalibratedTable):
     """Beam finite elements."""
 
-    kind: Literal["finite-element"] = Field(description="the kind of model")
-    element_length: Length = Field(0.5, description="the length of an element in m, at most")
-    theory: Literal["euler-bernoulli", "timoshenko"] = Field(
-        "euler-bernoulli",
-        description="the beam theory; a calibrated beam is always shear-flexible, with the rotary "
-        "inertia of its plates",
-    )
-    rotary_inertia: Flag = Field(True, description="whether the rotary inertia is kept")
-    tied: Flag = Field(
-        False, description="whether the segments deflect alike at the stations, without play"
-    )
+    kind: Literal["finite-element"]
+    """the kind of model"""
+    element_length: Length = 0.5
+    """the length of an element in m, at most"""
+    theory: Literal["euler-bernoulli", "timoshenko"] = "euler-bernoulli"
+    """the beam theory; a calibrated beam is always shear-flexible, with the rotary inertia of its
+    plates"""
+    rotary_inertia: Flag = True
+    """whether the rotary inertia is kept"""
+    tied: Flag = False
+    """whether the segments deflect alike at the stations, without play"""
 
     section_fields: Flag = Field(
         False,

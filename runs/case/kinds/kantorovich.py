@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field
-
 from beam_model.component import SegmentModel
 from beam_model.kantorovich import check_base, kantorovich_segments
 from geometry.boom import Boom, BoomError
@@ -23,16 +21,15 @@ class KantorovichTable(CalibratedTable):
 
     smooth: ClassVar[bool] = True
 
-    kind: Literal["kantorovich"] = Field(description="the kind of model")
-    terms: Annotated[tuple[Count, ...], Few] = Field(
-        description="the number of functions of each segment, from the base to the tip"
-    )
-    base: Literal["as printed", "pinned", "complete"] = Field(
-        "as printed",
-        description="the reading of the functions: as printed, with zero slope at the base; "
-        "pinned, with a free one; complete, where the inner segment bends freely too",
-    )
-    rotary_inertia: Flag = Field(False, description="whether the rotary inertia is kept")
+    kind: Literal["kantorovich"]
+    """the kind of model"""
+    terms: Annotated[tuple[Count, ...], Few]
+    """the number of functions of each segment, from the base to the tip"""
+    base: Literal["as printed", "pinned", "complete"] = "as printed"
+    """the reading of the functions: as printed, with zero slope at the base; pinned, with a free
+    one; complete, where the inner segment bends freely too"""
+    rotary_inertia: Flag = False
+    """whether the rotary inertia is kept"""
 
     def check(self, where: str, joined: Joined) -> None:
         segments = joined.boom.segments

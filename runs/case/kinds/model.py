@@ -11,7 +11,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar
 
 import numpy as np
-from pydantic import Field
 
 from beam_model.component import SegmentModel
 from geometry.boom import Boom, BoomError
@@ -105,14 +104,14 @@ class StandIn:
 class ModelTable(Table):
     """What every kind of model has."""
 
-    name: Name = Field(description="what the results call the model")
-    contact: ContactTable | None = Field(
-        None, description="the model's own contact law; the joints' unless given"
-    )
-    step: Annotated[Positive, In("s")] | None = Field(
-        None, description="the model's own step of the integrator in s; the case's unless given"
-    )
-    kind: str = Field(description="the kind of model")
+    name: Name
+    """what the results call the model"""
+    contact: ContactTable | None = None
+    """the model's own contact law; the joints' unless given"""
+    step: Annotated[Positive, In("s")] | None = None
+    """the model's own step of the integrator in s; the case's unless given"""
+    kind: str
+    """the kind of model"""
 
     # Whether it has a mesh of the plates: it leaves fields.
     meshed: ClassVar[bool] = False

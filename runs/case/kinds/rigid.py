@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field
-
 from beam_model.component import SegmentModel
 from beam_model.rigid import freedom, rigid_segment
 from geometry.boom import Boom, BoomError
@@ -16,7 +14,8 @@ from runs.case.kinds.model import BeamTable, Joined, StandIn
 class RigidTable(BeamTable):
     """Rigid bodies, which play, contacts and elastic supports alone let move."""
 
-    kind: Literal["rigid"] = Field(description="the kind of model")
+    kind: Literal["rigid"]
+    """the kind of model"""
 
     def check(self, where: str, joined: Joined) -> None:
         if not any(freedom(segment) for segment in joined.boom.segments):

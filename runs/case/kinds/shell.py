@@ -8,7 +8,6 @@ from functools import partial
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
 
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
@@ -39,41 +38,29 @@ class ShellTable(ModelTable):
 
     meshed: ClassVar[bool] = True
 
-    kind: Literal["shell"] = Field(description="the kind of model")
-    mesh_size: Length = Field(
-        0.1, description="the edge length of the triangles in m, far from all that presses"
-    )
-    contact_tolerance: ContactTolerance = Field(
-        0.01,
-        description="the relative error of how much pressed walls give way, which makes the mesh "
-        "finer there, or 'any' for a uniform mesh",
-    )
-    modes: Modes | None = Field(
-        None,
-        description="the number of coordinates of each segment, at most, or 'auto' for as many as "
-        "the tolerance asks; unless given, those of three moments at four frequencies, which "
-        "answer the contacts within about 1e-8",
-    )
-    tolerance: Part = Field(
-        1.0e-6,
-        description="with modes = 'auto', the largest relative error with which the reduced shell "
-        "answers the forces of contacts and loads",
-    )
-    contact_line: Literal["near webs", "across", "surface"] = Field(
-        "near webs",
-        description="where the walls of the segments touch: at the stations near the webs or "
-        "across the flanges, or over the surface of the whole overlap",
-    )
-    surface_stiffness: Annotated[Positive, In("N/m^(n+2)")] | None = Field(
-        None,
-        description="the contact stiffness of a surface per area in N/m^(n+2), of the stiffer "
-        "side; that of all the joint's stations over the area unless given",
-    )
-    surface_points: tuple[Count, Count] | None = Field(
-        None,
-        description="the number of contact points along the overlap, and across each half of a "
-        "wall; 8 and 4 unless given",
-    )
+    kind: Literal["shell"]
+    """the kind of model"""
+    mesh_size: Length = 0.1
+    """the edge length of the triangles in m, far from all that presses"""
+    contact_tolerance: ContactTolerance = 0.01
+    """the relative error of how much pressed walls give way, which makes the mesh finer there, or
+    'any' for a uniform mesh"""
+    modes: Modes | None = None
+    """the number of coordinates of each segment, at most, or 'auto' for as many as the tolerance
+    asks; unless given, those of three moments at four frequencies, which answer the contacts within
+    about 1e-8"""
+    tolerance: Part = 1.0e-6
+    """with modes = 'auto', the largest relative error with which the reduced shell answers the
+    forces of contacts and loads"""
+    contact_line: Literal["near webs", "across", "surface"] = "near webs"
+    """where the walls of the segments touch: at the stations near the webs or across the flanges,
+    or over the surface of the whole overlap"""
+    surface_stiffness: Annotated[Positive, In("N/m^(n+2)")] | None = None
+    """the contact stiffness of a surface per area in N/m^(n+2), of the stiffer side; that of all
+    the joint's stations over the area unless given"""
+    surface_points: tuple[Count, Count] | None = None
+    """the number of contact points along the overlap, and across each half of a wall; 8 and 4
+    unless given"""
 
     def check(self, where: str, joined: Joined) -> None:
         super().check(where, joined)
