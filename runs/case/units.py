@@ -16,37 +16,18 @@ _NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 _ACCELERATION, _FORCE, _PRESSURE = (1.0, 0.0, -2.0), (1.0, 1.0, -2.0), (-1.0, 1.0, -2.0)
 _MOMENT = (2.0, 1.0, -2.0)
 
-_SYMBOLS: dict[str, tuple[str, Dimension]] = {
-    "1": ("1.0", _NONE),
-    "-": ("1.0", _NONE),
-    "%": ("0.01", _NONE),
-    "rad": ("1.0", _NONE),
-    "deg": ("1.0", _NONE),
-    "m": ("1.0", _LENGTH),
-    "km": ("1.0e3", _LENGTH),
-    "cm": ("1.0e-2", _LENGTH),
-    "mm": ("1.0e-3", _LENGTH),
-    "µm": ("1.0e-6", _LENGTH),
-    "kg": ("1.0", _MASS),
-    "t": ("1.0e3", _MASS),
-    "s": ("1.0", _TIME),
-    "ms": ("1.0e-3", _TIME),
-    "µs": ("1.0e-6", _TIME),
-    "min": ("60.0", _TIME),
-    "Hz": ("1.0", (0.0, 0.0, -1.0)),
-    "g": ("9.80665", _ACCELERATION),
-    "N": ("1.0", _FORCE),
-    "daN": ("10.0", _FORCE),
-    "kN": ("1.0e3", _FORCE),
-    "MN": ("1.0e6", _FORCE),
-    "Nm": ("1.0", _MOMENT),
-    "kNm": ("1.0e3", _MOMENT),
-    "Nmm": ("1.0e-3", _MOMENT),
-    "Pa": ("1.0", _PRESSURE),
-    "kPa": ("1.0e3", _PRESSURE),
-    "MPa": ("1.0e6", _PRESSURE),
-    "GPa": ("1.0e9", _PRESSURE),
+_SIZES: Mapping[Dimension, Mapping[str, str]] = {
+    _NONE: {"1": "1.0", "-": "1.0", "%": "0.01", "rad": "1.0", "deg": "1.0"},
+    _LENGTH: {"m": "1.0", "km": "1.0e3", "cm": "1.0e-2", "mm": "1.0e-3", "µm": "1.0e-6"},
+    _MASS: {"kg": "1.0", "t": "1.0e3"},
+    _TIME: {"s": "1.0", "ms": "1.0e-3", "µs": "1.0e-6", "min": "60.0"},
+    (0.0, 0.0, -1.0): {"Hz": "1.0"},
+    _ACCELERATION: {"g": "9.80665"},
+    _FORCE: {"N": "1.0", "daN": "10.0", "kN": "1.0e3", "MN": "1.0e6"},
+    _MOMENT: {"Nm": "1.0", "kNm": "1.0e3", "Nmm": "1.0e-3"},
+    _PRESSURE: {"Pa": "1.0", "kPa": "1.0e3", "MPa": "1.0e6", "GPa": "1.0e9"},
 }
+_SYMBOLS = {name: (size, of) for of, sizes in _SIZES.items() for name, size in sizes.items()}
 
 # m^2, m2, m-2, N/m^1.5.
 _POWER = re.compile(r"([^\^0-9-]+|1|-)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|(-?[0-9]))?")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -27,7 +27,7 @@ from runs.pipeline.modes import modes
 from runs.pipeline.moved import Motions, gone_through
 from runs.pipeline.run import run_case
 from runs.studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
-from runs.studies.study import Proof, Study
+from runs.studies.study import Proof, Tell, titled
 
 # Of the paper's boom: N/m on both segments.
 OUTER, INNER = 83.16, 55.07
@@ -49,16 +49,17 @@ CURVE = {71.0: 2.0e6, 71.0 * 0.4 ** (1.0 / 3.0): 5.0e6, 71.0 * 0.4 ** (1.0 / 3.0
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("answers", "What a designer asks")
+def study(tell: Tell) -> Iterator[Proof]:
     """The paper's boom at rest, a cantilever in motion, cycles by hand."""
     tell("the paper's boom at rest")
     answers = answered()
-    proofs = [
-        *(proof for name in MODELS for proof in _at_rest(name, answers.models[name])),
-        *_reactions(answers),
-    ]
+    for name in MODELS:
+        yield from _at_rest(name, answers.models[name])
+    yield from _reactions(answers)
     tell("a cantilever")
-    return Study("answers", "What a designer asks", proofs=[*proofs, *_cantilever(), *_cycles()])
+    yield from _cantilever()
+    yield from _cycles()
 
 
 def answered() -> Answers:

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from itertools import product
 from pathlib import Path
@@ -23,7 +23,7 @@ from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.process import notices
 from runs.report.tables import Cell, Table, wide_console, write
 from runs.report.theme import NONE, number
-from runs.studies.study import Plot, Study
+from runs.studies.study import Part, Plot, Tell, titled
 from runs.studies.then.general_solver import METHODS
 from runs.studies.then.modal_integrators import NEWMARK, WILSON
 from runs.studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
@@ -36,16 +36,19 @@ TITLE = "Statements of the paper as they were computed then"
 CUT, POINTS = 150.0, 1000
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("as-computed-then", TITLE)
+def study(tell: Tell) -> Iterator[Part]:
     """Both examples by every scheme, with few modes, gaps iterated or lagged, at three steps."""
-    return told(Survey.of(tell))
+    survey = Survey.of(tell)
+    yield from tables(survey)
+    yield from proofs()
+    yield from plots(survey)
 
 
-def told(survey: Survey) -> Study:
-    """The tables, figures and proofs of a survey."""
+def tables(survey: Survey) -> list[Table]:
+    """All of a survey."""
     made = outcome_table, free_table, rubbed_table, printed_table, reach_table
-    tables = [table(survey) for table in made]
-    return Study("as-computed-then", TITLE, tables, list(proofs()), plots(survey))
+    return [table(survey) for table in made]
 
 
 def outcome_table(survey: Survey) -> Table:
@@ -80,17 +83,16 @@ def free_table(survey: Survey) -> Table:
         energies = _energies([one.elements for one in samples])
         rows.append((str(how), *energies, _span(off), *_parting(alike), *_parting(mixed)))
     headings = ("peaks apart to 6 s\n(%, median)", "and later", "as S3 says\n(% of runs)")
+    columns = {
+        "numerics": "", "elements gain more\nthan was put in at (s)": "",
+        "energy at the end\n(% of that put in)": "", "first peak of the\nelements off (%)": "",
+        **dict.fromkeys(headings, ".0f"),
+        **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
+    }  # fmt: skip
     return Table.of_rows(
         "then-free",
         "Without friction: the tip by numerics of 1997",
-        {
-            "numerics": "",
-            "elements gain more\nthan was put in at (s)": "",
-            "energy at the end\n(% of that put in)": "",
-            "first peak of the\nelements off (%)": "",
-            **dict.fromkeys(headings, ".0f"),
-            **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
-        },
+        columns,
         rows,
     )
 
@@ -114,21 +116,17 @@ def rubbed_table(survey: Survey) -> Table:
                 TO_PERCENT * share(map(lost_then, samples)),
             )
         )
+    columns = {
+        "numerics": "", "elements gain more\nthan was put in at (s)": "",
+        "energy at the end\n(% of that put in)": "", "steps without\nagreement (%)": "",
+        "elements off to 6 s\n(% of range)": "", "models apart to 6 s\n(% of range)": "",
+        "and later": "", "as S7 says\n(% of runs)": ".0f", "with the series\nsolved well": ".0f",
+        f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
+    }  # fmt: skip
     return Table.of_rows(
         "then-rubbed",
         "With friction: the tip by numerics of 1997",
-        {
-            "numerics": "",
-            "elements gain more\nthan was put in at (s)": "",
-            "energy at the end\n(% of that put in)": "",
-            "steps without\nagreement (%)": "",
-            "elements off to 6 s\n(% of range)": "",
-            "models apart to 6 s\n(% of range)": "",
-            "and later": "",
-            "as S7 says\n(% of runs)": ".0f",
-            "with the series\nsolved well": ".0f",
-            f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
-        },
+        columns,
         rows,
     )
 
@@ -162,24 +160,20 @@ def reach_table(survey: Survey) -> Table:
             == (method, tolerance, model, friction)
         ]
         rows.append((method, number(tolerance), *cells))
+    columns = {
+        "solver": "", "tolerance": "", "four terms": ".3g", "five terms": ".3g",
+        "four terms, friction": ".3g", "five terms, friction": ".3g",
+    }  # fmt: skip
     return Table.of_rows(
         "then-series",
         f"How far {SERIES_STEPS} steps of a general solver reach (s)",
-        {
-            "solver": "",
-            "tolerance": "",
-            "four terms": ".3g",
-            "five terms": ".3g",
-            "four terms, friction": ".3g",
-            "five terms, friction": ".3g",
-        },
+        columns,
         rows,
     )
 
 
-def plots(survey: Survey) -> list[Plot]:
+def plots(survey: Survey) -> Iterator[Plot]:
     """The tip by both iterated schemes at the paper's step, and their energy."""
-    found = []
     for name, what, example, samples in (
         ("then-free", "Without friction", survey.without, survey.free),
         ("then-rubbed", "With friction", survey.with_friction, survey.rubbed),
@@ -192,27 +186,24 @@ def plots(survey: Survey) -> list[Plot]:
             for scheme in (NEWMARK, WILSON)
         }
         runs = {**by, "solved well": example.well[0].elements}
-        found += [
-            Plot(
-                name,
-                f"{what}: the beam elements' tip, solved well and as computed then",
-                "time (s)",
-                "tip (mm)",
-                {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
-                f"{1e3 * THEN:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
-                logarithmic=False,
-            ),
-            Plot(
-                f"{name}-energy",
-                f"{what}: energy from nowhere",
-                "time (s)",
-                "% of the energy put in",
-                {label: _cut(run.time, TO_PERCENT * run.balance) for label, run in runs.items()},
-                f"Gained above, lost below zero; cut at {CUT:g} %.",
-                logarithmic=False,
-            ),
-        ]
-    return found
+        yield Plot(
+            name,
+            f"{what}: the beam elements' tip, solved well and as computed then",
+            "time (s)",
+            "tip (mm)",
+            {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
+            f"{1e3 * THEN:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
+            logarithmic=False,
+        )
+        yield Plot(
+            f"{name}-energy",
+            f"{what}: energy from nowhere",
+            "time (s)",
+            "% of the energy put in",
+            {label: _cut(run.time, TO_PERCENT * run.balance) for label, run in runs.items()},
+            f"Gained above, lost below zero; cut at {CUT:g} %.",
+            logarithmic=False,
+        )
 
 
 def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
@@ -251,23 +242,23 @@ def _cut(time: Array, values: Array) -> tuple[list[float], list[float]]:
     return _curve(time[shown], values[shown])
 
 
-def leave(survey: Survey, tables: Sequence[Table], folder: Path) -> None:
+def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
     """Write ``then.json`` and ``then.md`` with these tables."""
     cases = [case_file.load(str(path)) for path in (WITHOUT, WITH)]
     data = {
         "case_hashes": [toml.digest(case) for case in cases],
         "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
     }
-    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in tables])
+    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in made])
 
 
 def main() -> None:
     """Print the tables, and leave them where the verdicts look for them."""
     survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
-    tables = told(survey).tables
-    for table in tables:
+    made = tables(survey)
+    for table in made:
         table.text.show(wide_console())
-    leave(survey, tables, OUT)
+    leave(survey, made, OUT)
     print(f"written to {OUT}")
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,7 +14,7 @@ from runs.report.tables import Cell, Table
 from runs.report.theme import scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Reference, Refined, error_plot, refined_table
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 from shell_model.forms import DRILLING, DRILLING_OF_CURVED
 from shell_model.verification import benchmarks
 from shell_model.verification.benchmarks import PUBLISHED, SHEAR_RIGID
@@ -41,27 +41,18 @@ DRILLING_NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Meshes as numbers of edges along a side, each twice the one before, three at least.
-
-    Args:
-        roof, cylinder, hemisphere, twisted, plate: of each.
-        torsion: over the width of each wall, one or more.
-        slenderness: edges along a twisted member for each one over a wall.
-        box: edge length of the boxes in m.
-        frequencies: how many of a box or plate.
-        decades: how far the drilling tie varies, in powers of ten.
-    """
+    """Meshes as numbers of edges along a side, each twice the one before, three at least."""
 
     roof: Sequence[int] = (4, 8, 16, 32, 64)
     cylinder: Sequence[int] = (12, 24, 48, 96)
     hemisphere: Sequence[int] = (8, 16, 32, 64)
     twisted: Sequence[int] = (1, 2, 4, 8, 16)
     plate: Sequence[int] = (4, 8, 16, 32, 64)
-    torsion: Sequence[int] = (2, 4, 8)
-    slenderness: int = 20
-    box: float = 0.2
-    frequencies: int = 10
-    decades: int = 4
+    torsion: Sequence[int] = (2, 4, 8)  # over the width of each wall, one or more
+    slenderness: int = 20  # edges along a twisted member for each one over a wall
+    box: float = 0.2  # edge length of the boxes in m
+    frequencies: int = 10  # how many of a box or plate
+    decades: int = 4  # how far the drilling tie varies, in powers of ten
 
 
 def refined(
@@ -106,50 +97,39 @@ def plates(sizes: Sizes) -> list[Refined]:
         measured = np.array([plate.frequencies(n, 4) for n in sizes.plate])
         for mode in (1, 4):
             reference = Reference(float(exact[mode - 1]), "analytic", source, 0.01)
-            values = measured[:, mode - 1].tolist()
-            found.append(
-                refined(f"{name} plate, mode {mode}", "Hz", sizes.plate, values, reference)
-            )
+            what, values = f"{name} plate, mode {mode}", measured[:, mode - 1].tolist()
+            found.append(refined(what, "Hz", sizes.plate, values, reference))
     return found
 
 
-def torsion(sizes: Sizes) -> list[Refined]:
+def torsion(sizes: Sizes) -> Iterator[Refined]:
     """Torsion constants of an open and of a closed section."""
-    return [
-        refined(
-            f"torsion constant, {name}",
-            "m⁴",
-            sizes.torsion,
-            [member.torsion_constant(n, sizes.slenderness * n) for n in sizes.torsion],
-            Reference(member.thin_walled_constant, "analytic", source, allowed),
-        )
-        for name, member, source, allowed in (
-            ("angle 100 × 100 × 1 mm", ANGLE, "Σ b t³/3, Saint-Venant 1855", 0.005),
-            ("box 100 × 60 × 1 mm", BOX, "4 A² t/Σ b + Σ b t³/3, Bredt 1896", 0.001),
-        )
-    ]
+    for name, member, source, allowed in (
+        ("angle 100 × 100 × 1 mm", ANGLE, "Σ b t³/3, Saint-Venant 1855", 0.005),
+        ("box 100 × 60 × 1 mm", BOX, "4 A² t/Σ b + Σ b t³/3, Bredt 1896", 0.001),
+    ):
+        found = [member.torsion_constant(n, sizes.slenderness * n) for n in sizes.torsion]
+        reference = Reference(member.thin_walled_constant, "analytic", source, allowed)
+        yield refined(f"torsion constant, {name}", "m⁴", sizes.torsion, found, reference)
 
 
-def exactness(box: PlainBox, sizes: Sizes) -> list[Proof]:
+def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
     """What holds to round-off: patches under constant strain, and a turned box."""
     patch = Patch.of()
-    found = [
-        Proof(f"patch under constant {state.name} strain, oblique: largest error",
-              patch.error(state), 0.0, "", "analytic", "the field that is held on its edges",
-              1.0e-11)
-        for state in constant_strains()
-    ]  # fmt: skip
+    held: Held = ("analytic", "the field that is held on its edges", 1.0e-11)
+    for state in constant_strains():
+        what = f"patch under constant {state.name} strain, oblique: largest error"
+        yield Proof(what, patch.error(state), 0.0, "", *held)
     straight, turned = (
         box.free_frequencies(sizes.box, sizes.frequencies, turn=turn) for turn in (None, OBLIQUE)
     )
     worst = int(np.abs(turned / straight - 1.0).argmax())
     what = f"box turned in space: frequency {worst + 1}, which changes most"
-    before, after = float(straight[worst]), float(turned[worst])
-    source = "the same box along x"
-    return [*found, Proof(what, after, before, "Hz", "analytic", source, 1.0e-8)]
+    held = ("analytic", "the same box along x", 1.0e-8)
+    yield Proof(what, float(turned[worst]), float(straight[worst]), "Hz", *held)
 
 
-def drilling(box: PlainBox, y: float, sizes: Sizes) -> tuple[Table, list[Proof]]:
+def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
     """Boxes under ties up to 100 times their default, a twisted beam from its own default on.
 
     Args:
@@ -161,27 +141,14 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> tuple[Table, list[Proof]]
     soft, stiff = DRILLING * 1.0e-2 * powers, DRILLING_OF_CURVED * powers
     supports, station = (0.0, 0.2 * box.length), 0.9 * box.length
     rows: list[Sequence[Cell]] = []
-    proofs = []
     for what, default, ties, measure in (
-        (
-            "frequencies of the free box",
-            DRILLING,
-            soft,
-            lambda tie: box.free_frequencies(sizes.box, sizes.frequencies, tie),
-        ),
-        (
-            "contact compliance of the box",
-            DRILLING,
-            soft,
-            lambda tie: [box.compliance(sizes.box, supports, station, y, tie)],
-        ),
-        (
-            "twisted beam",
-            DRILLING_OF_CURVED,
-            stiff,
-            lambda tie: benchmarks.twisted_beam(sizes.twisted[-2], tie),
-        ),
-    ):
+        ("frequencies of the free box", DRILLING, soft,
+         lambda tie: box.free_frequencies(sizes.box, sizes.frequencies, tie)),
+        ("contact compliance of the box", DRILLING, soft,
+         lambda tie: [box.compliance(sizes.box, supports, station, y, tie)]),
+        ("twisted beam", DRILLING_OF_CURVED, stiff,
+         lambda tie: benchmarks.twisted_beam(sizes.twisted[-2], tie)),
+    ):  # fmt: skip
         values = np.array([measure(tie) for tie in ties])
         changes = values / values[np.isclose(ties, default)] - 1.0
         rows += [
@@ -189,23 +156,17 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> tuple[Table, list[Proof]]
             for tie, change in zip(ties, changes, strict=True)
         ]
         first, last = (scientific(tie) for tie in ties[[0, -1]])
-        proofs.append(
-            Proof(
-                f"{what}: spread over drilling ties from {first} to {last}",
-                float((np.ptp(values, axis=0) / np.abs(values[0])).max()),
-                0.0,
-                "",
-                "non-regression",
-                f"the default tie, {scientific(default)}",
-                1.0e-3,
-            )
-        )
+        spread = float((np.ptp(values, axis=0) / np.abs(values[0])).max())
+        held: Held = ("non-regression", f"the default tie, {scientific(default)}", 1.0e-3)
+        what = f"{what}: spread over drilling ties from {first} to {last}"
+        yield Proof(what, spread, 0.0, "", *held)
     columns = {"what": "", "tie / (G t)": ".1g", "largest change from the default (%)": ".4f"}
     title = "What the drilling tie changes"
-    return Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,)), proofs
+    yield Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,))
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("benchmarks", "The shell element")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Benchmarks, patches, plates, torsion, a turned box, and the drilling tie."""
     sizes = sizes or Sizes()
     outer, inner = (segment.section for segment in build_boom(friction_case()).segments)
@@ -217,35 +178,23 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     tell("plates and torsion")
     vibrating = plates(sizes)
     found = [*known, *vibrating, *torsion(sizes)]
-    tell("patches and a turned box")
-    exact = exactness(box, sizes)
-    tell("drilling ties")
-    ties, spreads = drilling(box, 0.5 * inner.size("y"), sizes)
+    yield from (one.proof for one in found)
     tell("pinched cylinder with shear")
     dents = [benchmarks.pinched_cylinder(n) for n in sizes.cylinder]
     sheared = Refined("pinched cylinder with shear", "", known[1].sizes, dents)
     title = "The shell against published and analytic values"
+    yield refined_table("benchmarks", title, [*found, sheared], "edges × {:g}", NOTES)
+    tell("patches and a turned box")
+    yield from exactness(box, sizes)
+    tell("drilling ties")
+    yield from drilling(box, 0.5 * inner.size("y"), sizes)
     x = "length of an edge over the finest one's"
-    return Study(
-        "benchmarks",
-        "The shell element",
-        [refined_table("benchmarks", title, [*found, sheared], "edges × {:g}", NOTES), ties],
-        [*(one.proof for one in found), *exact, *spreads],
-        [
-            error_plot(
-                "benchmarks",
-                "Flat facets close in on the published values",
-                x,
-                known,
-                "Relative error against the published value. It levels off where the value itself "
-                "is no more accurate.",
-            ),
-            error_plot(
-                "plates",
-                "Simply supported plates close in on theory",
-                x,
-                vibrating,
-                "Relative error of natural frequencies against Kirchhoff's and Mindlin's plates.",
-            ),
-        ],
+    title = "Flat facets close in on the published values"
+    caption = (
+        "Relative error against the published value. It levels off where the value itself is no "
+        "more accurate."
     )
+    yield error_plot("benchmarks", title, x, known, caption)
+    title = "Simply supported plates close in on theory"
+    caption = "Relative error of natural frequencies against Kirchhoff's and Mindlin's plates."
+    yield error_plot("plates", title, x, vibrating, caption)

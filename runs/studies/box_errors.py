@@ -30,19 +30,15 @@ ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        walls: thicknesses in m, rising.
-        triangles: edge lengths of the shells' meshes in m, each half the one before.
-        splits: of the solids' edges around the section, each twice the one before; as many as
-            ``triangles``.
-        along, around: see :func:`mesh_quarter`.
-    """
-
+    # Thicknesses in m, rising.
     walls: Sequence[float] = tuple(np.geomspace(0.004, 0.04, 4).round(4).tolist())
+    # Edge lengths of the shells' meshes in m, each half the one before.
     triangles: Sequence[float] = (0.05, 0.025, 0.0125)
+    # Of the solids' edges around the section, each twice the one before; as many as ``triangles``.
     splits: Sequence[int] = (1, 2, 4)
+    # See :func:`mesh_quarter`.
     along: tuple[float, float] = (0.0125, 0.2)
     around: float = 0.1
 

@@ -9,14 +9,9 @@ the shell of that mesh, whose own error is another study's (``working_load``).
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from time import perf_counter
+from functools import partial
 
 import numpy as np
 
@@ -24,18 +19,19 @@ from dynamics.condensation import condensed
 from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from runs.case.build import build_boom
 from runs.case.kinds.finite_element import FIELDS, FiniteElementTable
-from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
-from runs.pipeline.models import build, workshop
 from runs.report.tables import Cell, Table
-from runs.studies.mesh import peak_heights
-from runs.studies.motions import friction_case, model_of, move, shell_of
+from runs.studies.motions import (
+    all_built,
+    friction_case,
+    model_of,
+    shell_of,
+    side_by_side,
+)
 from runs.studies.pads import with_pads
-from runs.studies.study import Plot, Proof, Study
-from runs.studies.working_load import Point, at_point
+from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
+from runs.studies.working_load import Moved, Point, at_point
 
 # What is allowed of the tip, as parts of its range, of first peaks, and of frequencies.
 SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
@@ -48,61 +44,36 @@ SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        mesh_size: of the shells in m.
-        plays: 2Δ in m.
-        loads: over the paper's.
-        pad: length and width in m.
-        coordinates: of each segment of shells in fewer of them.
-        duration: in s.
-    """
-
-    mesh_size: float = 0.2
-    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)
-    loads: Sequence[float] = (1.0, 3.0, 10.0)
-    pad: tuple[float, float] = (0.1, 0.06)
-    coordinates: Sequence[int] = (10, 20)
-    duration: float = 5.0
+    mesh_size: float = 0.2  # of the shells in m
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  # 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  # over the paper's
+    pad: tuple[float, float] = (0.1, 0.06)  # length and width in m
+    coordinates: Sequence[int] = (10, 20)  # of each segment of shells in fewer of them
+    duration: float = 5.0  # in s
 
 
-@dataclass(frozen=True, slots=True)
-class Moved:
-    """A model over all points.
+def move_all(
+    systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
+) -> dict[str, list[Moved]]:
+    """Each system's motions of so many s at all points."""
+    return {
+        name: side_by_side(
+            partial(Moved.of, duration=duration), (at_point(system, point) for point in points)
+        )
+        for name, system in systems.items()
+    }
 
-    Args:
-        tips: (num_points, num_times) in m.
-        peaks: (num_points,) heights of the first ones in m.
-        seconds: that all motions have taken, on one core each.
-    """
 
-    tips: Array
-    peaks: Array
-    seconds: float
+def tips_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+    """(num_points,) the tip's largest distance as a part of the shell's range."""
+    return np.array([one.tip_off(other) for one, other in zip(moved, shell, strict=True)])
 
-    @classmethod
-    def of(cls, system: GapSystem, points: Sequence[Point], duration: float) -> Moved:
-        """From rest, in s."""
 
-        def one(point: Point) -> tuple[Array, float, float]:
-            begin = perf_counter()
-            motion = move(at_point(system, point), duration)
-            seconds = perf_counter() - begin
-            heights = peak_heights(motion)
-            return np.asarray(motion.data["tip"].values), (heights or [np.nan])[0], seconds
-
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            tips, peaks, seconds = zip(*pool.map(one, points), strict=True)
-        return cls(np.array(tips), np.array(peaks), sum(seconds))
-
-    def off(self, shell: Moved) -> Array:
-        """(num_points,) the tip's largest distance as a part of the shell's range."""
-        return np.asarray(np.abs(self.tips - shell.tips).max(axis=1) / np.ptp(shell.tips, axis=1))
-
-    def peaks_off(self, shell: Moved) -> Array:
-        """(num_points,) relative errors of the first peaks."""
-        return np.asarray(np.abs(self.peaks / shell.peaks - 1.0))
+def peaks_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+    """(num_points,) relative errors of the first peaks; NaN without one."""
+    return np.array([one.peaks_off(other)[0] for one, other in zip(moved, shell, strict=True)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,16 +90,16 @@ class Compared:
     where: str
     points: Sequence[Point]
     systems: Mapping[str, GapSystem]
-    moved: Mapping[str, Moved]
+    moved: Mapping[str, Sequence[Moved]]
     seconds: tuple[float, float]
 
     def off(self, name: str) -> Array:
-        """(num_points,) see :class:`Moved`."""
-        return self.moved[name].off(self.moved[SHELL])
+        """(num_points,) of the tip."""
+        return tips_off(self.moved[name], self.moved[SHELL])
 
     def peaks_off(self, name: str) -> float:
         """The worst of all points that have a first peak."""
-        return float(np.nanmax(self.moved[name].peaks_off(self.moved[SHELL])))
+        return float(np.nanmax(peaks_off(self.moved[name], self.moved[SHELL])))
 
     def frequencies_off(self, name: str, count: int) -> float:
         """The worst relative error of the first frequencies with the joints pressed."""
@@ -139,44 +110,42 @@ class Compared:
         ]
         return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
 
-    def rows(self) -> list[Sequence[Cell]]:
+    def rows(self) -> Iterator[Sequence[Cell]]:
         """A row of every model."""
-        plain = self.moved[PLAIN].seconds
-        return [
-            (
+        seconds = {name: sum(one.seconds for one in moved) for name, moved in self.moved.items()}
+        for name, system in self.systems.items():
+            if name == SHELL:
+                continue
+            off = self.off(name)
+            yield (
                 self.where,
                 name,
-                self.systems[name].num_modes,
-                100.0 * self.off(name).max(),
-                100.0 * float(np.median(self.off(name))),
-                str(self.points[int(self.off(name).argmax())]),
+                system.num_modes,
+                100.0 * off.max(),
+                100.0 * float(np.median(off)),
+                str(self.points[int(off.argmax())]),
                 100.0 * self.peaks_off(name),
                 100.0 * self.frequencies_off(name, OF_SPRINGS),
-                moved.seconds / plain,
+                seconds[name] / seconds[PLAIN],
             )
-            for name, moved in self.moved.items()
-            if name != SHELL
-        ]
 
-    def proofs(self) -> list[Proof]:
+    def proofs(self) -> Iterator[Proof]:
         """What is asked of springs and of fields."""
-        source = "the shell that calibrates it"
-        found = []
         for name, allowed, count in (
             (SPRUNG, SPRINGS, OF_SPRINGS),
             (WITH_FIELDS, FIELDED, OF_FIELDS),
         ):
-            worst, point = self.off(name).max(), self.points[int(self.off(name).argmax())]
+            off = self.off(name)
+            point = self.points[int(off.argmax())]
             for what, value, bar in (
                 (f"tip, part of its range, worst of {len(self.points)} points ({point})",
-                 float(worst), allowed),
+                 float(off.max()), allowed),
                 ("first tip peak, worst of all", self.peaks_off(name), PEAK),
                 (f"first {count} frequencies, joints pressed", self.frequencies_off(name, count),
                  FREQUENCY),
             ):  # fmt: skip
-                title = f"beam {name}, {self.where}: {what}"
-                found.append(Proof(title, value, 0.0, "", "other code", source, bar))
-        return found
+                held: Held = ("other code", "the shell that calibrates it", bar)
+                yield Proof(f"beam {name}, {self.where}: {what}", value, 0.0, "", *held)
 
 
 def calibrated(case: Case, model: Model, fields: bool) -> Model:
@@ -194,9 +163,6 @@ def calibrated(case: Case, model: Model, fields: bool) -> Model:
 
 def measure(case: Case, where: str, sizes: Sizes) -> Compared:
     """All models at all points."""
-    from mpi4py import MPI
-
-    boom = build_boom(case)
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
     models = {
         SHELL: shell,
@@ -205,18 +171,13 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
         SPRUNG: calibrated(case, shell, fields=False),
         WITH_FIELDS: calibrated(case, shell, fields=True),
     }
-    built: dict[str, Built] = {}
-    with TemporaryDirectory(prefix="protractile-") as scratch:
-        cache = Cache(Path(scratch) / "cache")
-        for name, model in models.items():
-            tools = workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
-            built[name] = build(case, boom, model, tools)
+    built = all_built(case, models)
     systems = {name: one.system for name, one in built.items()}
     for count in sizes.coordinates:
-        fewer, _ = condensed(systems[SHELL], count * len(boom.segments))
+        fewer, _ = condensed(systems[SHELL], count * len(case.segments))
         systems[f"section fields, {count} coordinates a segment"] = fewer
-    points = [Point(*point) for point in product(sizes.plays, sizes.loads)]
-    moved = {name: Moved.of(system, points, sizes.duration) for name, system in systems.items()}
+    points = Point.each(sizes.plays, sizes.loads)
+    moved = move_all(systems, points, sizes.duration)
     reduction = built[SHELL].seconds["reduction"]
     calibration = built[SHELL].seconds["far field"] + built[SPRUNG].seconds["calibration"]
     return Compared(where, points, systems, moved, (reduction, calibration))
@@ -224,20 +185,15 @@ def measure(case: Case, where: str, sizes: Sizes) -> Compared:
 
 def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
     """A row of every model and way to touch."""
+    columns = {
+        "contact": "", "model": "", "coordinates": ".0f", "tip, worst\n(% of range)": ".2f",
+        "tip, median\n(% of range)": ".2f", "worst at": "", "first peak,\nworst (%)": ".3f",
+        f"first {OF_SPRINGS} frequencies,\npressed (%)": ".3f", "time over\nTimoshenko's": ".2f",
+    }  # fmt: skip
     return Table.of_rows(
         "calibrated-beams",
         "Beams against the shell that calibrates them",
-        {
-            "contact": "",
-            "model": "",
-            "coordinates": ".0f",
-            "tip, worst\n(% of range)": ".2f",
-            "tip, median\n(% of range)": ".2f",
-            "worst at": "",
-            "first peak,\nworst (%)": ".3f",
-            f"first {OF_SPRINGS} frequencies,\npressed (%)": ".3f",
-            "time over\nTimoshenko's": ".2f",
-        },
+        columns,
         [row for one in compared for row in one.rows()],
         (
             f"Plays of {1e3 * min(sizes.plays):g} to {1e3 * max(sizes.plays):g} mm, loads of "
@@ -268,17 +224,15 @@ def plot(compared: Sequence[Compared]) -> Plot:
     """Coordinates of a segment against the worst error."""
     curves = {}
     for one in compared:
+        worst = {
+            name: (system.num_modes / 2.0, 100.0 * float(one.off(name).max()))
+            for name, system in one.systems.items()
+        }
         for name in (PLAIN, SPRUNG):
-            size, off = one.systems[name].num_modes / 2.0, 100.0 * float(one.off(name).max())
-            curves[f"{one.where}: {name}"] = ([size], [off])
-        fielded = [name for name in one.moved if "fields" in name]
-        sizes = [one.systems[name].num_modes / 2.0 for name in fielded]
-        worst = [100.0 * float(one.off(name).max()) for name in fielded]
-        order = np.argsort(sizes)
-        curves[f"{one.where}: section fields"] = (
-            [sizes[i] for i in order],
-            [worst[i] for i in order],
-        )
+            size, off = worst[name]
+            curves[f"{one.where}: {name}"] = [size], [off]
+        sizes, offs = zip(*sorted(worst[name] for name in worst if "fields" in name), strict=True)
+        curves[f"{one.where}: section fields"] = list(sizes), list(offs)
     return Plot(
         "calibrated-beams",
         "Springs bring a beam within 2 % of its shell, fields of the section within 1 %",
@@ -290,7 +244,8 @@ def plot(compared: Sequence[Compared]) -> Plot:
     )
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("calibrated-beams", "Beams that a shell calibrates")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """The paper's boom with friction, near its webs and with pads."""
     sizes = sizes or Sizes()
     case = friction_case()
@@ -301,10 +256,8 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     ):
         tell(where)
         compared.append(measure(touching, where, sizes))
-    return Study(
-        "calibrated-beams",
-        "Beams that a shell calibrates",
-        [summary_table(compared, sizes), *map(point_table, compared)],
-        [proof for one in compared for proof in one.proofs()],
-        [plot(compared)],
-    )
+    yield summary_table(compared, sizes)
+    for one in compared:
+        yield point_table(one)
+        yield from one.proofs()
+    yield plot(compared)

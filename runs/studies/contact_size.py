@@ -8,24 +8,21 @@ what that is worth.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
 from runs.report.tables import Table
-from runs.studies.motions import OUTPUT_STEP, PHASE, finer, friction_case, gap_system, shell_of
+from runs.studies.motions import finer, friction_case, gap_system, move, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 
 if TYPE_CHECKING:
     from shell_model.segment_shell import SegmentShell
@@ -43,25 +40,17 @@ BESIDE = 0.33
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        meshes: edge lengths over the default ones, each half the one before.
-        default: of them, whose motion is taken.
-        lengths: of corners that are pressed, in m.
-        pads: lengths and widths in m.
-        plate: edge lengths in m of the plate's mesh.
-        peak: time in s within which the tip's first peak comes.
-        loads: over the paper's.
-    """
-
+    # Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (1.0, 0.5, 0.25)
-    default: float = 1.0
-    lengths: Sequence[float] = (0.05, 0.1, 0.2)
+    default: float = 1.0  # of them, whose motion is taken
+    lengths: Sequence[float] = (0.05, 0.1, 0.2)  # of corners that are pressed, in m
+    # Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
-    plate: Sequence[float] = (0.0125, 0.00625)
-    peak: float = 0.9
-    loads: Sequence[float] = (1.0, 10.0)
+    plate: Sequence[float] = (0.0125, 0.00625)  # edge lengths in m of the plate's mesh
+    peak: float = 0.9  # time in s within which the tip's first peak comes
+    loads: Sequence[float] = (1.0, 10.0)  # over the paper's
 
 
 class Contact(NamedTuple):
@@ -150,39 +139,36 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     """The tip's first peak in m under each load, on the default mesh."""
     model = finer(shell_of(contact.case), sizes.default)
     system = gap_system(contact.case, build_boom(contact.case), model)
-    step = contact_step(system, OUTPUT_STEP, phase=PHASE)
-    loaded = [replace(system, load=load * system.load) for load in sizes.loads]
-    motions = [integrate(Motion(one, sizes.peak, OUTPUT_STEP), step) for one in loaded]
-    return [motion.first_peak()[1] for motion in motions]
+    loaded = (replace(system, load=load * system.load) for load in sizes.loads)
+    return [move(one, sizes.peak).first_peak()[1] for one in loaded]
 
 
-def plate_proofs(sizes: Sizes) -> list[Proof]:
+def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
     """A wall under a patch beside its edge."""
     from shell_model.verification.pressed_plate import flange
 
-    source = "Reissner and Mindlin's plate, by Ritz's method"
-    return [
-        Proof(f"{edges} plate under a patch beside its edge, mesh of {1e3 * size:g} mm",
-              NANO * flange(edges).shell(size), NANO * flange(edges).theory(), UNIT,
-              "analytic", source, ALLOWED)
-        for edges in ("simply supported", "clamped")
-        for size in sizes.plate
-    ]  # fmt: skip
+    held: Held = ("analytic", "Reissner and Mindlin's plate, by Ritz's method", ALLOWED)
+    for edges in ("simply supported", "clamped"):
+        pressed = flange(edges)
+        for size in sizes.plate:
+            what = f"{edges} plate under a patch beside its edge, mesh of {1e3 * size:g} mm"
+            yield Proof(what, NANO * pressed.shell(size), NANO * pressed.theory(), UNIT, *held)
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("contact-size", "What walls give way where segments touch")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
-    tell("plates")
-    proofs = plate_proofs(sizes)
-    tell("support")
-    held = [NANO * value for value in supported(friction_case(), sizes.meshes)]
-    stations = [x for x, _ in build_boom(friction_case()).stations]
     default = sizes.meshes.index(sizes.default)
-    finer_by = f"edges {1.0 / sizes.meshes[-1]:g} times as short"
+    held: Held = ("other code", f"edges {1.0 / sizes.meshes[-1]:g} times as short", ALLOWED)
+    tell("plates")
+    yield from plate_proofs(sizes)
+    tell("support")
+    values = [NANO * value for value in supported(friction_case(), sizes.meshes)]
     what = "local compliance, elastic support, at 2 m"
-    proofs.append(Proof(what, held[default], held[-1], UNIT, "other code", finer_by, ALLOWED))
-    rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, held)]
+    yield Proof(what, values[default], values[-1], UNIT, *held)
+    stations = [x for x, _ in build_boom(friction_case()).stations]
+    rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, values)]
     for contact in contacts_of(friction_case(), sizes):
         tell(contact.name)
         local = NANO * np.array([squeezed(contact, part) for part in sizes.meshes])
@@ -191,19 +177,16 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
         for x, values in zip(stations, local.T.tolist(), strict=True):
             found.append(Refined(f"{contact.name}, {x:g} m", UNIT, sizes.meshes, values))
             what = f"local compliance, {contact.name}, at {x:g} m"
-            proofs.append(
-                Proof(what, values[default], values[-1], UNIT, "other code", finer_by, ALLOWED)
-            )
-    of_size = Table.of_rows(
+            yield Proof(what, values[default], values[-1], UNIT, *held)
+    columns = {
+        "pressed": "", "along the boom\n(m)": ".3g", "across\n(m)": ".3g",
+        **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},
+        **{f"first tip peak\nload × {load:g} (mm)": ".1f" for load in sizes.loads},
+    }  # fmt: skip
+    yield Table.of_rows(
         "contact-size",
         "What the size of a contact means",
-        {
-            "pressed": "",
-            "along the boom\n(m)": ".3g",
-            "across\n(m)": ".3g",
-            **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},
-            **{f"first tip peak\nload × {load:g} (mm)": ".1f" for load in sizes.loads},
-        },
+        columns,
         rows,
         (
             "The paper's boom with its friction, default mesh. Corners are pressed where webs meet "
@@ -213,6 +196,4 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     )
     title = "Local compliance on ever finer meshes"
     note = "Edges are those of the default mesh, all of them longer or shorter by the same factor."
-    of_mesh = refined_table("local-compliance", title, found, "edges × {:g}", (note,))
-    heading = "What walls give way where segments touch"
-    return Study("contact-size", heading, [of_size, of_mesh], proofs)
+    yield refined_table("local-compliance", title, found, "edges × {:g}", (note,))

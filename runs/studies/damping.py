@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.report.tables import Table
 from runs.studies.motions import gap_system, model_of, without_friction
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 
 # Booms, and their cases.
 BOOMS = {
@@ -99,30 +100,28 @@ class PressedBoom:
         return float(decrement / np.hypot(2.0 * np.pi, decrement)), run.energy_residual
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("damping", "Damping ratios asked for and measured")
+def study(tell: Tell) -> Iterator[Part]:
     """Every boom and model at every ratio."""
-    rows, proofs, residuals = [], [], []
-    decrement = "logarithmic decrement 2πζ/√(1 − ζ²)"
-    for name, path, model in (
-        (f"{boom}, {model}", CASES / file, model)
-        for boom, file in BOOMS.items()
-        for model in MODELS
-    ):
+    rows, residuals = [], []
+    held: Held = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
+    for (boom, file), model in product(BOOMS.items(), MODELS):
+        name = f"{boom}, {model}"
         tell(name)
-        pressed = PressedBoom.of(_system(path, model))
+        pressed = PressedBoom.of(_system(CASES / file, model))
         farthest = f"damping ratio of {name}: the mode of the first {MODES} that is farthest off"
         for ratio in RATIOS:
             swings = np.array([pressed.measured(ratio, mode) for mode in range(MODES)])
             residuals.append(float(swings[:, 1].max()))
             worst = 100.0 * float(swings[np.abs(swings[:, 0] - ratio).argmax(), 0])
             rows.append((name, 100.0 * ratio, *(100.0 * swings[:, 0])))
-            proofs.append(Proof(farthest, worst, 100.0 * ratio, "%", "analytic", decrement, 0.05))
-    residual, source = "energy residual of these swings, the largest", "conservation of energy"
-    proofs.append(Proof(residual, max(residuals), 0.0, "", "analytic", source, 1.0e-4))
+            yield Proof(farthest, worst, 100.0 * ratio, "%", *held)
+    residual = "energy residual of these swings, the largest"
+    held = ("analytic", "conservation of energy", 1.0e-4)
+    yield Proof(residual, max(residuals), 0.0, "", *held)
     modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
     columns = {"boom": "", "asked\n%": ".3g", **modes}
-    table = Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
-    return Study("damping", "Damping ratios asked for and measured", [table], proofs)
+    yield Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
 
 
 def _system(path: Path, name: str) -> GapSystem:

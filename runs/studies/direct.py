@@ -9,8 +9,8 @@ paper loads it, near webs, and once with pads under ten times the load.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
@@ -24,10 +24,12 @@ from runs.pipeline.motion import Plan
 from runs.report.tables import Table
 from runs.studies.motions import friction_case, gap_system, lasting, loaded, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
 
 # Allowed of the tip, as a part of its range.
 ALLOWED = 0.005
+
+METHOD = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
 
 # Length and width in m of the pads under so many times the paper's load.
 PAD, LOAD = (0.1, 0.06), 10.0
@@ -40,24 +42,18 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        mesh: edge length in m.
-        duration: of the motion in s.
-        steps: of the direct integration in s, parts of the output step, each half the one before.
-        hard_steps: the same with pads under ``LOAD`` times the load.
-        shifts, moments: of the reduction with more coordinates.
-        fine_step: of its splitting in s.
-    """
-
-    mesh: float = 0.2
-    duration: float = 1.0
+    mesh: float = 0.2  # edge length in m
+    duration: float = 1.0  # of the motion in s
+    # Of the direct integration in s, parts of the output step, each half the one before.
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
+    # The same with pads under ``LOAD`` times the load.
     hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
+    # Of the reduction with more coordinates.
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
     moments: int = 5
-    fine_step: float = 5.0e-7
+    fine_step: float = 5.0e-7  # of its splitting in s
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,14 +78,8 @@ class Run:
     energy_residual: float
     seconds: float
 
-    def apart(self, other: Run, span: float) -> float:
-        """Largest difference of the tips, as a part of a span in m."""
-        return float(np.abs(self.tip - other.tip).max()) / span
 
-
-def runs_of(
-    case: Case, steps: Sequence[float], sizes: Sizes, tell: Callable[[str], None]
-) -> list[Run]:
+def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> list[Run]:
     """The shell reduced, with more coordinates, then unreduced from the longest step on.
 
     Args:
@@ -109,28 +99,26 @@ def runs_of(
     laws = contact_laws(case, model)
     krylov = KrylovOptions(sizes.shifts, sizes.moments)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
-    larger = ShellOptions(sizes.mesh, model.contact_line, krylov=krylov)
+    finer = replace(options, krylov=krylov)
+
+    def impulse(forces: Array) -> float:
+        return float(np.abs(forces).sum()) * output_step
 
     tell("the reduced shell")
+    larger = reduce_boom(boom, laws, finer, MPI.COMM_SELF).system
     found = []
     for how, system, step in (
         ("reduced", gap_system(case, boom, model), model.step),
-        (
-            "reduced, more coordinates",
-            reduce_boom(boom, laws, larger, MPI.COMM_SELF).system,
-            sizes.fine_step,
-        ),
+        ("reduced, more coordinates", larger, sizes.fine_step),
     ):
         plan = Plan.of(system, case, model.model_copy(update={"step": step}))
         plan.warm()
         start = perf_counter()
         motion = plan.trajectory(lambda part: None)
-        seconds = perf_counter() - start
-        tip, taken = np.asarray(motion.data["tip"].values), float(motion.data.attrs["step"])
-        impulse = float(np.abs(motion.data["contact_force"].values).sum()) * output_step
-        found.append(
-            Run(how, system.num_modes, taken, tip, impulse, motion.energy_residual, seconds)
-        )
+        seconds, data = perf_counter() - start, motion.data
+        tip, pushed = np.asarray(data["tip"].values), impulse(data["contact_force"].values)
+        taken, residual = float(data.attrs["step"]), motion.energy_residual
+        found.append(Run(how, system.num_modes, taken, tip, pushed, residual, seconds))
     full = assemble_boom(boom, {"z": laws}, options, MPI.COMM_SELF)
     for step in steps:
         tell(f"the unreduced shell, step {step:g} s")
@@ -138,14 +126,12 @@ def runs_of(
         direct = integrate_directly(full, sizes.duration, step, output_step)
         seconds = perf_counter() - start
         tip, residual = direct.observed["tip"], direct.energy_residual
-        impulse = float(np.abs(direct.contact_forces).sum()) * output_step
-        found.append(Run("unreduced", full.num_dofs, direct.step, tip, impulse, residual, seconds))
+        pushed = impulse(direct.contact_forces)
+        found.append(Run("unreduced", full.num_dofs, direct.step, tip, pushed, residual, seconds))
     return found
 
 
-def compare(
-    runs: Sequence[Run], name: str, where: str, sizes: Sizes
-) -> tuple[Table, list[Proof], list[Plot]]:
+def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Part]:
     """All motions of a case beside the reduced shell's and beside that with more coordinates.
 
     Args:
@@ -155,26 +141,23 @@ def compare(
         sizes: what is measured.
     """
     reduced, larger, *direct = runs
-    span = float(np.ptp(reduced.tip))
-    off, off_larger = ([run.apart(other, span) for run in runs] for other in (reduced, larger))
+    off, off_larger = (
+        [float(np.abs(run.tip - other.tip).max() / np.ptp(reduced.tip)) for run in runs]
+        for other in (reduced, larger)
+    )
     # Of each halving, and by least squares over all.
     halvings = np.log2(np.divide(off_larger[2:-1], off_larger[3:]))
     steps = [run.step for run in direct]
     order = float(np.polyfit(np.log(steps), np.log(off_larger[2:]), 1)[0])
-    table = Table.of_rows(
+    columns = {
+        "shell": "", "unknowns": ".0f", "step (µs)": ".4g", "off the reduced (%)": ".2g",
+        "off more coordinates (%)": ".2g", "order": ".2f", "contact impulse (N s)": ".4g",
+        "energy residual": ".2g", "wall (s)": ".2g",
+    }  # fmt: skip
+    yield Table.of_rows(
         name,
         f"The reduced shell against the unreduced one, {where}, mesh of {sizes.mesh:g} m",
-        {
-            "shell": "",
-            "unknowns": ".0f",
-            "step (µs)": ".4g",
-            "off the reduced (%)": ".2g",
-            "off more coordinates (%)": ".2g",
-            "order": ".2f",
-            "contact impulse (N s)": ".4g",
-            "energy residual": ".2g",
-            "wall (s)": ".2g",
-        },
+        columns,
         [
             (run.how, run.unknowns, 1.0e6 * run.step, 100.0 * one, 100.0 * other, halving,
              run.impulse, run.energy_residual, run.seconds)
@@ -191,60 +174,47 @@ def compare(
         ),
     )  # fmt: skip
     on = f"{where}, mesh of {sizes.mesh:g} m, {sizes.duration:g} s"
-    method = "all degrees of freedom, generalised-α (Chung and Hulbert 1993)"
+    method: Held = ("other code", METHOD, ALLOWED)
     tips = f"tip of the reduced shell off the unreduced one, part of its range, {on}"
-    proofs = [
-        Proof(tips, off[-1], 0.0, "", "other code", method, ALLOWED, order),
-        *(
-            Proof(f"energy residual of the {run.how} shell, {on}", run.energy_residual, 0.0, "",
-                  "analytic", "conservation of energy", ENERGY_BOUND)
-            for run in (reduced, direct[-1])
-        ),
-    ]  # fmt: skip
+    yield Proof(tips, off[-1], 0.0, "", *method, order)
+    conserved: Held = ("analytic", "conservation of energy", ENERGY_BOUND)
+    for run in (reduced, direct[-1]):
+        what = f"energy residual of the {run.how} shell, {on}"
+        yield Proof(what, run.energy_residual, 0.0, "", *conserved)
     times = np.linspace(0.0, sizes.duration, reduced.tip.size).tolist()
-    plots = [
-        Plot(
-            f"{name}-tips",
-            f"The reduced shell moves as the unreduced one does, {where}",
-            "time (s)",
-            "tip (mm)",
-            {
-                f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * run.tip).tolist())
-                for run in (reduced, direct[-1])
-            },
-            "Tip of the paper's boom with friction, by two integrators: one curve hides the other.",
-            logarithmic=False,
-        ),
-        Plot(
-            f"{name}-steps",
-            f"Finer steps close in on the reduced shell, {where}",
-            "step of the direct integration (s)",
-            "tip difference (part of range)",
-            {
-                "from the reduced shell": (steps, off[2:]),
-                "from the one with more coordinates": (steps, off_larger[2:]),
-            },
-            f"The largest over {sizes.duration:g} s. Where the curves part, it is the reduction: "
-            f"more coordinates change the tip by {100.0 * off[1]:.2g} % of its range.",
-        ),
-    ]
-    return table, proofs, plots
+    yield Plot(
+        f"{name}-tips",
+        f"The reduced shell moves as the unreduced one does, {where}",
+        "time (s)",
+        "tip (mm)",
+        {
+            f"{run.how}, {run.unknowns} unknowns": (times, (1.0e3 * run.tip).tolist())
+            for run in (reduced, direct[-1])
+        },
+        "Tip of the paper's boom with friction, by two integrators: one curve hides the other.",
+        logarithmic=False,
+    )
+    yield Plot(
+        f"{name}-steps",
+        f"Finer steps close in on the reduced shell, {where}",
+        "step of the direct integration (s)",
+        "tip difference (part of range)",
+        {
+            "from the reduced shell": (steps, off[2:]),
+            "from the one with more coordinates": (steps, off_larger[2:]),
+        },
+        f"The largest over {sizes.duration:g} s. Where the curves part, it is the reduction: "
+        f"more coordinates change the tip by {100.0 * off[1]:.2g} % of its range.",
+    )
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("direct", "The reduction against the full order")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """The paper's boom with friction, all its degrees of freedom against few coordinates."""
     sizes = sizes or Sizes()
     case = friction_case()
-    padded = loaded(with_pads(case, *PAD), LOAD)
+    runs = runs_of(case, sizes.steps, sizes, tell)
+    yield from compare(runs, "direct-webs", "near webs", sizes)
     hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
-    found = [
-        compare(runs_of(case, sizes.steps, sizes, tell), "direct-webs", "near webs", sizes),
-        compare(runs_of(padded, sizes.hard_steps, sizes, tell), "direct-pads", hard, sizes),
-    ]
-    return Study(
-        "direct",
-        "The reduction against the full order",
-        [table for table, _, _ in found],
-        [proof for _, proofs, _ in found for proof in proofs],
-        [plot for _, _, plots in found for plot in plots],
-    )
+    runs = runs_of(loaded(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, tell)
+    yield from compare(runs, "direct-pads", hard, sizes)

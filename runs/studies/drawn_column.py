@@ -8,7 +8,7 @@ for the load.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
@@ -34,7 +34,7 @@ from runs.studies.second_order import (
     STEEL,
     STIFFNESS,
 )
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Proof, Tell, titled
 
 INNER = BoxSection(height=0.16, width=0.11, flange=0.006, web=0.006)
 LAW = PowerContact(1e8, 1.0, clearance=5e-3)
@@ -62,17 +62,15 @@ def column(force: float) -> Boom:
     return Boom(pressed, (joint,))
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("drawn_column", "A column that is pressed ever farther as a segment is drawn out in it")
+def study(tell: Tell) -> Iterator[Proof]:
     """Every model of beams."""
-    proofs: list[Proof] = []
     for name, build in MODELS.items():
         tell(name)
-        proofs += _proofs(name, build)
-    title = "A column that is pressed ever farther as a segment is drawn out in it"
-    return Study("drawn_column", title, proofs=proofs)
+        yield from _proofs(name, build)
 
 
-def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Sequence[Proof]:
+def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[Proof]:
     in_shear = name == "shear-flexible elements"
     euler = 0.25 * np.pi**2 * STIFFNESS / END**2
     critical = euler / (1.0 + euler / SHEAR_STIFFNESS) if in_shear else euler
@@ -84,19 +82,15 @@ def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Sequence[
     pressed = f"pressed over {END:g} of its {LENGTH:g} m"
     what = f"critical force of a cantilever that is drawn to be {pressed}, {name}"
     found = factor * SHARE * critical
-    proofs = [Proof(what, found, critical, "N", "analytic", source, ALLOWED)]
-    if not in_shear:
-        system = gap_system(boom, models, [LAW])
-        heads = [
-            _compliance(system.standing(time).stiffness, system.observers["head"].row)
-            for time in (0.0, 1.0)
-        ]
-        what = f"deflection of its head under {SHARE:g} P_cr over {{:g}} m, {name}"
-        source = "beam-column, Timoshenko and Gere 1961"
-        for x, head in zip((START, END), heads, strict=True):
-            bent = _bent(x, SHARE * critical)
-            proofs.append(Proof(what.format(x), head, bent, "m/N", "analytic", source, ALLOWED))
-    return proofs
+    yield Proof(what, found, critical, "N", "analytic", source, ALLOWED)
+    if in_shear:
+        return
+    system = gap_system(boom, models, [LAW])
+    held: Held = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
+    for time, x in ((0.0, START), (1.0, END)):
+        head = _compliance(system.standing(time).stiffness, system.observers["head"].row)
+        what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
+        yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *held)
 
 
 def _compliance(stiffness: Array, row: Array) -> float:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.pipeline.motion import Plan
 from runs.studies.motions import finer, friction_case, gap_system, lasting, shell_of
 from runs.studies.refined import Refined, error_plot, refined_table
-from runs.studies.study import Study
+from runs.studies.study import Part, Tell, titled
 
 # What is allowed of the default mesh, relative to the limit of infinitely fine ones.
 ALLOWED = 0.01
@@ -29,23 +29,19 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        meshes: edge lengths over the default ones, each half the one before, three at least.
-        default: of them, which is judged.
-        duration: of the motion in s.
-        frequencies, peaks: how many of the lowest natural frequencies, of the first tip peaks.
-    """
-
+    # Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
-    default: float = 1.0
-    duration: float = 3.0
+    default: float = 1.0  # of them, which is judged
+    duration: float = 3.0  # of the motion in s
+    # How many of the lowest natural frequencies, of the first tip peaks.
     frequencies: int = 3
     peaks: int = 3
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("mesh", "Meshes of the paper's boom")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Frequencies, flexibilities and tip peaks of the paper's boom on ever finer meshes."""
     sizes = sizes or Sizes()
     case = lasting(friction_case(), sizes.duration)
@@ -60,25 +56,17 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
         Refined(what, unit, sizes.meshes, [result[what, unit] for result in results])
         for what, unit in results[-1]
     ]
+    yield refined_table("meshes", "Meshes, with friction", found, "edges × {:g}", (NOTE,))
     finest = f"edges × {sizes.meshes[-1]:g}"
-    return Study(
+    for one in found:
+        yield one.against_limit(f"{one.what}, default mesh", sizes.default, finest, ALLOWED)
+    yield error_plot(
         "mesh",
-        "Meshes of the paper's boom",
-        [refined_table("meshes", "Meshes, with friction", found, "edges × {:g}", (NOTE,))],
-        [
-            one.against_limit(f"{one.what}, default mesh", sizes.default, finest, ALLOWED)
-            for one in found
-        ],
-        [
-            error_plot(
-                "mesh",
-                "The shell settles as its mesh refines",
-                "edges over the default ones",
-                found,
-                "Relative distance from Richardson's limit of the three finest meshes, for the "
-                "paper's boom with friction.",
-            )
-        ],
+        "The shell settles as its mesh refines",
+        "edges over the default ones",
+        found,
+        "Relative distance from Richardson's limit of the three finest meshes, for the paper's "
+        "boom with friction.",
     )
 
 

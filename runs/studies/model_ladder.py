@@ -6,7 +6,7 @@ One thing after another is changed that the series leaves out and the shell has.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from runs.case.schema import Case
 from runs.report.tables import Table
 from runs.studies.motions import CASE, friction_case, gap_system, model_of, trajectories
 from runs.studies.pads import flexibility_table
-from runs.studies.study import Study
+from runs.studies.study import Tell, titled
 
 # From the paper's series to the shell: what is changed, and the model that has it.
 LADDER = (
@@ -57,17 +57,15 @@ def rungs(case: Case) -> Table:
         return float(distance[early].max()), float(distance.max())
 
     before = [names[0], *names[:-1]]
+    columns = {
+        "with": "", "model": "", f"changes, to {EXPLAINED:g} s (% of the range)": ".2f",
+        "changes, to the end": ".2f", f"left to the shell, to {EXPLAINED:g} s": ".2f",
+        "left, to the end": ".2f",
+    }  # fmt: skip
     return Table.of_rows(
         "ladder",
         "From the paper's series to the shell",
-        {
-            "with": "",
-            "model": "",
-            f"changes, to {EXPLAINED:g} s (% of the range)": ".2f",
-            "changes, to the end": ".2f",
-            f"left to the shell, to {EXPLAINED:g} s": ".2f",
-            "left, to the end": ".2f",
-        },
+        columns,
         [
             (what, name, *apart(name, previous), *apart(name, names[-1]))
             for (what, name), previous in zip(LADDER, before, strict=True)
@@ -75,12 +73,12 @@ def rungs(case: Case) -> Table:
     )
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("model-ladder", "From the paper's series to the shell")
+def study(tell: Tell) -> Iterator[Table]:
     """The ladder, and how much more the shell's stations give way than a beam's."""
     case = friction_case()
     tell("the models from the series to the shell")
-    steps = rungs(case)
+    yield rungs(case)
     tell("flexibility of the stations")
     shell = gap_system(case, build_boom(case), model_of(case, "shell"))
-    flexibility = flexibility_table([("the shell's stations", case, shell)])
-    return Study("model-ladder", "From the paper's series to the shell", [steps, flexibility])
+    yield flexibility_table([("the shell's stations", case, shell)])

@@ -7,10 +7,12 @@ It is regular, so that two runs may be compared from moment to moment.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,9 +26,10 @@ from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import of_kind
+from runs.case.kinds.model import Built, of_kind
 from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case, Model
+from runs.folder.cache import Cache
 from runs.pipeline.models import build, workshop
 from runs.pipeline.motion import Plan
 
@@ -37,6 +40,9 @@ OUTPUT_STEP = 1.0e-3
 # third of it changes the tip by 0.02 % of its range in a second at the paper's play and ten times
 # its load.
 PHASE = 0.2
+
+_Task = TypeVar("_Task")
+_Found = TypeVar("_Found")
 
 # At which the flexibility of a station is read: below all elastic modes, above the rigid ones.
 SLOW = 5.0
@@ -81,6 +87,21 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
         return build(case, boom, model, workshop(MPI.COMM_SELF, folder)).system
 
 
+def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
+    """Several models of a case, each shell reduced once."""
+    from mpi4py import MPI
+
+    boom = build_boom(case)
+    with TemporaryDirectory(prefix="protractile-") as scratch:
+        cache = Cache(Path(scratch) / "cache")
+        return {
+            name: build(
+                case, boom, model, workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
+            )
+            for name, model in models.items()
+        }
+
+
 def finer(shell: ShellTable, part: float) -> ShellTable:
     """The shell with all edges this part of what they were."""
     tolerance = shell.contact_tolerance
@@ -94,8 +115,13 @@ def trajectories(case: Case) -> list[Trajectory]:
     """The motions of all models of a case, in their order, side by side on the cores."""
     boom = build_boom(case)
     plans = [Plan.of(gap_system(case, boom, m), case, m) for m in case.models]
+    return side_by_side(lambda plan: plan.trajectory(lambda part: None), plans)
+
+
+def side_by_side(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
+    """What each task gives, as many at a time as there are cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(lambda plan: plan.trajectory(lambda part: None), plans))
+        return list(pool.map(move, tasks))
 
 
 def without_friction(system: GapSystem) -> GapSystem:

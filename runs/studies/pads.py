@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import Patch, pads
+from geometry.contact_places import pads
 from runs.case.build import build_boom
 from runs.case.contact import PadTable
 from runs.case.schema import Case
@@ -42,14 +42,14 @@ def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
         alone = compliance(system, upper_rows(system)) - rigid
         rows.append((name, *together, *(alone - together)))
     stations = contacts[0][2].stations
+    columns = {
+        "contact": "", **{f"both flanges together\nat {x:g} m (m/N)": ".3g" for x in stations},
+        **{f"one flange more\nat {x:g} m (m/N)": ".3g" for x in stations},
+    }  # fmt: skip
     return Table.of_rows(
         "flexibility",
         "Flexibility of the stations beyond Timoshenko's beam",
-        {
-            "contact": "",
-            **{f"both flanges together\nat {x:g} m (m/N)": ".3g" for x in stations},
-            **{f"one flange more\nat {x:g} m (m/N)": ".3g" for x in stations},
-        },
+        columns,
         rows,
         (
             f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",
@@ -61,16 +61,14 @@ def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
 
 def _middles(boom: Boom) -> Boom:
     """The boom with its stations in the middles of their pads."""
-    places = {pad.x: pad.patch for pad in pads(boom)}
+    places = {
+        pad.x: pad.x if pad.patch is None else 0.5 * (pad.patch.start + pad.patch.end)
+        for pad in pads(boom)
+    }
     joints = tuple(
-        replace(joint, stations=tuple(_middle(x, places[x]) for x in joint.stations))
-        for joint in boom.joints
+        replace(joint, stations=tuple(places[x] for x in joint.stations)) for joint in boom.joints
     )
     return replace(boom, joints=joints)
-
-
-def _middle(x: float, covered: Patch | None) -> float:
-    return x if covered is None else 0.5 * (covered.start + covered.end)
 
 
 def upper_rows(system: GapSystem) -> Array:
@@ -82,8 +80,10 @@ def upper_rows(system: GapSystem) -> Array:
     return np.asarray(at @ system.rows / at.sum(axis=1, keepdims=True))
 
 
-def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> list[Proof]:
+def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iterator[Proof]:
     """A pressed pad's resultant: how large, and where.
+
+    What its row reads of a rigid motion is the work of its force, read the other way.
 
     Args:
         case: with the pads.
@@ -91,20 +91,15 @@ def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> list
         system: the shell with them.
     """
     boom = build_boom(case)
-    (joint,) = boom.joints
-    start, _ = boom.overlap(joint)
-    row = upper_rows(system)[0]
-
-    def reads(tail: float, tip: float) -> float:
-        """What the row reads of a rigid motion; the work of its force, read the other way."""
-        return float(row @ rigid_motion(system, tail, tip))
-
-    force = "force of a uniformly pressed pad, over its law's"
-    place, middle = "its place along the boom, pad at the overlap's start", start + 0.5 * size[0]
-    return [
-        Proof(force, reads(1.0, 1.0), 1.0, "", "analytic", "pressure times area", 1.0e-6),
-        Proof(place, reads(start, boom.tip), middle, "m", "analytic", "middle of the pad", 1.0e-6),
-    ]
+    start, _ = boom.overlap(boom.joints[0])
+    for what, tail, tip, asked, unit, source in (
+        ("force of a uniformly pressed pad, over its law's", 1.0, 1.0, 1.0, "",
+         "pressure times area"),
+        ("its place along the boom, pad at the overlap's start", start, boom.tip,
+         start + 0.5 * size[0], "m", "middle of the pad"),
+    ):  # fmt: skip
+        found = float(upper_rows(system)[0] @ rigid_motion(system, tail, tip))
+        yield Proof(what, found, asked, unit, "analytic", source, 1.0e-6)
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:

@@ -133,16 +133,14 @@ def refined_table(
         mesh: name of a mesh of a size, "edges × {:g}" say.
     """
     sizes = max((one.sizes for one in found), key=len)
+    columns = {
+        "quantity": "", **{mesh.format(size): ".6g" for size in sizes}, "order": ".2f",
+        "limit": ".6g", "GCI (%)": ".3f",
+    }  # fmt: skip
     return Table.of_rows(
         name,
         title,
-        {
-            "quantity": "",
-            **{mesh.format(size): ".6g" for size in sizes},
-            "order": ".2f",
-            "limit": ".6g",
-            "GCI (%)": ".3f",
-        },
+        columns,
         [
             (
                 f"{one.what} ({one.unit})" if one.unit else one.what,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +14,7 @@ from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from runs.studies.motions import finer, friction_case, model_of, trajectories
-from runs.studies.study import Study
+from runs.studies.study import Tell, titled
 
 # The models whose integration is refined, and parts of the case's own step.
 STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")
@@ -96,28 +96,24 @@ def refine(
     return Refinement(f"{model.name}: {what}", list(sizes), unit, apart.tolist(), peaks)
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("refinement", "How the motion settles")
+def study(tell: Tell) -> Iterator[Table]:
     """Steps of all integrations, terms, elements, meshes, each of the case with friction."""
     case = friction_case()
+    steps = {name: model_of(case, name).step or case.time.step or np.nan for name in STEPPED}
     rows: list[Sequence[Cell]] = []
-
-    def add(
-        what: str, name: str, sizes: Sequence[float], unit: str, at: Callable[[Model, float], Model]
-    ) -> None:
+    for what, name, sizes, unit, at in (
+        *(("step", name, [part * own for part in STEPS], "s", with_step)
+          for name, own in steps.items()),
+        ("terms of each segment", "kantorovich-24", TERMS, "", _with_terms),
+        ("element length", "beam-fe", ELEMENTS, "m", _with_elements),
+        ("element length", "timoshenko", ELEMENTS, "m", _with_elements),
+        ("mesh size", "shell", MESHES, "m", _with_mesh),
+    ):  # fmt: skip
         tell(f"{name}: {what}")
         model = model_of(case, name)
-        if at is not with_step:
-            model = with_step(model, FINE_STEP)
-        rows.extend(refine(case, what, model, sizes, unit, at).rows)
-
-    for name in STEPPED:
-        own = model_of(case, name).step or case.time.step
-        assert own is not None
-        add("step", name, [factor * own for factor in STEPS], "s", with_step)
-    add("terms of each segment", "kantorovich-24", TERMS, "", _with_terms)
-    add("element length", "beam-fe", ELEMENTS, "m", _with_elements)
-    add("element length", "timoshenko", ELEMENTS, "m", _with_elements)
-    add("mesh size", "shell", MESHES, "m", _with_mesh)
+        stepped = model if at is with_step else with_step(model, FINE_STEP)
+        rows += refine(case, what, stepped, sizes, unit, at).rows
     columns = {
         "refined": "",
         "size": ".3g",
@@ -126,8 +122,7 @@ def study(tell: Callable[[str], None]) -> Study:
         "first tip peak (mm)": ".2f",
     }
     title = "Convergence of the paper's example with friction"
-    table = Table.of_rows("convergence", title, columns, rows, (NOTE,))
-    return Study("refinement", "How the motion settles", [table])
+    yield Table.of_rows("convergence", title, columns, rows, (NOTE,))
 
 
 def with_step(model: Model, step: float) -> Model:

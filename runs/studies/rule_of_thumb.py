@@ -16,11 +16,8 @@ with its friction, tell what that is worth.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import product
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -29,12 +26,19 @@ from geometry.arrays import Array
 from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.pipeline.models import build, workshop
 from runs.pipeline.proportions import static_tip
 from runs.report.tables import Cell, Table
-from runs.studies.calibrated_beams import EULER, PLAIN, SHELL, SPRUNG, Moved, calibrated
-from runs.studies.motions import model_of, shell_of
+from runs.studies.calibrated_beams import (
+    EULER,
+    PLAIN,
+    SHELL,
+    SPRUNG,
+    calibrated,
+    move_all,
+    peaks_off,
+    tips_off,
+)
+from runs.studies.motions import all_built, model_of, shell_of
 from runs.studies.proportions import (
     BESIDE,
     BOOMS,
@@ -44,7 +48,7 @@ from runs.studies.proportions import (
     Proportions,
     boom_case,
 )
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 from runs.studies.working_load import Point
 
 # What a wall gives near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed length.
@@ -65,23 +69,15 @@ LOST = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        booms: by their names.
-        mesh_size: of the shells in m.
-        contact_tolerance: of the same.
-        plays: 2Δ in m.
-        loads: over the weight at 1 m/s²; under less of them friction stops the boom early.
-        periods: of the boom without play that the motions last.
-    """
-
-    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)
-    mesh_size: float = 0.2
-    contact_tolerance: float = 0.04
-    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)
+    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  # by their names
+    mesh_size: float = 0.2  # of the shells in m
+    contact_tolerance: float = 0.04  # of the same
+    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  # 2Δ in m
+    # Over the weight at 1 m/s²; under less of them friction stops the boom early.
     loads: Sequence[float] = (10.0,)
-    periods: float = 8.0
+    periods: float = 8.0  # of the boom without play that the motions last
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,8 +210,6 @@ def _moving_tip(system: GapSystem) -> dict[float, float]:
 
 def measure(given: Proportions, sizes: Sizes) -> Measured:
     """Move the beams and the shell of a boom."""
-    from mpi4py import MPI
-
     case = boom_case(given)
     rule = Rule.of(given, case)
     fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.contact_tolerance}
@@ -226,22 +220,17 @@ def measure(given: Proportions, sizes: Sizes) -> Measured:
         PLAIN: model_of(case, "timoshenko"),
         SPRUNG: calibrated(case, shell, fields=False),
     }
-    points = [Point(*point) for point in product(sizes.plays, sizes.loads)]
+    points = Point.each(sizes.plays, sizes.loads)
     duration = sizes.periods / rule.frequency
-    systems: dict[str, GapSystem] = {}
-    with TemporaryDirectory(prefix="protractile-") as scratch:
-        cache = Cache(Path(scratch) / "cache")
-        for name, model in models.items():
-            tools = workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
-            systems[name] = build(case, build_boom(case), model, tools).system
-    moved = {name: Moved.of(system, points, duration) for name, system in systems.items()}
-    beams = {name: one for name, one in moved.items() if name != SHELL}
+    systems = {name: one.system for name, one in all_built(case, models).items()}
+    beams = move_all(systems, points, duration)
+    of_shell = beams.pop(SHELL)
     return Measured(
         rule,
         points,
         duration,
-        {name: one.peaks_off(moved[SHELL]) for name, one in beams.items()},
-        {name: one.off(moved[SHELL]) for name, one in beams.items()},
+        {name: peaks_off(moved, of_shell) for name, moved in beams.items()},
+        {name: tips_off(moved, of_shell) for name, moved in beams.items()},
         inner_bending(systems[SHELL], systems[SPRUNG]),
     )
 
@@ -259,42 +248,25 @@ def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
     return np.array([off / rule for off, rule in pairs if np.isfinite(off) and rule < LOST])
 
 
-def _scatter(ratio: Array) -> float:
-    """The factor by which ratios are off their geometric mean, one standard deviation."""
-    return float(np.exp(np.log(ratio).std()))
-
-
 def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
     """What each boom's beams lack, by the rule and as its shell without play has it."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         rule, given = one.rule, sizes.booms[name]
-        first = [one.peaks[beam][0] for beam in (EULER, PLAIN, SPRUNG)]
-        rows.append(
-            (
-                name,
-                given.length / HEIGHT,
-                given.overlap / HEIGHT,
-                *(100.0 * part / rule.deflection for part in (rule.shear, rule.pressed)),
-                *(100.0 * rule.lacking(beam) for beam in (EULER, PLAIN)),
-                *(100.0 * off for off in first),
-            )
-        )
+        parts = [part / rule.deflection for part in (rule.shear, rule.pressed)]
+        parts += [rule.lacking(beam) for beam in (EULER, PLAIN)]
+        parts += [one.peaks[beam][0] for beam in (EULER, PLAIN, SPRUNG)]
+        sizes_of = given.length / HEIGHT, given.overlap / HEIGHT
+        rows.append((name, *sizes_of, *(100.0 * part for part in parts)))
+    columns = {
+        "boom": "", "length /\nheight": ".1f", "overlap /\nheight": ".2f", "shear\n(%)": ".2f",
+        "pressed\nwalls (%)": ".2f", f"rule,\n{EULER} (%)": ".2f", f"rule,\n{PLAIN} (%)": ".2f",
+        f"{EULER}\n(%)": ".2f", f"{PLAIN}\n(%)": ".2f", f"{SPRUNG}\n(%)": ".3f",
+    }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-booms",
         "What beams lack of the tip's static deflection, and how far their first peaks are off",
-        {
-            "boom": "",
-            "length /\nheight": ".1f",
-            "overlap /\nheight": ".2f",
-            "shear\n(%)": ".2f",
-            "pressed\nwalls (%)": ".2f",
-            f"rule,\n{EULER} (%)": ".2f",
-            f"rule,\n{PLAIN} (%)": ".2f",
-            f"{EULER}\n(%)": ".2f",
-            f"{PLAIN}\n(%)": ".2f",
-            f"{SPRUNG}\n(%)": ".3f",
-        },
+        columns,
         rows,
         (f"Without play, under {sizes.loads[0]:g} times the weight at 1 m/s² at once.",),
     )
@@ -306,20 +278,17 @@ def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
     for tips, what in ((False, "first peak"), (True, "tip")):
         for name in (EULER, PLAIN):
             ratio = ratios(found, name, tips)
-            mean = float(np.exp(np.log(ratio).mean()))
-            rows.append((what, name, ratio.size, mean, _scatter(ratio), ratio.min(), ratio.max()))
+            # By one standard deviation of the logarithms.
+            mean, scatter = np.exp([np.log(ratio).mean(), np.log(ratio).std()]).tolist()
+            rows.append((what, name, ratio.size, mean, scatter, ratio.min(), ratio.max()))
+    columns = {
+        "error of": "", "beam": "", "points": ".0f", "geometric\nmean": ".2f",
+        "scatter,\na factor": ".2f", "least": ".2f", "most": ".2f",
+    }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-scatter",
         "Measured errors over those of the rule",
-        {
-            "error of": "",
-            "beam": "",
-            "points": ".0f",
-            "geometric\nmean": ".2f",
-            "scatter,\na factor": ".2f",
-            "least": ".2f",
-            "most": ".2f",
-        },
+        columns,
         rows,
         (
             f"{len(found)} booms, plays of {', '.join(f'{1e3 * play:g}' for play in sizes.plays)} "
@@ -330,63 +299,47 @@ def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
     )
 
 
-def _too_high(one: Measured) -> float:
-    return one.bending[SPRUNG] / one.bending[SHELL] - 1.0
-
-
-def _flanges(one: Measured, given: Proportions) -> float:
-    return FLANGES * (one.bending[SHELL] / flange_frequency(boom_case(given))) ** 2
-
-
 def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
     """What springs leave, at the worst point of each boom, and the flanges' part in it."""
+    rows: list[Sequence[Cell]] = []
+    for name, one in found.items():
+        bending, flange = one.bending[SHELL], flange_frequency(boom_case(sizes.booms[name]))
+        parts = (
+            float(np.nanmax(one.peaks[SPRUNG])),
+            one.tips[SPRUNG].max(),
+            one.bending[SPRUNG] / bending - 1.0,
+            FLANGES * (bending / flange) ** 2,
+        )
+        peak, tip, too_high, of_flanges = (100.0 * part for part in parts)
+        rows.append((name, peak, tip, bending, too_high, of_flanges))
+    columns = {
+        "boom": "", "first peak,\nworst (%)": ".3f", "tip,\nworst (%)": ".2f",
+        "free bending of the\ninner segment (Hz)": ".1f", "too high\n(%)": ".2f",
+        "of the\nflanges (%)": ".2f",
+    }  # fmt: skip
     return Table.of_rows(
         "rule-of-thumb-springs",
         "A beam with the stiffness and springs of the shell",
-        {
-            "boom": "",
-            "first peak,\nworst (%)": ".3f",
-            "tip,\nworst (%)": ".2f",
-            "free bending of the\ninner segment (Hz)": ".1f",
-            "too high\n(%)": ".2f",
-            "of the\nflanges (%)": ".2f",
-        },
-        [
-            (
-                name,
-                100.0 * float(np.nanmax(one.peaks[SPRUNG])),
-                100.0 * one.tips[SPRUNG].max(),
-                one.bending[SHELL],
-                100.0 * _too_high(one),
-                100.0 * _flanges(one, sizes.booms[name]),
-            )
-            for name, one in found.items()
-        ],
+        columns,
+        rows,
         ("Flanges: 0.065 times the square of the frequency over that of a strip on the webs.",),
     )
 
 
-def proofs(found: Sequence[Measured]) -> list[Proof]:
+def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
     """The rule against the shells, and springs."""
-    told = [
-        Proof(
-            f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
-            f"{len(found)} booms",
-            float(np.exp(np.log(ratios(found, name, tips=False)).mean())),
-            1.0,
-            "",
-            "other code",
-            "shells",
-            MEAN_OFF,
-        )
-        for name in (EULER, PLAIN)
-    ]
+    booms = f"{len(found)} booms"
+    for name in (EULER, PLAIN):
+        what = f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
+        mean = float(np.exp(np.log(ratios(found, name, tips=False)).mean()))
+        yield Proof(what + booms, mean, 1.0, "", "other code", "shells", MEAN_OFF)
     worst = max(float(np.nanmax(one.peaks[SPRUNG])) for one in found)
-    what = f"beam {SPRUNG}: first tip peak, worst of {len(found)} booms"
-    return [*told, Proof(what, worst, 0.0, "", "other code", "the shell that calibrates it", PEAK)]
+    held: Held = ("other code", "the shell that calibrates it", PEAK)
+    yield Proof(f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *held)
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("rule-of-thumb", "A rule of thumb for beams")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Booms of other proportions than the paper's, with its friction."""
     sizes = sizes or Sizes()
     found = {}
@@ -394,9 +347,7 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
         tell(name)
         found[name] = measure(given, sizes)
     every = list(found.values())
-    return Study(
-        "rule-of-thumb",
-        "A rule of thumb for beams",
-        [boom_table(found, sizes), scatter_table(every, sizes), springs_table(found, sizes)],
-        proofs(every),
-    )
+    yield boom_table(found, sizes)
+    yield scatter_table(every, sizes)
+    yield springs_table(found, sizes)
+    yield from proofs(every)

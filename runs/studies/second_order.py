@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from mpi4py import MPI
 
 from beam_model.boom_modes import critical_factor
+from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
@@ -19,7 +21,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.load import Load
 from geometry.section import BoxSection
-from runs.studies.study import Proof, Study
+from runs.studies.study import Proof, Tell, titled
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 
@@ -59,17 +61,20 @@ class Model:
     in_shear: bool
     allowed: float
 
+    def factor(self, boom: Boom) -> float:
+        """The critical one of its axial force."""
+        _, factor = self.of(boom)
+        assert factor is not None
+        return factor
+
     def critical(self, euler: float) -> float:
         """Critical force in N of a column that shear bends, from Euler's (Engesser 1891)."""
         return euler / (1.0 + euler / SHEAR_STIFFNESS) if self.in_shear else euler
 
 
-def elements(boom: Boom, theory: str = "euler-bernoulli") -> tuple[GapSystem, float | None]:
+def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem, float | None]:
     """Beam elements of either theory, without rotary inertia."""
-    shear = theory == "timoshenko"
-    models = finite_element_segments(
-        boom, ELEMENT, "timoshenko" if shear else "euler-bernoulli", rotary_inertia=False
-    )
+    models = finite_element_segments(boom, ELEMENT, theory, rotary_inertia=False)
     return gap_system(boom, models, ()), critical_factor(boom, models)
 
 
@@ -89,7 +94,7 @@ MODELS: Mapping[str, Model] = {
     "elements": Model(elements, in_shear=False, allowed=1e-4),
     "series": Model(series, in_shear=False, allowed=1e-4),
     "shear-flexible elements": Model(
-        lambda boom: elements(boom, "timoshenko"), in_shear=True, allowed=1e-4
+        partial(elements, theory="timoshenko"), in_shear=True, allowed=1e-4
     ),
     "shell": Model(shell, in_shear=True, allowed=5e-3),
 }
@@ -114,40 +119,32 @@ def column(
     return Boom(pressed, (), loads)
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("second_order", "Columns: buckling, swing and deflection")
+def study(tell: Tell) -> Iterator[Proof]:
     """Every model."""
-    proofs = []
     for name, model in MODELS.items():
         tell(name)
-        proofs += [
-            *_euler(name, model), _greenhill(name, model), _swing(name, model), _berry(name, model),
-        ]  # fmt: skip
-    return Study("second_order", "Columns: buckling, swing and deflection", proofs=proofs)
+        yield from _euler(name, model)
+        yield from (proof(name, model) for proof in (_greenhill, _swing, _berry))
 
 
-def _euler(name: str, model: Model) -> list[Proof]:
-    proofs = []
+def _euler(name: str, model: Model) -> Iterator[Proof]:
+    source = "Euler 1744, shear by Engesser 1891" if model.in_shear else "Euler 1744"
     for case, (supports, part) in EULER.items():
         # Not known in closed form for a column that shear bends.
         if model.in_shear and case == "clamped and hinged":
             continue
         reference = model.critical(part * CRITICAL)
         force = SHARE * reference
-        _, factor = model.of(column(supports, force))
-        assert factor is not None
-        source = "Euler 1744, shear by Engesser 1891" if model.in_shear else "Euler 1744"
+        found = model.factor(column(supports, force)) * force
         what = f"critical force of a {case} column, {name}"
-        proofs.append(
-            Proof(what, factor * force, reference, "N", "analytic", source, model.allowed)
-        )
-    return proofs
+        yield Proof(what, found, reference, "N", "analytic", source, model.allowed)
 
 
 def _greenhill(name: str, model: Model) -> Proof:
     gravity = 9.80665
     mass = BOX.mass_per_length(STEEL.density)
-    _, factor = model.of(column((CLAMP,), 0.0, gravity))
-    assert factor is not None
+    factor = model.factor(column((CLAMP,), 0.0, gravity))
     found = factor * mass * gravity * LENGTH**3 / STIFFNESS
     what = f"ρ g A L³/(E J) of a column that buckles under its own weight, {name}"
     # Shear, of which Greenhill does not know, takes 0.16 % here.

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +15,7 @@ from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.splitting import integrate
+from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Joint, Material, Segment, Support
 from geometry.contact_places import Stretch
 from geometry.mesh import mesh_segment
@@ -23,12 +24,12 @@ from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
 from geometry.shear_flow import shear_centre
 from runs.report.tables import Table
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment_shell import assemble_segment
+from shell_model.segment_shell import SegmentShell, assemble_segment
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
@@ -182,11 +183,7 @@ def ring_of_shell(section: Section, length: float, size: float) -> float:
     stretch = Stretch.on(segment, 0.5 * length, length)
     corners = CornerLines(shell)
     top, bottom = (corners.deflection(stretch, "z", 0.0, side) for side in (1, -1))
-    force = shell.row(top - bottom)
-    solve = ShiftedSolver(shell, 0.01)
-    moved = float(force @ solve(force[:, None])[:, 0])
-    solve.destroy()
-    return moved
+    return gives_way(shell, shell.row(top - bottom))
 
 
 def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
@@ -196,36 +193,37 @@ def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
     shell = assemble_segment(
         MPI.COMM_SELF, segment, mesh_segment(section, {"start": 0.0, "end": ARM}, size)
     )
-    force = shell.force(ARM, direction)
+    return gives_way(shell, shell.force(ARM, direction))
+
+
+def gives_way(shell: SegmentShell, force: Array) -> float:
+    """In m/N along a force of 1 N, (num_dofs,)."""
     solve = ShiftedSolver(shell, 0.01)
     moved = float(force @ solve(force[:, None])[:, 0])
     solve.destroy()
     return moved
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("sections", "Polygons of flat plates")
+def study(tell: Tell) -> Iterator[Part]:
     """Numbers of sections, rings, and first peaks of booms."""
-    proofs = list(_numbers())
+    yield from _numbers()
     rows: list[tuple[str | float, ...]] = []
+    frame: Held = ("other code", "plane frame, Przemieniecki 1968", 3.0e-3)
     for name, (outer, inner) in SHAPES.items():
         tell(f"{name}: a ring, and booms with and without collars")
         bars, shell = ring_of_bars(outer, RING), ring_of_shell(outer, RING, RING_MESH)
         what = f"{name}, ring of {1e3 * RING:g} mm pressed between its flats, gives way"
-        frame = "plane frame, Przemieniecki 1968"
-        proofs.append(Proof(what, 1e6 * shell, 1e6 * bars, "1e-6 m/N", "other code", frame, 3.0e-3))
+        yield Proof(what, 1e6 * shell, 1e6 * bars, "1e-6 m/N", *frame)
         plain = boom_of(outer, inner)
-        beam = beam_peak(plain)
-        peaks = [shell_peak(boom) for boom in (plain, collared(plain, COLLAR))]
-        over = [part for peak in peaks for part in (1e3 * peak, 100.0 * (peak / beam - 1.0))]
-        rows.append((name, 1e3 * beam, *over))
-        what = f"{name}s with collars: first peak of the tip"
-        proofs.append(
-            Proof(
-                what, 1e3 * peaks[1], 1e3 * beam, "mm", "other code", "Timoshenko elements", 0.015
-            )
-        )
+        beam = 1e3 * beam_peak(plain)
+        peaks = [1e3 * shell_peak(boom) for boom in (plain, collared(plain, COLLAR))]
+        over = [part for peak in peaks for part in (peak, 100.0 * (peak / beam - 1.0))]
+        rows.append((name, beam, *over))
+        elements: Held = ("other code", "Timoshenko elements", ALLOWED[name])
+        yield Proof(f"{name}s with collars: first peak of the tip", peaks[1], beam, "mm", *elements)
     tell("turned sections")
-    proofs += _turned()
+    yield from _turned()
     columns = {
         "sections": "",
         "beam\nmm": ".4g",
@@ -234,8 +232,7 @@ def study(tell: Callable[[str], None]) -> Study:
         "with collars\nmm": ".4g",
         "so off the\nbeam (%)": ".2f",
     }
-    table = Table.of_rows("sections", "Folded booms and their beams", columns, rows, (NOTE,))
-    return Study("sections", "Polygons of flat plates", [table], proofs)
+    yield Table.of_rows("sections", "Folded booms and their beams", columns, rows, (NOTE,))
 
 
 def _numbers() -> Iterator[Proof]:
@@ -251,14 +248,15 @@ def _numbers() -> Iterator[Proof]:
     ):
         what = f"polygon of {sides} plates: {what}"
         yield Proof(what, value, reference, unit, "analytic", "thin tube", 1.0e-3)
+    program = "finite elements, sectionproperties 3.10.2"
     for name, known in ELSEWHERE.items():
         for key, reference in known.items():
             what, value = f"{name}: {key.replace('_', ' ')}", getattr(SHAPES[name][0], key)
             unit = "m²" if key.endswith("shear_area") else "m⁴"
-            yield Proof(what, value, reference, unit, "external", _PROGRAM, 1.0e-3)
+            yield Proof(what, value, reference, unit, "external", program, 1.0e-3)
     _, height = shear_centre(SHAPES["U"][0].plates)
     what = "U: shear centre above the centroid"
-    yield Proof(what, 1e3 * height, 1e3 * CENTRE_OF_U, "mm", "external", _PROGRAM, 1.0e-2)
+    yield Proof(what, 1e3 * height, 1e3 * CENTRE_OF_U, "mm", "external", program, 1.0e-2)
 
 
 def _turned() -> Iterator[Proof]:
@@ -274,6 +272,3 @@ def _turned() -> Iterator[Proof]:
             moved = tip_of_shell(other, direction, ARM_MESH)
             what = f"{name} {how} of a cantilever of shell"
             yield Proof(what, 1e6 * moved, 1e6 * upright, "1e-6 m/N", "other code", "upright", 1e-6)
-
-
-_PROGRAM = "finite elements, sectionproperties 3.10.2"

@@ -8,7 +8,7 @@ one another's mid-lines, where a solid has corners.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 
 from runs.report.tables import Cell, Table
 from runs.studies.box_errors import (
@@ -26,7 +26,7 @@ from runs.studies.box_errors import (
 from runs.studies.box_pair import PROBES, SPEED, pair, solid_parts
 from runs.studies.refined import refined_table
 from runs.studies.solid_itself import solid_proofs
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
 
 # Errors of which the table says how thick a wall they take.
 LIMITS = (0.01, 0.02, 0.05)
@@ -48,15 +48,14 @@ SIZES_NOTE = "On the coarsest of the three meshes, which refine the edges around
 
 def error_table(comparisons: Sequence[Comparison]) -> Table:
     """The shell's error at every thickness, its order, and where it passes each limit."""
+    columns = {
+        "quantity": "", **{f"{one.walls}\n(%)": ".2f" for one in comparisons}, "order in t": ".2f",
+        **{f"{100.0 * limit:g} %\nat t/b": "" for limit in LIMITS},
+    }  # fmt: skip
     return Table.of_rows(
         "solid-error",
         "Error of the shell against a solid",
-        {
-            "quantity": "",
-            **{f"{one.walls}\n(%)": ".2f" for one in comparisons},
-            "order in t": ".2f",
-            **{f"{100.0 * limit:g} %\nat t/b": "" for limit in LIMITS},
-        },
+        columns,
         [
             (
                 what.what,
@@ -123,59 +122,44 @@ def blow_table(comparisons: Sequence[Comparison]) -> Table:
     )
 
 
-def shell_proofs(thinnest: Comparison) -> list[Proof]:
+def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
     """The shell of the thinnest walls against the solid."""
     walls, source = f"walls of {thinnest.walls}", "elasticity in space"
-    settled = [
-        (what.what, thinnest.shell[what].settled, thinnest.solid[what].settled, what)
-        for what in EVERY
-    ]
-    return [
-        *(
-            Proof(f"{name}, {walls}", shell, solid, of.unit, "other code", source, of.allowed)
-            for name, shell, solid, of in settled
-        ),
-        *(
-            Proof(f"blow, {what}, {walls}", shell, solid, unit, "other code", source,
-                  ALLOWED_OF_A_BLOW)
-            for what, unit, shell, solid in _blows(thinnest)
-        ),
-    ]  # fmt: skip
+    for of in EVERY:
+        shell, solid = thinnest.shell[of].settled, thinnest.solid[of].settled
+        held: Held = ("other code", source, of.allowed)
+        yield Proof(f"{of.what}, {walls}", shell, solid, of.unit, *held)
+    held = ("other code", source, ALLOWED_OF_A_BLOW)
+    for what, unit, shell, solid in _blows(thinnest):
+        yield Proof(f"blow, {what}, {walls}", shell, solid, unit, *held)
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("solid", "Shells against solids")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """The shell against a solid, and the solid against formulas."""
     sizes = sizes or Sizes()
     tell("the solid against formulas")
-    itself = solid_proofs()
+    yield from solid_proofs()
     comparisons = compare(sizes, tell)
+    yield from shell_proofs(comparisons[0])
+    yield error_table(comparisons)
+    yield refinements(comparisons)
+    yield other_sizes(sizes)
+    yield blow_table(comparisons)
+    yield _error_plot("frequencies", FREQUENCIES, comparisons)
+    yield _error_plot("compliances", COMPLIANCES, comparisons)
     thickest = comparisons[-1]
-    return Study(
-        "solid",
-        "Shells against solids",
-        [
-            error_table(comparisons),
-            refinements(comparisons),
-            other_sizes(sizes),
-            blow_table(comparisons),
-        ],
-        [*itself, *shell_proofs(comparisons[0])],
-        [
-            _error_plot("frequencies", FREQUENCIES, comparisons),
-            _error_plot("compliances", COMPLIANCES, comparisons),
-            Plot(
-                "solid-blow",
-                f"A blow of boxes with walls of {thickest.walls}",
-                "time (ms)",
-                "contact force (kN)",
-                {
-                    name: ((1.0e3 * struck.time).tolist(), (1.0e-3 * struck.force).tolist())
-                    for name, struck in zip(("shell", "solid"), thickest.blows, strict=True)
-                },
-                "The inner box hits the outer one's head; the force of the thickest walls.",
-                logarithmic=False,
-            ),
-        ],
+    yield Plot(
+        "solid-blow",
+        f"A blow of boxes with walls of {thickest.walls}",
+        "time (ms)",
+        "contact force (kN)",
+        {
+            name: ((1.0e3 * struck.time).tolist(), (1.0e-3 * struck.force).tolist())
+            for name, struck in zip(("shell", "solid"), thickest.blows, strict=True)
+        },
+        "The inner box hits the outer one's head; the force of the thickest walls.",
+        logarithmic=False,
     )
 
 

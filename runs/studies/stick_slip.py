@@ -7,8 +7,9 @@ again along the way that what is drawn has gone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from dynamics.trajectory import Trajectory
 from dynamics.travel import SCurve, Stroke
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI
+from protractile.cases import change
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
@@ -25,7 +27,7 @@ from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.report.tables import Table
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 
 # m in kg, k in N/m, R in N; static friction is so many times that.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
@@ -40,10 +42,13 @@ ROPE = Pulled(MASS, STIFFNESS, sticking=STICKING)
 CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("stick_slip", "Drives of a given stiffness, on which segments stick and slip")
+def study(tell: Tell) -> Iterator[Part]:
     """Cycles, critical speeds, the stiff limit; and the boom along the way that it has gone."""
     tell("a mass on a spring")
-    proofs = [*_cycle(), *map(_critical, RATIOS), _stiff()]
+    yield from _cycle()
+    yield from map(_critical, RATIOS)
+    yield _stiff()
     columns = {
         "stiffness\nN/m": ".3g", "sticks": "", "slips by\nmm": ".3g",
         "lags at most\n% of overlap": ".3g", "contact forces off\n% of the largest": ".2g",
@@ -57,13 +62,7 @@ def study(tell: Callable[[str], None]) -> Study:
     for stiffness in ROPES:
         tell(f"the paper's boom on {stiffness:g} N/m")
         rows.append(_one_way(stiffness))
-    table = Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
-    return Study(
-        "stick_slip",
-        "Drives of a given stiffness, on which segments stick and slip",
-        [table],
-        proofs,
-    )
+    yield Table.of_rows("one-way", "What lags behind its drive", columns, rows, notes)
 
 
 def _drawn(pulled: Pulled, speed: float, time: Array) -> Followed:
@@ -81,7 +80,7 @@ def _cycle() -> Iterator[Proof]:
     found = _drawn(ROPE, SPEED, time)
     still = found.drawn_speed == 0.0
     begins = time[1:][still[:-1] & ~still[1:]]
-    told, source = found.told, CYCLE
+    told = found.told
     for what, value, reference, unit, allowed in (
         ("period", (begins[9] - begins[0]) / 9.0, period, "s", 1.0e-3),
         ("slip", told.slip, 2.0 * radius, "m", 1.0e-4),
@@ -90,9 +89,8 @@ def _cycle() -> Iterator[Proof]:
         ("largest acceleration", told.acceleration, omega**2 * radius, "m/s²", 1.0e-3),
         ("energy not accounted for", told.energy_residual, 0.0, "", 1.0e-10),
     ):
-        yield Proof(
-            f"cycle: {what}", float(value), float(reference), unit, "analytic", source, allowed
-        )
+        held: Held = ("analytic", CYCLE, allowed)
+        yield Proof(f"cycle: {what}", float(value), float(reference), unit, *held)
 
 
 def _critical(ratio: float) -> Proof:
@@ -105,8 +103,8 @@ def _critical(ratio: float) -> Proof:
         lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
         sticks = _drawn(pulled, middle, np.linspace(0.0, lasting, 2001)).told.sticks
         low, high = (middle, high) if sticks else (low, middle)
-    what, source = f"critical speed at ζ = {ratio:g}", "the swing that just comes back to it"
-    return Proof(what, high, expected, "m/s", "analytic", source, 1.0e-4)
+    held: Held = ("analytic", "the swing that just comes back to it", 1.0e-4)
+    return Proof(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *held)
 
 
 def _stiff() -> Proof:
@@ -115,10 +113,9 @@ def _stiff() -> Proof:
     pulled = Pulled(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = follow(pulled, way, time, np.full(time.size, FRICTION))
     asked = FRICTION + MASS * 0.25 * np.pi
-    what, force = "force of a stiff drive", float(found.drive_force[-1])
-    return Proof(
-        what, force, float(asked), "N", "analytic", "friction and m s̈ of the drive", 1.0e-4
-    )
+    held: Held = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
+    force = float(found.drive_force[-1])
+    return Proof("force of a stiff drive", force, float(asked), "N", *held)
 
 
 def _one_way(stiffness: float) -> list[float]:
@@ -150,24 +147,15 @@ def _moved(plan: Plan) -> Trajectory:
 def _weighing(stiffness: float) -> Case:
     """The paper's boom under its weight, at rest until it is drawn out by a rope."""
     case = reading.load(str(CASES / "drawn-out.toml"))
-    mass = 10.0 * (case.segments[1].mass_per_length or 0.0)
-    drive = case.joints[0].drive
-    assert drive is not None
+    masses = [one.mass_per_length or 0.0 for one in case.segments]
     rope = {
-        "time": 20.0, "stiffness": stiffness, "dashpot": 0.01 * np.sqrt(stiffness * mass),
+        "time": 20.0,
+        "stiffness": stiffness,
+        "dashpot": float(0.01 * np.sqrt(stiffness * 10.0 * masses[1])),
         "static_friction": 0.3,
-    }  # fmt: skip
-    joint = case.joints[0].model_copy(update={"play": 0.0, "drive": drive.model_copy(update=rope)})
-    segments = tuple(
-        one.model_copy(update={"load": -GRAVITY * (one.mass_per_length or 0.0)})
-        for one in case.segments
-    )
-    return case.model_copy(
-        update={
-            "segments": segments,
-            "joints": (joint,),
-            "models": case.models[:1],
-            "start": case.start.model_copy(update={"state": "equilibrium"}),
-            "time": case.time.model_copy(update={"duration": 21.0}),
-        }
-    )
+    }
+    changed: dict[str, Any] = {f"joint.drive.{key}": value for key, value in rope.items()}
+    for number, mass in enumerate(masses, start=1):
+        changed[f"segment[{number}].load"] = -GRAVITY * mass
+    changed |= {"joint.play": 0.0, "start.state": "equilibrium", "time.duration": 21.0}
+    return change(case, **changed).model_copy(update={"models": case.models[:1]})

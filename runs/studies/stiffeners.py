@@ -9,7 +9,7 @@ pins far from the joint, and Timoshenko's beam on the same is taken off.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from runs.studies.motions import friction_case
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Part, Proof, Tell, titled
 from shell_model.cross_section import Outline, Row
 from shell_model.reduction.products import quadratic_form
 from shell_model.segment_shell import SegmentShell
@@ -33,23 +33,17 @@ ALLOWED = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        mesh: edge length in m on the boom.
-        collar: length of a collar in m.
-        collars, diaphragms: their thicknesses in m.
-        pins: x in m at which the inner segment is held for its static flexibility.
-        frequencies: how many of the lowest ones.
-        plate_mesh, ring_mesh: edge lengths in m where an analytic value is the reference.
-    """
-
-    mesh: float = 0.05
-    collar: float = 0.3
+    mesh: float = 0.05  # edge length in m on the boom
+    collar: float = 0.3  # length of a collar in m
+    # Thicknesses of both in m.
     collars: Sequence[float] = (0.005, 0.010, 0.020)
     diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
+    # x in m at which the inner segment is held for its static flexibility.
     pins: tuple[float, float] = (14.0, 19.0)
-    frequencies: int = 3
+    frequencies: int = 3  # how many of the lowest ones
+    # Edge lengths in m where an analytic value is the reference.
     plate_mesh: float = 0.04
     ring_mesh: float = 0.0125
 
@@ -83,32 +77,25 @@ class Variant:
 def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
     """What each of two segments has → the segment with it: nothing first, the most last."""
     outer, inner = boom.segments
-    head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
+
+    def at_head(thickness: float) -> tuple[Collar]:
+        return (Collar(outer.end - sizes.collar, outer.end, thickness),)
+
+    def at_tail(thickness: float) -> tuple[Collar]:
+        return (Collar(inner.start, inner.start + sizes.collar, thickness),)
 
     def plate(thickness: float) -> tuple[Diaphragm]:
         return (Diaphragm(inner.start, thickness),)
 
-    both = (Collar(*tail, max(sizes.collars)),)
-    return {
-        "nothing": outer,
-        **{
-            f"collar at the head, {1e3 * t:g} mm": replace(outer, collars=(Collar(*head, t),))
-            for t in sizes.collars
-        },
-    }, {
-        "nothing": inner,
-        **{
-            f"collar at the tail, {1e3 * t:g} mm": replace(inner, collars=(Collar(*tail, t),))
-            for t in sizes.collars
-        },
-        **{
-            f"diaphragm in the tail, {1e3 * t:g} mm": replace(inner, diaphragms=plate(t))
-            for t in sizes.diaphragms
-        },
-        "the thickest of both": replace(
-            inner, collars=both, diaphragms=plate(max(sizes.diaphragms))
-        ),
-    }
+    outers, inners = {"nothing": outer}, {"nothing": inner}
+    for t in sizes.collars:
+        outers[f"collar at the head, {1e3 * t:g} mm"] = replace(outer, collars=at_head(t))
+        inners[f"collar at the tail, {1e3 * t:g} mm"] = replace(inner, collars=at_tail(t))
+    for t in sizes.diaphragms:
+        inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plate(t))
+    thickest = at_tail(max(sizes.collars)), plate(max(sizes.diaphragms))
+    both = replace(inner, collars=thickest[0], diaphragms=thickest[1])
+    return outers, inners | {"the thickest of both": both}
 
 
 def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
@@ -226,15 +213,15 @@ def _piece(
 def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> Table:
     """One row a variant."""
     flexibility = "both flanges (nm/N)", "one flange more (nm/N)"
+    columns = {
+        "segment, with": "", "mass (kg)": ".1f",
+        **{f"{x:g} m: {what}": ".2f" for x in stations for what in flexibility},
+        **{f"f{k} (Hz)": ".2f" for k in range(1, sizes.frequencies + 1)},
+    }  # fmt: skip
     return Table.of_rows(
         "variants",
         "Collars and diaphragms on the paper's boom",
-        {
-            "segment, with": "",
-            "mass (kg)": ".1f",
-            **{f"{x:g} m: {what}": ".2f" for x in stations for what in flexibility},
-            **{f"f{k} (Hz)": ".2f" for k in range(1, sizes.frequencies + 1)},
-        },
+        columns,
         [one.row for one in found],
         (
             f"Collars are {sizes.collar:g} m long. Static flexibility above the webs, beyond that "
@@ -270,7 +257,7 @@ def sums(
     )
 
 
-def proofs(boom: Boom, sizes: Sizes) -> list[Proof]:
+def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
     """Stiffeners that are simple enough for a formula."""
     inner = boom.segments[1]
     section, material = inner.section, inner.material
@@ -279,42 +266,35 @@ def proofs(boom: Boom, sizes: Sizes) -> list[Proof]:
     what = f"resistance of a diaphragm of {1e3 * t:g} mm to racking"
     value = racking_stiffness(section, material, t, sizes.plate_mesh)
     shear = material.shear_modulus * t * section.width * section.height
-    source = "G t b h of a plate in pure shear"
-    found = [Proof(what, value, shear, "N m", "analytic", source, ALLOWED)]
-    if section.flange == section.web:
-        young, source = material.youngs_modulus, "frame of Timoshenko beams"
-        for thickness, has in (
-            (0.0, "without a collar"),
-            (collar, f"with a collar of {1e3 * collar:g} mm"),
-        ):
-            what = f"flexibility of a ring {has}, per length"
-            value = ring_flexibility(section, young, thickness, sizes.ring_mesh)
-            frame = frame_flexibility(section, young, thickness)
-            found.append(Proof(what, value, frame, "m²/N", "analytic", source, ALLOWED))
-    return found
+    plate: Held = ("analytic", "G t b h of a plate in pure shear", ALLOWED)
+    yield Proof(what, value, shear, "N m", *plate)
+    if section.flange != section.web:
+        return
+    young = material.youngs_modulus
+    beams: Held = ("analytic", "frame of Timoshenko beams", ALLOWED)
+    for thickness, has in (
+        (0.0, "without a collar"),
+        (collar, f"with a collar of {1e3 * collar:g} mm"),
+    ):
+        value = ring_flexibility(section, young, thickness, sizes.ring_mesh)
+        frame = frame_flexibility(section, young, thickness)
+        yield Proof(f"flexibility of a ring {has}, per length", value, frame, "m²/N", *beams)
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("stiffeners", "Collars and diaphragms")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Collars and diaphragms at the joint of the paper's boom."""
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
     stations = boom.joints[0].stations
-
-    def measured(variants: Mapping[str, Segment]) -> list[Variant]:
-        found = []
+    found: list[list[Variant]] = []
+    for variants in stiffened(boom, sizes):
+        found.append([])
         for what, segment in variants.items():
             tell(f"{segment.name}: {what}")
-            found.append(measure(segment, what, stations, sizes))
-        return found
-
-    outer, inner = map(measured, stiffened(boom, sizes))
+            found[-1].append(measure(segment, what, stations, sizes))
+    outer, inner = found
+    yield table([*outer, *inner], stations, sizes)
+    yield sums(outer, inner, stations, sizes)
     tell("a diaphragm in pure shear, and rings")
-    return Study(
-        "stiffeners",
-        "Collars and diaphragms",
-        [
-            table([*outer, *inner], stations, sizes),
-            sums(outer, inner, stations, sizes),
-        ],
-        proofs(boom, sizes),
-    )
+    yield from proofs(boom, sizes)

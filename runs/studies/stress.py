@@ -7,7 +7,7 @@ load: a static state with known moments, and known forces where it touches.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from geometry.mesh import plate_thickness
 from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.reduced_shell import reduce_boom
@@ -44,17 +44,12 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        meshes: edge lengths in m, each half the one before, three at least.
-        default: the one that a run takes unless told otherwise.
-        places: x in m away from contacts.
-    """
-
+    # Edge lengths in m, each half the one before, three at least.
     meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
-    default: float = 0.1
-    places: Sequence[float] = (12.0, 14.0, 16.0)
+    default: float = 0.1  # the one that a run takes unless told otherwise
+    places: Sequence[float] = (12.0, 14.0, 16.0)  # x in m away from contacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,33 +171,29 @@ def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str]
 
 def proofs(
     default: Pressed, reduced: Pressed, near: Mapping[tuple[float, str], Refined], sizes: Sizes
-) -> list[Proof]:
+) -> Iterator[Proof]:
     """The default mesh against a beam, equilibrium, and the limit of the refinement; and the
     reduced shell against the full one.
     """
     mesh, finest = (f"mesh of {size:g} m" for size in (sizes.default, sizes.meshes[-1]))
-    found = []
     for x in sizes.places:
         value, reference = (stress / 1.0e6 for stress in default.top(x))
         what = f"stress of the top at {x:g} m, {mesh}"
-        found.append(Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM))
+        yield Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM)
     what = f"shear force of the webs at {sizes.places[0]:g} m, {mesh}"
-    value, reference = default.shear(sizes.places[0])
-    found.append(Proof(what, value, reference, "N", "analytic", "equilibrium", BEAM))
+    yield Proof(what, *default.shear(sizes.places[0]), "N", "analytic", "equilibrium", BEAM)
+    unreduced: Held = ("other code", "the unreduced shell, of the same mesh", REDUCED)
     for x in default.boom.joints[0].stations:
         at = f"at the contact at {x:g} m"
-        patch, triangle = near[x, "patch"], near[x, "triangle"]
         what = f"von Mises stress of a patch {at}, {mesh}"
-        found.append(patch.against_limit(what, sizes.default, finest, PATCH))
+        yield near[x, "patch"].against_limit(what, sizes.default, finest, PATCH)
         what = f"largest von Mises stress of a triangle {at}, reduced"
-        value = reduced.near(x)[0] / 1.0e6
-        reference = triangle.values[sizes.meshes.index(sizes.default)]
-        source = "the unreduced shell, of the same mesh"
-        found.append(Proof(what, value, reference, "MPa", "other code", source, REDUCED))
-    return found
+        reference = near[x, "triangle"].values[sizes.meshes.index(sizes.default)]
+        yield Proof(what, reduced.near(x)[0] / 1.0e6, reference, "MPa", *unreduced)
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("stress", "Stresses of the inner segment between its contacts")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Stresses of the inner segment of the paper's boom, on ever finer meshes."""
     sizes = sizes or Sizes()
     case = friction_case()
@@ -216,21 +207,14 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
     reduced = Pressed.reduced(boom, laws, sizes.default)
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"
-    default = pressed[sizes.meshes.index(sizes.default)]
-    return Study(
+    yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))
+    yield from proofs(pressed[sizes.meshes.index(sizes.default)], reduced, near, sizes)
+    yield Plot(
         "stress",
-        "Stresses of the inner segment between its contacts",
-        [refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))],
-        proofs(default, reduced, near, sizes),
-        [
-            Plot(
-                "stress",
-                "At a line of contact the mesh makes the stress; over a patch it settles",
-                "mesh size (m)",
-                "von Mises stress (MPa)",
-                {one.what: (one.sizes, one.values) for one in near.values()},
-                "The inner segment of the paper's boom rests on its contacts. Largest von Mises "
-                "stress of a triangle within 0.25 m of each, and of the mean over half a wall.",
-            )
-        ],
+        "At a line of contact the mesh makes the stress; over a patch it settles",
+        "mesh size (m)",
+        "von Mises stress (MPa)",
+        {one.what: (one.sizes, one.values) for one in near.values()},
+        "The inner segment of the paper's boom rests on its contacts. Largest von Mises stress of "
+        "a triangle within 0.25 m of each, and of the mean over half a wall.",
     )

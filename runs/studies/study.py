@@ -3,15 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from functools import wraps
+from typing import Literal, ParamSpec
 
 from runs.report.tables import Plain, Table
+
+# Told which step of a study comes next.
+Tell = Callable[[str], None]
 
 # What a value is held against: a formula, a published value, another code or another theory of
 # this project, or its own earlier value.
 Kind = Literal["analytic", "external", "other code", "non-regression"]
+# The last of a proof's numbers, which several may share: kind, source, and what is allowed.
+Held = tuple[Kind, str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,3 +99,25 @@ class Study:
     def data(self) -> dict[str, list[dict[str, Plain]]]:
         """The numbers of each table by its name, as JSON."""
         return {table.name: table.data for table in self.tables}
+
+
+Part = Table | Proof | Plot
+_Given = ParamSpec("_Given")
+
+
+def titled(
+    name: str, title: str
+) -> Callable[[Callable[_Given, Iterable[Part]]], Callable[_Given, Study]]:
+    """Make a study of what yields its tables, proofs and plots, each in the order of its kind."""
+
+    def titling(parts: Callable[_Given, Iterable[Part]]) -> Callable[_Given, Study]:
+        @wraps(parts)
+        def study(*args: _Given.args, **kwargs: _Given.kwargs) -> Study:
+            found = list(parts(*args, **kwargs))
+            tables = [part for part in found if isinstance(part, Table)]
+            proofs = [part for part in found if isinstance(part, Proof)]
+            return Study(name, title, tables, proofs, [p for p in found if isinstance(p, Plot)])
+
+        return study
+
+    return titling

@@ -23,7 +23,7 @@ from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Material, Segment, Support
 from geometry.section import BoxSection
-from runs.studies.study import Kind, Proof, Study
+from runs.studies.study import Held, Proof, Tell, titled
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 # Thick walls: the section hardly distorts.
@@ -39,6 +39,7 @@ DASHPOT = 2.0e3
 
 # Beams of rigid cross-sections; series lack the bend of moments at the lug; walls give way.
 EXACT, SERIES, WALLS, DECREMENT = 1.0e-6, 1.0e-3, 5.0e-3, 1.0e-4
+LEVERS: Held = ("analytic", "lever arms", EXACT)
 
 
 def lever(cylinder: Cylinder) -> float:
@@ -94,14 +95,16 @@ def decrement(system: GapSystem, position: Array, period: float) -> float:
     return float(np.log(heights[0] / heights[-1]) / (len(heights) - 1))
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("supports", "Hinges, cylinders, springs and dashpots")
+def study(tell: Tell) -> Iterator[Proof]:
     """Statics, frequencies and decrements of single booms; forces and tips of beams and shells."""
-    proofs = [*_luffed(tell), *_turning(tell), *_swinging(tell)]
-    return Study("supports", "Hinges, cylinders, springs and dashpots", [], proofs)
+    yield from _luffed(tell)
+    yield from _turning(tell)
+    yield from _swinging(tell)
 
 
-def _luffed(tell: Callable[[str], None]) -> Iterator[Proof]:
-    boom = Boom((_segment(),), (), (Load(0, "z", TIP_LOAD, LENGTH, Step()),), cylinders=(CYLINDER,))
+def _luffed(tell: Tell) -> Iterator[Proof]:
+    boom = Boom((_segment(),), (), (_PUSHED,), cylinders=(CYLINDER,))
     shear = STEEL.shear_modulus * BOX.shear_area
     for name, shear_stiffness, allowed in (
         ("elements", np.inf, EXACT),
@@ -116,39 +119,35 @@ def _luffed(tell: Callable[[str], None]) -> Iterator[Proof]:
             float(system.observers[one].row @ at_rest) for one in ("cylinder_force", "tip")
         )
         what = f"hinge and inclined cylinder, {name}: "
-        asked = -TIP_LOAD * LENGTH / lever(CYLINDER)
-        bent = TIP_LOAD * tip_compliance(boom.segments[0], CYLINDER, shear_stiffness)
-        yield Proof(
-            f"{what}its force", 1e-3 * force, 1e-3 * asked, "kN", "analytic", "lever arms", EXACT
-        )
-        yield Proof(
-            f"{what}the tip", 1e3 * tip, 1e3 * bent, "mm", "analytic", "Castigliano 1879", allowed
-        )
+        asked = -1e-3 * TIP_LOAD * LENGTH / lever(CYLINDER)
+        bent = 1e3 * TIP_LOAD * tip_compliance(boom.segments[0], CYLINDER, shear_stiffness)
+        yield Proof(f"{what}its force", 1e-3 * force, asked, "kN", *LEVERS)
+        held: Held = ("analytic", "Castigliano 1879", allowed)
+        yield Proof(f"{what}the tip", 1e3 * tip, bent, "mm", *held)
 
 
-def _turning(tell: Callable[[str], None]) -> Iterator[Proof]:
+def _turning(tell: Tell) -> Iterator[Proof]:
     spring = Support(0.0, rotation_stiffness=ROTATION)
     # The closed form has no rotary inertia; a shell's walls have it.
-    slender = replace(_segment(), supports=(spring,), rotary_inertia=0.0)
-    pushed = (Load(0, "z", TIP_LOAD, LENGTH, Step()),)
-    boom = Boom((slender,), (), pushed)
-    exact = first_frequency(slender, ROTATION)
-    thick = _elements(
-        Boom((replace(slender, rotary_inertia=_segment().rotary_inertia),), ()), "timoshenko"
-    )
-    references: list[tuple[str, float, Kind, str, float]] = [
-        ("elements", exact, "analytic", "Blevins 1979", 1e-5),
-        ("a series of 24 terms", exact, "analytic", "Blevins 1979", 1e-5),
-        ("a shell", float(thick.frequencies[0]), "other code", "Timoshenko's elements", WALLS),
-    ]
-    for name, reference, kind, source, allowed in references:
+    thick = replace(_segment(), supports=(spring,))
+    slender = replace(thick, rotary_inertia=0.0)
+    boom = Boom((slender,), (), (_PUSHED,))
+    blevins: Held = ("analytic", "Blevins 1979", 1e-5)
+    theory = first_frequency(slender, ROTATION), blevins
+    beam = _elements(Boom((thick,), ()), "timoshenko").frequencies[0]
+    references: Mapping[str, tuple[float, Held]] = {
+        "elements": theory,
+        "a series of 24 terms": theory,
+        "a shell": (float(beam), ("other code", "Timoshenko's elements", WALLS)),
+    }
+    for name, (reference, held) in references.items():
         tell(f"a hinge that resists rotation, {name}")
         found = _MODELS[name](boom).frequencies[0]
         what = f"hinge with a spring against rotation, {name}: first frequency"
-        yield Proof(what, found, reference, "Hz", kind, source, allowed)
+        yield Proof(what, found, reference, "Hz", *held)
 
 
-def _swinging(tell: Callable[[str], None]) -> Iterator[Proof]:
+def _swinging(tell: Tell) -> Iterator[Proof]:
     """Rigid booms: r √(k / I) about the hinge, ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
 
     On both stations of a joint a segment goes up and down: √(2k / m), ζ = c / √(2k m).
@@ -173,22 +172,17 @@ def _swinging(tell: Callable[[str], None]) -> Iterator[Proof]:
         ratio = 0.5 * DASHPOT * arm / np.sqrt(stiffness * effective)
         if not system.laws:
             name = f"rigid boom on a hinge and a {what}: frequency"
-            found, asked = system.frequencies[0], omega / (2.0 * np.pi)
-            yield Proof(name, found, asked, "Hz", "analytic", "lever arms", EXACT)
+            yield Proof(name, system.frequencies[0], omega / (2.0 * np.pi), "Hz", *LEVERS)
         # A turn about the hinge, or a way up without one.
         rows = system.rows if system.laws else np.ones((1, 1))
         raised = np.linalg.lstsq(rows, np.full(len(rows), 1.0e-3), rcond=None)[0]
-        yield Proof(
-            f"dashpot at a {what}, rigid boom: logarithmic decrement",
-            decrement(system, raised, 2.0 * np.pi / omega),
-            2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2),
-            "",
-            "analytic",
-            "an oscillator",
-            DECREMENT,
-        )
+        found = decrement(system, raised, 2.0 * np.pi / omega)
+        asked = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
+        name = f"dashpot at a {what}, rigid boom: logarithmic decrement"
+        yield Proof(name, found, asked, "", "analytic", "an oscillator", DECREMENT)
 
 
+_PUSHED = Load(0, "z", TIP_LOAD, LENGTH, Step())
 _DRAGGED = replace(CYLINDER, dashpot=DASHPOT)
 
 

@@ -7,7 +7,7 @@ friction the tip over the whole run.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ from runs.studies.motions import (
     without_friction,
 )
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
-from runs.studies.study import Plot, Proof, Study
+from runs.studies.study import Part, Plot, Proof, Tell, titled
 
 # Of the highest frequency of the contacts, see dynamics.step: thrice what a run would take, which
 # changes the tip with friction by less than 0.1 % of its range.
@@ -48,22 +48,15 @@ NOTES = (
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        mesh: edge length in m.
-        duration: of the motions with friction that are compared, in s.
-        peak: time in s within which the first peak of the tip comes.
-        penalties: parts of the default penalty per area.
-        points: along the overlap and across half a wall.
-        pads: lengths and widths in m.
-    """
-
-    mesh: float = 0.1
-    duration: float = 10.0
-    peak: float = 0.9
-    penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)
+    mesh: float = 0.1  # edge length in m
+    duration: float = 10.0  # of the motions with friction that are compared, in s
+    peak: float = 0.9  # time in s within which the first peak of the tip comes
+    penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  # parts of the default penalty per area
+    # Points along the overlap and across half a wall.
     points: Sequence[tuple[int, int]] = ((4, 4), (8, 2), DEFAULT_POINTS, (8, 6), (12, 4))
+    # Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
 
 
@@ -75,12 +68,12 @@ class Contact(NamedTuple):
     system: GapSystem
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("surface-contact", "Contact over the whole overlap")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """Surface against stations, its penalty, its quadrature, and pads of several sizes."""
     sizes = sizes or Sizes()
     case = friction_case()
-    update: dict[str, object] = {"mesh_size": sizes.mesh, "contact_tolerance": "any"}
-    shell = shell_of(case).model_copy(update=update)
+    shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
 
     def touching(name: str, case: Case, **update: object) -> Contact:
         tell(f"contact {name}")
@@ -96,13 +89,13 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
         ),
     ]
     surfaces = {
-        (along, across): touching(
-            f"surface, {along} x {across} points",
+        points: touching(
+            "surface, {} x {} points".format(*points),
             case,
             contact_line="surface",
-            surface_points=(along, across),
+            surface_points=points,
         )
-        for along, across in sizes.points
+        for points in sizes.points
     }
     lines, padded = stations[0], stations[2]
     default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
@@ -125,25 +118,20 @@ def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
         *NOTES,
     )
     tell("first peaks")
-    peaks = _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
+    yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
+    yield flexibility_table(stations)
+    yield from _proofs(case, default.system)
+    yield from pad_proofs(case, sizes.pads[0], padded.system)
     time = (OUTPUT_STEP * np.arange(len(tips[lines.name]))).tolist()
-    return Study(
+    yield Plot(
         "surface-contact",
-        "Contact over the whole overlap",
-        [peaks, flexibility_table(stations)],
-        [*_proofs(case, default.system), *pad_proofs(case, sizes.pads[0], padded.system)],
-        [
-            Plot(
-                "surface-contact",
-                "Contact over the whole overlap is softer than from web to web",
-                "time (s)",
-                "tip (mm)",
-                {name: (time, (1.0e3 * tip).tolist()) for name, tip in tips.items()},
-                "The tip of the paper's boom with friction, touching at its stations near the webs "
-                "and over the whole overlap.",
-                logarithmic=False,
-            )
-        ],
+        "Contact over the whole overlap is softer than from web to web",
+        "time (s)",
+        "tip (mm)",
+        {name: (time, (1.0e3 * tip).tolist()) for name, tip in tips.items()},
+        "The tip of the paper's boom with friction, touching at its stations near the webs and "
+        "over the whole overlap.",
+        logarithmic=False,
     )
 
 
@@ -187,7 +175,7 @@ def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> T
     return Table.of_rows("surface", "Where the segments touch", columns, rows, notes)
 
 
-def _proofs(case: Case, system: GapSystem) -> list[Proof]:
+def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
     """Forces of approaches whose pressure can be integrated by hand."""
     boom = build_boom(case)
     (joint,) = boom.joints
@@ -208,16 +196,14 @@ def _proofs(case: Case, system: GapSystem) -> list[Proof]:
     approach = f"{1e3 * DEPTH:g} mm beyond the play"
     over = "contact force over the overlap"
     weightless = sum(w.terms[0].stiffness <= 1.0e-9 * whole for w in system.laws)
-    return [
-        Proof(what, float(value), reference, unit, "analytic", source, allowed)
-        for what, value, reference, unit, source, allowed in (
-            (f"{over}, uniform approach {approach}", uniform.sum(), k * DEPTH**n, "N",
-             "(4) at all stations", 1.0e-6),
-            ("its place along the boom", uniform @ places / uniform.sum(), 0.5 * (start + end),
-             "m", "middle of the overlap", 1.0e-6),
-            (f"{over}, approach rising to {approach}", tilted.sum(), k * DEPTH**n / (n + 1.0), "N",
-             "integral of the pressure", 1.0e-6),
-            ("contact rows of a surface without weight", weightless, 0.0, "",
-             "Gauss's weights are positive", 0.0),
-        )
-    ]  # fmt: skip
+    for what, value, reference, unit, source, allowed in (
+        (f"{over}, uniform approach {approach}", uniform.sum(), k * DEPTH**n, "N",
+         "(4) at all stations", 1.0e-6),
+        ("its place along the boom", uniform @ places / uniform.sum(), 0.5 * (start + end),
+         "m", "middle of the overlap", 1.0e-6),
+        (f"{over}, approach rising to {approach}", tilted.sum(), k * DEPTH**n / (n + 1.0), "N",
+         "integral of the pressure", 1.0e-6),
+        ("contact rows of a surface without weight", weightless, 0.0, "",
+         "Gauss's weights are positive", 0.0),
+    ):  # fmt: skip
+        yield Proof(what, float(value), reference, unit, "analytic", source, allowed)

@@ -6,7 +6,7 @@ All sizes of their section shrink alike, so that A ∝ ξ² and J ∝ ξ⁴ with
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.optimize import brentq
@@ -28,12 +28,14 @@ from runs.studies.second_order import (
     STIFFNESS,
     Model,
 )
-from runs.studies.study import Proof, Study
+from runs.studies.study import Held, Kind, Proof, Tell, titled
 
 ALPHA = 0.5
 HEAD = BoxSection(*(ALPHA * size for size in (BOX.height, BOX.width, BOX.flange, BOX.web)))
 # From the clamp to where the cone would end, in m.
 WHOLE = LENGTH / (1.0 - ALPHA)
+
+ELEMENTS = "shear-flexible elements"
 
 # Of beams, and of the shell, whose walls shear and swell.
 CLOSE, OF_SHELL = 1.0e-4, 5.0e-3
@@ -87,47 +89,41 @@ def critical() -> float:
     return float(u**2 * STIFFNESS / WHOLE**2)
 
 
-def study(tell: Callable[[str], None]) -> Study:
+@titled("taper", "Segments that taper")
+def study(tell: Tell) -> Iterator[Proof]:
     """Every model."""
-    proofs = []
-    elements = MODELS["shear-flexible elements"]
     for name, model in MODELS.items():
         tell(name)
-        proofs += _proofs(name, model, elements)
-    return Study("taper", "Segments that taper", proofs=proofs)
+        yield _deflection(name, model)
+        if name != ELEMENTS:
+            yield from _swing_and_force(name, model)
 
 
-def _proofs(name: str, model: Model, elements: Model) -> list[Proof]:
-    """Frequency and critical force of those that shear bends against one another."""
-    allowed = OF_SHELL if name == "shell" else CLOSE
+def _deflection(name: str, model: Model) -> Proof:
     source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
-    load = 0.1 * critical()
     system, _ = model.of(arm())
     found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
-    deflection = Proof(
-        f"tip of a tapered cantilever, {name}",
-        1e6 * float(found), 1e6 * tip(model.in_shear), "1e-6 m/N", "analytic", source, allowed,
-    )  # fmt: skip
-    swing, buckling = f"first frequency of it, {name}", f"critical force of it, {name}"
-    hertz, force = float(system.frequencies[0]), _force(model, load)
-    if not model.in_shear:
-        return [
-            deflection,
-            Proof(swing, hertz, frequency(), "Hz", "analytic", "Kirchhoff 1879", allowed),
-            Proof(buckling, force, critical(), "N", "analytic", "Dinnik 1929", allowed),
-        ]
-    if model is elements:
-        return [deflection]
-    ladder = float(elements.of(arm())[0].frequencies[0])
-    who = "shear-flexible elements"
-    return [
-        deflection,
-        Proof(swing, hertz, ladder, "Hz", "other code", who, allowed),
-        Proof(buckling, force, _force(elements, load), "N", "other code", who, allowed),
-    ]
+    held: Held = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
+    what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
+    return Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *held)
 
 
-def _force(model: Model, load: float) -> float:
-    _, factor = model.of(arm(load))
-    assert factor is not None
-    return factor * load
+def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
+    """Against closed forms; of those that shear bends against one another."""
+    exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
+    kind: Kind = "analytic"
+    if model.in_shear:
+        exact, sources, kind = _measured(MODELS[ELEMENTS]), (ELEMENTS, ELEMENTS), "other code"
+    allowed = OF_SHELL if name == "shell" else CLOSE
+    for what, found, asked, unit, source in zip(
+        ("first frequency", "critical force"), _measured(model), exact, ("Hz", "N"), sources,
+        strict=True,
+    ):  # fmt: skip
+        yield Proof(f"{what} of it, {name}", found, asked, unit, kind, source, allowed)
+
+
+def _measured(model: Model) -> tuple[float, float]:
+    """First frequency in Hz, critical force in N."""
+    load = 0.1 * critical()
+    system, _ = model.of(arm())
+    return float(system.frequencies[0]), model.factor(arm(load)) * load

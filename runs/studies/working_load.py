@@ -9,11 +9,10 @@ are the laws' and the load's.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
@@ -24,10 +23,10 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Cell, Table
 from runs.studies.mesh import peak_heights
-from runs.studies.motions import finer, friction_case, gap_system, move, shell_of
+from runs.studies.motions import finer, friction_case, gap_system, move, shell_of, side_by_side
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Proof, Study
+from runs.studies.study import Part, Proof, Tell, titled
 
 # What is allowed of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
@@ -45,63 +44,73 @@ class Point(NamedTuple):
     def __str__(self) -> str:
         return f"{1e3 * self.play:g} mm, load × {self.load:g}"
 
+    @classmethod
+    def each(cls, plays: Sequence[float], loads: Sequence[float]) -> list[Point]:
+        """Every play with every load."""
+        return [cls(*one) for one in product(plays, loads)]
+
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What is measured.
+    """What is measured."""
 
-    Args:
-        meshes: edge lengths over the default ones, each half the one before.
-        plays: 2Δ in m.
-        loads: over the paper's.
-        pads: lengths and widths in m.
-        in_space: points, whose motion lasts ``spatial_duration``.
-        duration, spatial_duration: in s.
-        peaks: how many of the tip's first ones.
-    """
-
+    # Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (2.0, 1.0, 0.5)
-    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)
-    loads: Sequence[float] = (1.0, 3.0, 10.0)
-    pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  # 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  # over the paper's
+    pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))  # lengths and widths in m
+    # Points, whose motion lasts ``spatial_duration``.
     in_space: Sequence[Point] = (Point(14.0e-3, 1.0), Point(14.0e-3, 10.0), Point(4.0e-3, 10.0))
+    # Of both motions in s.
     duration: float = 5.0
     spatial_duration: float = 1.0
-    peaks: int = 3
+    peaks: int = 3  # how many of the tip's first ones
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """A point's motion on one mesh.
+    """A point's motion.
 
     Args:
         tip: (num_times,) in m.
         peaks: (num_peaks,) heights of its first ones in m; NaN without it.
         forces: (num_stations,) largest of each, in N, over ``HELD`` outputs.
+        seconds: that it has taken on one core.
     """
 
     tip: Array
     peaks: Array
     forces: Array
+    seconds: float = 0.0
 
     @classmethod
-    def of(cls, system: GapSystem, duration: float, num_peaks: int) -> Moved:
+    def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:
         """From rest, in s."""
+        begin = perf_counter()
         motion = move(system, duration)
+        seconds = perf_counter() - begin
         held = np.cumsum(np.pad(motion.data["contact_force"].values, ((1, 0), (0, 0))), axis=0)
         means = (held[HELD:] - held[:-HELD]) / HELD
         peaks = np.full(num_peaks, np.nan)
         heights = peak_heights(motion)[:num_peaks]
         peaks[: len(heights)] = heights
-        return cls(np.asarray(motion.data["tip"].values), peaks, np.abs(means).max(axis=0))
+        tip = np.asarray(motion.data["tip"].values)
+        return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
+
+    def tip_off(self, reference: Moved) -> float:
+        """Its largest distance as a part of the reference's range."""
+        return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
+
+    def peaks_off(self, reference: Moved) -> Array:
+        """(num_peaks,) relative errors."""
+        return np.asarray(np.abs(self.peaks / reference.peaks - 1.0))
 
     def changes(self, finer: Moved) -> Array:
         """(num_peaks + 2,) relative changes of the peaks, then of the stations' forces as parts of
         the largest, and of the tip as a part of its range, from here to a finer mesh.
         """
         forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
-        tip = np.abs(self.tip - finer.tip).max() / np.ptp(finer.tip)
-        return np.append(np.abs(self.peaks / finer.peaks - 1.0), [forces, tip])
+        return np.append(self.peaks_off(finer), [forces, self.tip_off(finer)])
 
 
 class Touch(NamedTuple):
@@ -191,12 +200,11 @@ def in_space(case: Case) -> Case:
 
 
 def measure(touch: Touch, sizes: Sizes) -> Contact:
-    """All points on all meshes."""
+    """All points of a way to touch, on all meshes."""
     boom, shell = build_boom(touch.case), shell_of(touch.case)
     systems = [gap_system(touch.case, boom, finer(shell, part)) for part in sizes.meshes]
     tasks = [at_point(system, point) for point in touch.points for system in systems]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        moved = list(pool.map(lambda task: Moved.of(task, touch.duration, sizes.peaks), tasks))
+    moved = side_by_side(lambda task: Moved.of(task, touch.duration, sizes.peaks), tasks)
     count = len(systems)
     return Contact(
         touch, {point: moved[count * i : count * (i + 1)] for i, point in enumerate(touch.points)}
@@ -205,7 +213,7 @@ def measure(touch: Touch, sizes: Sizes) -> Contact:
 
 def touches(case: Case, sizes: Sizes) -> list[Touch]:
     """Near webs, by pads, and in space."""
-    every = [Point(*point) for point in product(sizes.plays, sizes.loads)]
+    every = Point.each(sizes.plays, sizes.loads)
     return [
         Touch("points-webs", "near webs", case, every, sizes.duration),
         *(
@@ -244,16 +252,14 @@ def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
 
 def point_table(contact: Contact) -> Table:
     """First peaks and the changes at every point of one way to touch, a row each."""
+    columns = {
+        "point": "", "first peak (mm)": ".1f", "its change (%)": ".3f", "tip (% of range)": ".2f",
+        "largest pad force (kN)": ".4g",
+    }  # fmt: skip
     return Table.of_rows(
         contact.touch.name,
         f"Every point, {contact.touch.where}",
-        {
-            "point": "",
-            "first peak (mm)": ".1f",
-            "its change (%)": ".3f",
-            "tip (% of range)": ".2f",
-            "largest pad force (kN)": ".4g",
-        },
+        columns,
         [
             (str(point), 1e3 * meshes[-2].peaks[0], *(100.0 * changes[[0, -1]]),
              1e-3 * meshes[-1].forces.max())
@@ -264,24 +270,20 @@ def point_table(contact: Contact) -> Table:
     )  # fmt: skip
 
 
-def study(tell: Callable[[str], None], sizes: Sizes | None = None) -> Study:
+@titled("working-load", "Meshes under working loads")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     """The paper's boom with friction under working loads, on three meshes."""
     sizes = sizes or Sizes()
-    case = friction_case()
     contacts = []
-    for touch in touches(case, sizes):
+    for touch in touches(friction_case(), sizes):
         tell(touch.where)
         contacts.append(measure(touch, sizes))
+    yield summary_table(contacts, sizes)
+    hardest = []
+    for contact in contacts:
+        yield point_table(contact)
+        yield from contact.proofs
+        hardest += contact.hardest(sizes)
     title = "Where refinement leads, at the largest play and load"
-    hardest = [one for contact in contacts for one in contact.hardest(sizes)]
     note = "Order, Richardson's limit and the grid convergence index as for the paper's load."
-    return Study(
-        "working-load",
-        "Meshes under working loads",
-        [
-            summary_table(contacts, sizes),
-            *map(point_table, contacts),
-            refined_table("working-load-limits", title, hardest, "edges × {:g}", (note,)),
-        ],
-        [proof for contact in contacts for proof in contact.proofs],
-    )
+    yield refined_table("working-load-limits", title, hardest, "edges × {:g}", (note,))

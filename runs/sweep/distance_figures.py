@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
-from runs.sweep.figures import RC, at_ends, finish, in_shown_units, scale_axis
+from runs.sweep.figures import RC, at_ends, finish, finish_lines, in_shown_units, marked, scale_axis
 from runs.sweep.quantities import Quantity
 
 _Word = TypeVar("_Word", bound=str)
@@ -64,23 +64,12 @@ def _lines(data: xr.Dataset, key: str, title: str, path: Path) -> None:
     for axes, quantity in zip(panels, shown, strict=True):
         for name, stroke in strokes.items():
             off = quantity.factor * data[quantity.name].sel(model=name).values
-            axes.plot(
-                data[key].values,
-                np.maximum(off, _LEAST),
-                color=stroke.color,
-                linestyle=stroke.linestyle,
-                marker="o",
-                markersize=4.0,
-                label=name,
-            )
+            marked(axes, data[key], np.maximum(off, _LEAST), stroke, name)
         for level in LEVELS:
             axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
         axes.set(title=f"{quantity.title} (%)", yscale="log")
         axes.set_yticks(LEVELS, [f"{level:g}" for level in LEVELS])
-    scale_axis(panels[-1], "x", data[key])
-    handles, labels = panels[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-    finish(sheet, title, path)
+    finish_lines(sheet, panels, data[key], title, path)
 
 
 def _maps(

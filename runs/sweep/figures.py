@@ -133,21 +133,12 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
         for axes, mode in zip(panels, modes, strict=True):
             for name, stroke in strokes.items():
                 for joints, line in (("pressed", "-"), ("tied", "--")):
-                    axes.plot(
-                        data[key].values,
-                        data["frequency"].sel(model=name, joints=joints, mode=mode).values,
-                        color=stroke.color,
-                        linestyle=line,
-                        marker="o",
-                        markersize=4.0,
-                        label=f"{name}, joints {joints}",
-                    )
+                    values = data["frequency"].sel(model=name, joints=joints, mode=mode).values
+                    pen = theme.Stroke(stroke.color, line)
+                    marked(axes, data[key], values, pen, f"{name}, joints {joints}")
             axes.set_title(f"mode {mode} (Hz)")
             axes.set_ylim(bottom=0.0)
-        scale_axis(panels[-1], "x", data[key])
-        handles, labels = panels[0].get_legend_handles_labels()
-        sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-        finish(sheet, f"First frequencies over {key}", path)
+        finish_lines(sheet, panels, data[key], f"First frequencies over {key}", path)
 
 
 def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, path: Path) -> None:
@@ -157,22 +148,12 @@ def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, pa
     sheet, panels = new_sheet(len(shown), 1.2 + 1.8 * len(shown))
     for axes, quantity in zip(panels, shown, strict=True):
         for name, stroke in strokes.items():
-            axes.plot(
-                data[key].values,
-                quantity.factor * data[quantity.name].sel(model=name).values,
-                color=stroke.color,
-                linestyle=stroke.linestyle,
-                marker="o",
-                markersize=4.0,
-                label=name,
-            )
+            values = quantity.factor * data[quantity.name].sel(model=name).values
+            marked(axes, data[key], values, stroke, name)
         axes.set_title(f"{quantity.title} ({quantity.shown_unit})")
         if quantity.logarithmic:
             axes.set_yscale("log")
-    scale_axis(panels[-1], "x", data[key])
-    handles, labels = panels[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, loc="outside lower left", ncols=2)
-    finish(sheet, title, path)
+    finish_lines(sheet, panels, data[key], title, path)
 
 
 def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path) -> None:
@@ -263,3 +244,21 @@ def finish(sheet: Sheet, title: str, path: Path) -> None:
     """Give a sheet its title, and write it."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)
+
+
+def marked(
+    axes: Axes, along: xr.DataArray, values: Array, stroke: theme.Stroke, label: str
+) -> None:
+    """A line whose points are seen."""
+    (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
+    line.set(color=stroke.color, linestyle=stroke.linestyle)
+
+
+def finish_lines(
+    sheet: Sheet, panels: Sequence[Axes], along: xr.DataArray, title: str, path: Path
+) -> None:
+    """Give panels of the same lines their axis, their legend and their title, and write them."""
+    scale_axis(panels[-1], "x", along)
+    handles, labels = panels[0].get_legend_handles_labels()
+    sheet.legend(handles, labels, loc="outside lower left", ncols=2)
+    finish(sheet, title, path)

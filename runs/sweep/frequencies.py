@@ -101,18 +101,11 @@ def gather(plan: Plan, found: Array) -> xr.Dataset:
     Returns:
         dims: the varied keys, in the unit of the case, ``model``, ``joints`` and ``mode``.
     """
-    keys = [variation.key for variation in plan.variations]
-    models = [model.name for model in plan.points[0].case.models]
-    shape = [len(variation.values) for variation in plan.variations]
-    values = found.reshape(*shape, *found.shape[1:])
+    values = found.reshape(*plan.shape, *found.shape[1:])
     attributes = {"units": "Hz", "long_name": "natural frequency"}
     return xr.Dataset(
-        {"frequency": ([*keys, "model", "joints", "mode"], values, attributes)},
-        coords={
-            variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
-            for variation, unit in zip(plan.variations, plan.units, strict=True)
-        }
-        | {"model": models, "joints": list(JOINTS), "mode": np.arange(1, MODES + 1)},
+        {"frequency": ([*plan.coordinates, "joints", "mode"], values, attributes)},
+        coords=plan.coordinates | {"joints": list(JOINTS), "mode": np.arange(1, MODES + 1)},
         attrs={"Conventions": CONVENTIONS, "title": plan.title},
     )
 

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
+from geometry.arrays import Array
 from runs.folder.files import alone, changed_folder, whole, whole_folder
 from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import TextTable
@@ -42,45 +43,30 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
         :mod:`runs.sweep.distances`, and ``compared_until``, up to when tips are compared;
         ``failed``, 1 where the numerics did.
     """
-    keys = [variation.key for variation in plan.variations]
-    models = [model.name for model in plan.points[0].case.models]
-    shape = [len(variation.values) for variation in plan.variations]
-    numbers = {
-        quantity: np.array(
-            [[_number(table(outcome), name, quantity) for name in models] for outcome in outcomes]
-        ).reshape(*shape, len(models))
+    dims, models = list(plan.coordinates), plan.coordinates["model"]
+
+    def over_points(values: Sequence[Sequence[float]]) -> Array:
+        return np.array(values).reshape(*plan.shape, len(models))
+
+    found: dict[str, Any] = {
+        quantity.name: (
+            dims,
+            over_points(
+                [[_number(table(one), name, quantity) for name in models] for one in outcomes]
+            ),
+            {"units": quantity.unit, "long_name": quantity.title},
+        )
         for quantities, table in _TABLES[: 1 if plan.reference is None else 2]
         for quantity in quantities
     }
-    failed = np.array(
-        [[name in outcome.failures for name in models] for outcome in outcomes], dtype=np.int8
-    ).reshape(*shape, len(models))
-    compared = {} if plan.reference is None else _compared_until(keys, shape, outcomes)
-    return xr.Dataset(
-        compared
-        | {
-            quantity.name: (
-                [*keys, "model"],
-                values,
-                {"units": quantity.unit, "long_name": quantity.title},
-            )
-            for quantity, values in numbers.items()
-        }
-        | {"failed": ([*keys, "model"], failed, {"long_name": "the numerics failed"})},
-        coords={
-            variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
-            for variation, unit in zip(plan.variations, plan.units, strict=True)
-        }
-        | {"model": models},
-        attrs={"Conventions": CONVENTIONS, "title": plan.title},
-    )
-
-
-def _compared_until(
-    keys: Sequence[str], shape: Sequence[int], outcomes: Sequence[Outcome]
-) -> dict[str, Any]:
-    ends = np.array([one.until for one in outcomes], dtype=float).reshape(shape)
-    return {UNTIL: (keys, ends, {"units": "s", "long_name": "tips compared until"})}
+    failed = over_points([[name in one.failures for name in models] for one in outcomes])
+    found["failed"] = dims, failed.astype(np.int8), {"long_name": "the numerics failed"}
+    if plan.reference is not None:
+        ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
+        attributes = {"units": "s", "long_name": "tips compared until"}
+        found = {UNTIL: (dims[:-1], ends, attributes), **found}
+    attributes = {"Conventions": CONVENTIONS, "title": plan.title}
+    return xr.Dataset(found, coords=plan.coordinates, attrs=attributes)
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:

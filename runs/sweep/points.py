@@ -14,7 +14,9 @@ from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass, replace
 from itertools import product
+from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from geometry.section import BoxSection
@@ -71,6 +73,19 @@ class Plan:
     play_free: Sequence[str]
     points: Sequence[Point]
     reference: str | None = None
+
+    @property
+    def coordinates(self) -> dict[str, Any]:
+        """What data over all points are labelled by: the varied keys, and the models."""
+        return {
+            variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
+            for variation, unit in zip(self.variations, self.units, strict=True)
+        } | {"model": [model.name for model in self.points[0].case.models]}
+
+    @property
+    def shape(self) -> list[int]:
+        """How many values each variation has."""
+        return [len(variation.values) for variation in self.variations]
 
 
 def plan(

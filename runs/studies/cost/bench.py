@@ -81,34 +81,24 @@ STEP = 1.0e-6
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How much is measured.
+    """How much is measured."""
 
-    Args:
-        duration: of the motions in s.
-        slow_duration: of those by ``SLOW`` solvers.
-        levels: tolerance of event-driven motion, and the solvers that it is compared with.
-        most: repetitions of what is quick.
-        budget: wall seconds of all repetitions of one run, beyond which there are no more.
-        modes, rows: the tables of steps and series.
-        updates: of one mode by one step, that are timed for an entry of the former.
-        members: of the ensemble of series.
-        shell_members: of the ensemble of shells, 0 for none.
-        left: models of the run whose leaving is timed.
-        drawn: models that are drawn out.
-    """
-
-    duration: float = 10.0
-    slow_duration: float = 0.5
+    duration: float = 10.0  # of the motions in s
+    slow_duration: float = 0.5  # of those by ``SLOW`` solvers
+    # Tolerance of event-driven motion, and the solvers that it is compared with.
     levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
-    most: int = 3
+    most: int = 3  # repetitions of what is quick
+    # Wall seconds of all repetitions of one run, beyond which there are no more.
     budget: float = 6.0
+    # The tables of steps and series.
     modes: Sequence[int] = (5, 20, 80, 200)
     rows: Sequence[int] = (2, 4, 16)
-    updates: int = 5_000_000
-    members: int = 256
-    shell_members: int = 32
+    updates: int = 5_000_000  # of one mode by one step, that are timed for an entry of the former
+    members: int = 256  # of the ensemble of series
+    shell_members: int = 32  # of the ensemble of shells, 0 for none
+    # Models of a run whose leaving is timed.
     left: Sequence[str] = ("series", "timoshenko", "shell")
-    drawn: Sequence[str] = MODELS
+    drawn: Sequence[str] = MODELS  # models that are drawn out
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,18 +160,14 @@ def compare(case: Case, tolerance: float, solvers: Sequence[str], sizes: Sizes) 
         [theirs / mine for theirs, mine in zip(taken, seconds[ours[of.duration]], strict=False)]
         for of, taken in zip(methods, seconds, strict=True)
     ]
+    columns = {
+        "solver": "", "right-hand side": "", "motion s": ".3g", "tolerance": "",
+        "energy residual": ".2g", "wall s": "", "over event-driven": "",
+    }  # fmt: skip
     return Table.of_rows(
         f"residual-{tolerance:.0e}",
         f"Five-term series, at the energy residual of event-driven motion at {tolerance:.0e}",
-        {
-            "solver": "",
-            "right-hand side": "",
-            "motion s": ".3g",
-            "tolerance": "",
-            "energy residual": ".2g",
-            "wall s": "",
-            "over event-driven": "",
-        },
+        columns,
         [
             (of.solver, of.rates, of.duration, of.tolerance, of.energy_residual, taken, ratio)
             for of, taken, ratio in zip(methods, seconds, ratios, strict=True)

@@ -70,20 +70,14 @@ def drawing(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table
             worst[name == "shell"] = max(worst[name == "shell"], ratio)
             costs = (resting.modes, drawn.modes, resting.moved, drawn.moved, ratio)
             rows.append((name, resisted, *costs, resting.built, drawn.built))
+    columns = {
+        "model": "", "resisted by": "", "modes at rest": ".0f", "drawn": ".0f", "at rest s": ".2f",
+        "drawn out s": ".2f", "times": ".1f", "built at rest s": ".1f", "built drawn s": ".1f",
+    }  # fmt: skip
     return Table.of_rows(
         "drawing",
         f"Drawn out by 4 m within {duration:g} s, processor time beside the same boom at rest",
-        {
-            "model": "",
-            "resisted by": "",
-            "modes at rest": ".0f",
-            "drawn": ".0f",
-            "at rest s": ".2f",
-            "drawn out s": ".2f",
-            "times": ".1f",
-            "built at rest s": ".1f",
-            "built drawn s": ".1f",
-        },
+        columns,
         rows,
         [
             f"At most {worst[of_shell]:.1f} times for {what}: the goal of {goal:g} is "

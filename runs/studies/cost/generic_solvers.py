@@ -60,7 +60,7 @@ def compiled_rates(system: GapSystem) -> Rates:
 
 
 def array_rates(system: GapSystem) -> Rates:
-    """The same as :func:`compiled_rates` in NumPy, as one writes it for a generic solver."""
+    """The same in NumPy, as one writes it for a generic solver; friction by its speed's sign."""
     n = system.num_modes
     terms = contact_terms(system.laws)
     side, stiffness, onset, exponent = (
@@ -73,7 +73,17 @@ def array_rates(system: GapSystem) -> Rates:
         acceleration = system.load - system.omega2 * state[:n] - force @ pressed
         return np.concatenate([state[n:], acceleration])
 
-    return rates
+    if not system.frictions:
+        return rates
+    slides = system.friction_rows
+    drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
+
+    def rubbed(t: float, state: Array) -> Array:
+        out = rates(t, state)
+        out[n:] -= (drag * np.sign(slides @ state[n:])) @ slides
+        return out
+
+    return rubbed
 
 
 def residual_of(system: GapSystem, states: Array) -> float:

@@ -55,21 +55,15 @@ STEPS = (1.0e-5, 2.5e-6)
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """How much is measured.
+    """How much is measured."""
 
-    Args:
-        meshes: edge lengths in m, falling; the last makes about a million degrees of freedom a
-            segment.
-        default: edge length in m of the motions.
-        ranks: numbers of them on which the default mesh is reduced and moves; the last is that of
-            the meshes.
-        duration: of the motions in s.
-    """
-
+    # Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
     meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
-    default: float = 0.1
+    default: float = 0.1  # edge length in m of the motions
+    # Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
+    # meshes.
     ranks: Sequence[int] = (1, 2)
-    duration: float = 10.0
+    duration: float = 10.0  # of the motions in s
 
 
 def measured(sizes: Sizes) -> Iterator[Table]:
@@ -81,19 +75,14 @@ def measured(sizes: Sizes) -> Iterator[Table]:
     ]
     goal = f"Goal: {DEFAULT_GOAL:g} s on two cores."
     yield _stages("scaling-default", "The default mesh, from plates to the gap system", runs, goal)
+    columns = {
+        "case": "", "ranks": ".0f", "step s": ".2g", "motion s": ".2f", "in flight s": ".2f",
+        "ns a step": ".0f", "contact changes": ".0f", "energy residual": ".1g",
+    }  # fmt: skip
     yield Table.of_rows(
         "scaling-motion",
         f"{sizes.duration:g} s of motion",
-        {
-            "case": "",
-            "ranks": ".0f",
-            "step s": ".2g",
-            "motion s": ".2f",
-            "in flight s": ".2f",
-            "ns a step": ".0f",
-            "contact changes": ".0f",
-            "energy residual": ".1g",
-        },
+        columns,
         [(run["case"], run["ranks"], *motion) for run in runs for motion in run["motions"]],
         (
             f"Goal: {MOTION_GOAL:g} s at a step of {STEPS[0]:g} s, at which contact with the light "
@@ -130,20 +119,15 @@ def measured(sizes: Sizes) -> Iterator[Table]:
 
 def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str) -> Table:
     """What each stage of each run takes."""
+    columns = {
+        "case": "", "mesh m": ".2g", "ranks": ".0f", "dofs a segment": ".0f",
+        **{f"{stage} s": ".2f" for stage in STAGES}, "all s": ".2f", "modes": ".0f",
+        "peak GB": ".2f", "compliance error": ".1g",
+    }  # fmt: skip
     return Table.of_rows(
         name,
         title,
-        {
-            "case": "",
-            "mesh m": ".2g",
-            "ranks": ".0f",
-            "dofs a segment": ".0f",
-            **{f"{stage} s": ".2f" for stage in STAGES},
-            "all s": ".2f",
-            "modes": ".0f",
-            "peak GB": ".2f",
-            "compliance error": ".1g",
-        },
+        columns,
         [
             (run["case"], run["mesh"], run["ranks"], run["dofs"],
              *(run["seconds"][stage] for stage in STAGES), run["total_seconds"], run["modes"],

@@ -7,15 +7,14 @@ follow from a tolerance, and nothing is known of where contacts close or frictio
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import LSODA, RK45
 
 from dynamics.arrays import Array
-from dynamics.contact import contact_terms
 from dynamics.gap_system import GapSystem
+from runs.studies.cost.generic_solvers import array_rates
 
 METHODS = {"LSODA": LSODA, "RK45": RK45}
 # In m: a deflection of half the boom's length ends it.
@@ -36,24 +35,6 @@ class Solved:
     velocities: Array
 
 
-def right_side(system: GapSystem) -> Callable[[float, Array], Array]:
-    """What gives (2 num_modes,) ȧ and ä of time and of a and ȧ: contacts as their laws have them,
-    friction by the sign of its speed.
-    """
-    terms = contact_terms(system.laws)
-    rows, slides = system.rows[terms["row"]], system.friction_rows
-    drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
-
-    def rates(_: float, state: Array) -> Array:
-        a, v = np.split(state, 2)
-        depths = np.maximum(terms["side"] * (rows @ a) - terms["onset"], 0.0)
-        forces = terms["side"] * terms["stiffness"] * depths ** terms["exponent"]
-        push = system.load - system.omega2 * a - forces @ rows
-        return np.concatenate([v, push - (drag * np.sign(slides @ v)) @ slides])
-
-    return rates
-
-
 def solve(system: GapSystem, duration: float, method: str, tolerance: float, most: int) -> Solved:
     """Move a system from rest until ``duration`` in s, or for as many steps as are allowed.
 
@@ -66,7 +47,7 @@ def solve(system: GapSystem, duration: float, method: str, tolerance: float, mos
     """
     start = np.zeros(2 * system.num_modes)
     within = {"rtol": tolerance, "atol": tolerance}
-    solver = METHODS[method](right_side(system), 0.0, start, duration, **within)
+    solver = METHODS[method](array_rates(system), 0.0, start, duration, **within)
     time, states = [0.0], [start]
     tip = system.observers["tip"].row
     while solver.status == "running" and len(time) <= most:

@@ -7,12 +7,9 @@ modes. Which scheme, how many modes, and whether gaps were iterated, it does not
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -30,7 +27,7 @@ from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.pipeline.members import slow_below
 from runs.pipeline.motion import Plan
-from runs.studies.motions import gap_system, model_of
+from runs.studies.motions import gap_system, model_of, side_by_side
 from runs.studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 
 SERIES = ("kantorovich-4", "kantorovich-5")
@@ -196,7 +193,7 @@ class Example:
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
         cutoff = slow_below(boom, case.time)
         assert cutoff is not None
-        runs = _side_by_side(
+        runs = side_by_side(
             lambda one: Moved.of(_well(case, systems[one[1]], model_of(case, one[1]), one[0])),
             list(product(factors(members), names)),
         )
@@ -210,7 +207,7 @@ class Example:
         whole, put_in = self.systems[ELEMENTS], well[-1].put_in
         models = [*series, *((lowest(whole, few), put_in) for few in modes)]
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
-        runs = _side_by_side(lambda one: _then(how, *one), tasks)
+        runs = side_by_side(lambda one: _then(how, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
         tied = self.well[0].tied.at(four[0].time)
         return [
@@ -233,7 +230,7 @@ class Example:
         system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
         laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
-        return _side_by_side(lambda one: _then(how, *one), tasks)
+        return side_by_side(lambda one: _then(how, *one), tasks)
 
     def off(self, run: Moved) -> float:
         """Largest distance of the elements' tip from the one solved well, of its range."""
@@ -245,11 +242,6 @@ class Example:
 def factors(members: int) -> Array:
     """(members,) of the loads."""
     return 1.0 + perturbations(members, RELATIVE, SEED)
-
-
-def _side_by_side(move: Callable[[Any], Moved], tasks: Sequence[Any]) -> list[Moved]:
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(move, tasks))
 
 
 def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Trajectory:

@@ -7,13 +7,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.studies.answers import station_forces, study, support_forces
-
-
-@pytest.mark.slow
-def test_every_value_is_that_of_its_reference() -> None:
-    proofs = study(lambda what: None).proofs
-    assert [proof.what for proof in proofs if not proof.holds] == []
+from runs.studies.answers import station_forces, support_forces
 
 
 def test_forces_by_hand_are_in_balance() -> None:

@@ -16,7 +16,7 @@ from geometry.arrays import Array
 from runs.case import reading as case_file
 from runs.paper import then
 from runs.report.verdict import Verdict
-from runs.studies.as_computed_then import leave, told
+from runs.studies.as_computed_then import leave, tables
 from runs.studies.then.general_solver import METHODS, solve
 from runs.studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
 from runs.studies.then.scheme_errors import oscillator
@@ -161,12 +161,12 @@ def test_outcomes_follow_from_the_runs() -> None:
 
 def test_the_verdicts_read_what_the_study_leaves(tmp_path: Path) -> None:
     done = survey([sample(swing(), swing(), swing())], 2.0)
-    tables = told(done).tables
-    leave(done, tables, tmp_path)
+    made = tables(done)
+    leave(done, made, tmp_path)
     case = case_file.load(str(WITH))
     verdict = Verdict("S7", "", None, None, "", "undecided", "")
     (found,) = then.beside([verdict], tmp_path, case)
     assert found.then == f"not shown: {done.outcomes['S7'].why}"
-    names = [table.name for table in tables]
+    names = [table.name for table in made]
     text = (tmp_path / "then.md").read_text(encoding="utf-8")
     assert len(names) == text.count("| :--")

@@ -96,7 +96,7 @@ def test_tables_and_proofs_have_every_quantity() -> None:
     assert [row[0] for row in errors.rows] == [one.what for one in EVERY]
     assert errors.rows[0][1:3] == ("0.40", "−2.00")
     assert len(refinements(found).data) == 4 * len(EVERY)
-    proofs = shell_proofs(found[0])
+    proofs = list(shell_proofs(found[0]))
     assert all(proof.holds for proof in proofs)
     assert [proof.error for proof in proofs[:8]] == pytest.approx([0.004] * 8)
     assert proofs[9].what == "blow, largest force, walls of 5 mm"
