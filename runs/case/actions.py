@@ -26,6 +26,7 @@ from runs.case.schema import (
     PayloadTable,
     VelocityTable,
 )
+from runs.case.segment import SegmentTable
 
 STANDARD_GRAVITY = 9.80665
 
@@ -59,7 +60,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         history = _history(f"base[{number}]", base)
         given += _felt(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
-        given += _thrown(_segment("start.velocity", name, segments), velocity, segments)
+        given += _thrown(called("start.velocity", name, segments), velocity, segments)
     return tuple(given)
 
 
@@ -135,7 +136,7 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
 def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
     index = len(segments) - 1
     if table.segment is not None:
-        index = _segment(f"{where}.segment", table.segment, segments)
+        index = called(f"{where}.segment", table.segment, segments)
     ends = segments[index].start, segments[index].end
     place = segments[index].end if table.x is None else at(table.x, *ends)
     check_place(f"{where}.x", place, segments[index])
@@ -172,7 +173,7 @@ def _weighing(payload: PayloadTable | None) -> float:
 
 
 def _load(where: str, table: LoadTable, segments: Sequence[Segment]) -> Load:
-    index = _segment(f"{where}.segment", table.segment, segments)
+    index = called(f"{where}.segment", table.segment, segments)
     ends = segments[index].start, segments[index].end
     x = None if table.x is None else at(table.x, *ends)
     acts = index, table.direction, table.magnitude, x, _load_history(where, table)
@@ -216,7 +217,7 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
             contact_length=table.contact_length,
         )
         for number, table in enumerate(case.stops, start=1)
-        for index in [_segment(f"stop[{number}].segment", table.segment, segments)]
+        for index in [called(f"stop[{number}].segment", table.segment, segments)]
     )
 
 
@@ -233,7 +234,7 @@ def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
             **table.model_dump(exclude={"segment", "x"}),
         )
         for number, table in enumerate(case.cylinders, start=1)
-        for index in [_segment(f"cylinder[{number}].segment", table.segment, segments)]
+        for index in [called(f"cylinder[{number}].segment", table.segment, segments)]
     )
 
 
@@ -281,7 +282,12 @@ def series_notes(case: Case) -> list[str]:
     return notes
 
 
-def _segment(where: str, name: str, segments: Sequence[Segment]) -> int:
+def called(where: str, name: str, segments: Sequence[Segment | SegmentTable]) -> int:
+    """Which of the segments has a name.
+
+    Raises:
+        BoomError: none has.
+    """
     names = [segment.name for segment in segments]
     if name not in names:
         raise BoomError(where, f"{name!r} is no segment; give {choices(names)}")

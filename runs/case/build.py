@@ -36,7 +36,6 @@ from runs.case import actions
 from runs.case.contact import JointTable
 from runs.case.kinds.model import Joined
 from runs.case.limits import described
-from runs.case.messages import choices
 from runs.case.places import at, spans
 from runs.case.pulled import check_pulled
 from runs.case.schema import Case, Model
@@ -90,28 +89,17 @@ def build_boom(case: Case) -> Boom:
 
 def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:
     check_names("observe", [table.name for table in case.observe])
-    names = [segment.name for segment in segments]
+    found = []
     for number, table in enumerate(case.observe, start=1):
-        if table.segment not in names:
-            raise BoomError(
-                f"observe[{number}].segment",
-                f"{table.segment!r} is no segment; give {choices(names)}",
-            )
+        index = actions.called(f"observe[{number}].segment", table.segment, segments)
         if table.name in _TAKEN:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",
             )
-    return tuple(
-        Observation(
-            table.name,
-            index,
-            at(table.x, segments[index].start, segments[index].end),
-            table.quantity,
-        )
-        for table in case.observe
-        for index in [names.index(table.segment)]
-    )
+        x = at(table.x, segments[index].start, segments[index].end)
+        found.append(Observation(table.name, index, x, table.quantity))
+    return tuple(found)
 
 
 def joined(case: Case, boom: Boom, model: Model) -> Joined:
@@ -160,13 +148,10 @@ def check_names(where: str, names: Sequence[str]) -> None:
 
 def _check_joined(case: Case) -> None:
     """Joints connect two segments each, and no two twice."""
-    names = [segment.name for segment in case.segments]
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
         for end in ("outer", "inner"):
-            name = getattr(table, end)
-            if name not in names:
-                raise BoomError(f"{where}.{end}", f"{name!r} is no segment; give {choices(names)}")
+            actions.called(f"{where}.{end}", getattr(table, end), case.segments)
         if table.outer == table.inner:
             raise BoomError(f"{where}.inner", "must be another segment than the outer one")
         for number, other in enumerate(case.joints[:index], start=1):

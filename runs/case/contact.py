@@ -25,6 +25,7 @@ from runs.case.limits import (
     Table,
     Text,
     fault_at,
+    left_out,
 )
 from runs.case.places import Place
 
@@ -78,18 +79,16 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
         ValidationError: at the key that is missing, or given in vain.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
-    pad = isinstance(table, JointTable) and table.thick_pads
+    pad = table.thick_pads if isinstance(table, JointTable) else None
     given = pad or next(iter(tables), None)
-    if given is not None:
-        others = tables if pad else []
-        keys = others + [key for key in of_power if getattr(table, key) is not None]
-        what = f"{given} is given; leave one of them out"
-        fault = PydanticCustomError("unsuitable", "{what}", {"what": what})
-    else:
-        keys = ["stiffness"] if table.stiffness is None else []
-        fault = PydanticCustomError("missing", "missing")
+    if given is None:
+        if table.stiffness is None:
+            raise fault_at(table, "missing", "stiffness")
+        return
+    others = tables if pad else []
+    keys = others + [key for key in of_power if getattr(table, key) is not None]
     if keys:
-        raise fault_at(table, fault, *keys)
+        raise left_out(table, given, *keys)
 
 
 Forces = Annotated[
@@ -248,8 +247,7 @@ class JointTable(Table):
     @model_validator(mode="after")
     def _pads_or_pad(self) -> Self:
         if self.pads and self.pad is not None:
-            what = {"what": "pads is given; leave one of them out"}
-            raise fault_at(self, PydanticCustomError("unsuitable", "{what}", what), "pad")
+            raise left_out(self, "pads", "pad")
         return self
 
     @model_validator(mode="after")
@@ -258,9 +256,7 @@ class JointTable(Table):
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
         _check_law(self, (*_OF_POWER, *lateral))
         if self.pads and self.lateral_stiffness:
-            what = {"what": "pads is given; leave one of them out"}
-            fault = PydanticCustomError("unsuitable", "{what}", what)
-            raise fault_at(self, fault, "lateral_stiffness")
+            raise left_out(self, "pads", "lateral_stiffness")
         if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
             raise fault_at(self, "missing", "lateral_stiffness")
         return self

@@ -96,6 +96,12 @@ def fault_at(table: Table, fault: str | PydanticCustomError, *keys: str) -> Vali
     return ValidationError.from_exception_data(type(table).__name__, at)
 
 
+def left_out(table: Table, given: str, *keys: str) -> ValidationError:
+    """What a validator raises of keys that say again what another one says."""
+    what = {"what": f"{given} is given; leave one of them out"}
+    return fault_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
+
+
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]

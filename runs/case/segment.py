@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from runs.case.limits import (
     Few,
@@ -18,6 +17,7 @@ from runs.case.limits import (
     Positive,
     Table,
     fault_at,
+    left_out,
 )
 from runs.case.places import End, Place
 from runs.case.sections import AnySection
@@ -151,6 +151,5 @@ class SegmentTable(Table):
         if self.span is None and self.length is None:
             raise fault_at(self, "missing", "span")
         if self.span is not None and self.length is not None:
-            what = {"what": "span is given; leave one of them out"}
-            raise fault_at(self, PydanticCustomError("unsuitable", "{what}", what), "length")
+            raise left_out(self, "span", "length")
         return self

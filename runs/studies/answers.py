@@ -27,7 +27,7 @@ from runs.pipeline.modes import modes
 from runs.pipeline.moved import Motions, gone_through
 from runs.pipeline.run import run_case
 from runs.studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
-from runs.studies.study import Proof, Tell, titled
+from runs.studies.study import Held, Proof, Tell, titled
 
 # Of the paper's boom: N/m on both segments.
 OUTER, INNER = 83.16, 55.07
@@ -47,6 +47,7 @@ CURVE = {71.0: 2.0e6, 71.0 * 0.4 ** (1.0 / 3.0): 5.0e6, 71.0 * 0.4 ** (1.0 / 3.0
 
 # Pieces of half a metre know moments up to q h²/12, here 1.7 N m.
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
+LEVERS: Held = ("analytic", "lever rule", EXACT)
 
 
 @titled("answers", "What a designer asks")
@@ -93,28 +94,25 @@ def support_forces() -> tuple[float, float]:
 def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
     (rest,) = own.rests
     tail, head = station_forces()
-    hand = "lever rule"
     tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
-    yield _proof(f"tilt of the joint, {name}", 1e3 * rest.tilts[0].rotation, 1e3 * tilt, "mrad",
-                 "2 Δ and what contacts give way, over the overlap", CLOSE)  # fmt: skip
+    held: Held = ("analytic", "2 Δ and what contacts give way, over the overlap", CLOSE)
+    turned = 1e3 * rest.tilts[0].rotation
+    yield Proof(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *held)
     for pressed, force in zip(rest.stations, (tail, head), strict=True):
         what = f"contact force at {pressed.x:g} m, {name}"
-        yield _proof(what, 1e-3 * pressed.force, 1e-3 * force, "kN", hand, EXACT)
+        yield Proof(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
     at_foot, far = support_forces()
     x, s = ALONG_OUTER, TIP - ALONG_INNER
     outer, inner = rest.diagrams
     bent = -(at_foot * x + far * (x - SUPPORT) + 0.5 * OUTER * x**2)
-    by_hand = (
-        (outer, x, "shear", -(at_foot + far + OUTER * x)),
-        (outer, x, "moment", bent),
-        (inner, ALONG_INNER, "shear", INNER * s),
-        (inner, ALONG_INNER, "moment", -0.5 * INNER * s**2),
-    )
-    for diagram, place, what, force in by_hand:
-        unit = "kN" if what == "shear" else "kN m"
-        named = f"{what} at {place:g} m, {name}"
-        found = 1e-3 * read(diagram, what, place)
-        yield _proof(named, found, 1e-3 * force, unit, "by hand", OF_PIECES)
+    for diagram, place, what, unit, force in (
+        (outer, x, "shear", "kN", -(at_foot + far + OUTER * x)),
+        (outer, x, "moment", "kN m", bent),
+        (inner, ALONG_INNER, "shear", "kN", INNER * s),
+        (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
+    ):
+        found, named = 1e-3 * read(diagram, what, place), f"{what} at {place:g} m, {name}"
+        yield Proof(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
 
 
 def read(diagram: Diagram, what: str, place: float) -> float:
@@ -128,7 +126,7 @@ def read(diagram: Diagram, what: str, place: float) -> float:
 def _reactions(answers: Answers) -> Iterator[Proof]:
     for held, force in zip(answers.reactions, support_forces(), strict=True):
         what = f"reaction at {held.x:g} m"
-        yield _proof(what, 1e-3 * held.force, 1e-3 * force, "kN", "lever rule", EXACT)
+        yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
 
 
 def _cantilever() -> Iterator[Proof]:
@@ -141,20 +139,20 @@ def _cantilever() -> Iterator[Proof]:
     for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
         mode = next(one for one in own.modes if one.number == number)
         what = f"cantilever, {mode.way}, mode {number}"
-        yield _proof(what, mode.frequency, root**2 * rate, "Hz", "Blevins 1979", CLOSE)
+        yield Proof(what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE)
     assert own.moved is not None
     moment = 0.5 * abs(LOAD) * LENGTH**2
     stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
     (fibre,) = own.moved.fibres
     assert fibre.at_rest is not None
-    yield _proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa",
-                 "M c/J, Navier 1826", CLOSE)  # fmt: skip
+    held: Held = ("analytic", "M c/J, Navier 1826", CLOSE)
+    yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *held)
     single = swung(boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False))
     assert single.moved is not None
     for peak in single.moved.peaks:
         assert peak.factor is not None
         what = f"dynamic factor of its {peak.what}, one coordinate, loaded suddenly"
-        yield _proof(what, peak.factor, 2.0, "", "1 − cos ωt", CLOSE)
+        yield Proof(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
 
 
 def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
@@ -179,9 +177,3 @@ def _cycles() -> Iterator[Proof]:
         found_cycles = float(endurance(np.array([1e6 * size * (1.0 + 1e-12)]), 71e6)[0])
         what = f"cycles of {size:.4g} MPa, detail category 71"
         yield Proof(what, found_cycles, cycles, "", "external", "EN 1993-1-9, 7.1", EXACT)
-
-
-def _proof(
-    what: str, value: float, reference: float, unit: str, source: str, allowed: float
-) -> Proof:
-    return Proof(what, value, reference, unit, "analytic", source, allowed)

@@ -152,14 +152,8 @@ def reach_table(survey: Survey) -> Table:
     """How far the general solver comes."""
     rows: list[Sequence[Cell]] = []
     for method, tolerance in product(METHODS, TOLERANCES):
-        cells = [
-            one.time
-            for friction, model in product((False, True), SERIES)
-            for one in survey.reached
-            if (one.method, one.tolerance, one.model, one.friction)
-            == (method, tolerance, model, friction)
-        ]
-        rows.append((method, number(tolerance), *cells))
+        ways = [(method, tolerance, *way[::-1]) for way in product((False, True), SERIES)]
+        rows.append((method, number(tolerance), *(survey.reached[way] for way in ways)))
     columns = {
         "solver": "", "tolerance": "", "four terms": ".3g", "five terms": ".3g",
         "four terms, friction": ".3g", "five terms, friction": ".3g",

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,58 +30,22 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Refinement:
-    """A model with one thing refined.
-
-    Args:
-        what: is refined, of which model.
-        sizes: of each run, from the coarsest to the finest.
-        unit: of the sizes.
-        differences: largest difference of each run's tip from the next finer one's, as a part of
-            the finest one's range.
-        first_peaks: of the tip in m, one for each run.
-    """
-
-    what: str
-    sizes: Sequence[float]
-    unit: str
-    differences: Sequence[float]
-    first_peaks: Sequence[float]
-
-    @property
-    def orders(self) -> list[float]:
-        """Observed orders: slopes of the differences over the sizes in a log-log plot."""
-        sizes = np.log(self.sizes[: len(self.differences)])
-        slopes = np.diff(np.log(self.differences)) / np.diff(sizes)
-        return [float(order) for order in np.abs(slopes)]
-
-    @property
-    def rows(self) -> list[Sequence[Cell]]:
-        """One a size."""
-        what = f"{self.what} ({self.unit})" if self.unit else self.what
-        apart = [*(100.0 * part for part in self.differences), None]
-        peaks = [1.0e3 * peak for peak in self.first_peaks]
-        orders = [None, *self.orders, None]
-        return [(what, *row) for row in zip(self.sizes, apart, orders, peaks, strict=True)]
+def orders(sizes: Sequence[float], differences: Sequence[float]) -> list[float]:
+    """Observed orders: slopes of the differences over the sizes in a log-log plot."""
+    slopes = np.diff(np.log(differences)) / np.diff(np.log(sizes[: len(differences)]))
+    return [float(order) for order in np.abs(slopes)]
 
 
 def refine(
-    case: Case,
-    what: str,
-    model: Model,
-    sizes: Sequence[float],
-    unit: str,
-    at: Callable[[Model, float], Model],
-) -> Refinement:
-    """Run one model at several sizes.
+    case: Case, name: str, model: Model, sizes: Sequence[float], at: Callable[[Model, float], Model]
+) -> list[Sequence[Cell]]:
+    """Run one model at several sizes: a row for each.
 
     Args:
         case: the model's.
-        what: is refined.
+        name: of the rows.
         model: of the case.
         sizes: from the coarsest to the finest.
-        unit: of the sizes.
         at: the model at a size.
     """
     refined = tuple(
@@ -91,9 +54,11 @@ def refine(
     )
     runs = trajectories(case.model_copy(update={"models": refined}))
     tips = np.array([run.data["tip"].values for run in runs])
-    peaks = [run.first_peak()[1] for run in runs]
-    apart = np.abs(np.diff(tips, axis=0)).max(axis=1) / np.ptp(tips[-1])
-    return Refinement(f"{model.name}: {what}", list(sizes), unit, apart.tolist(), peaks)
+    apart = (np.abs(np.diff(tips, axis=0)).max(axis=1) / np.ptp(tips[-1])).tolist()
+    peaks = [1.0e3 * run.first_peak()[1] for run in runs]
+    parts = [*(100.0 * part for part in apart), None]
+    slopes = [None, *orders(sizes, apart), None]
+    return [(name, *row) for row in zip(sizes, parts, slopes, peaks, strict=True)]
 
 
 @titled("refinement", "How the motion settles")
@@ -103,17 +68,17 @@ def study(tell: Tell) -> Iterator[Table]:
     steps = {name: model_of(case, name).step or case.time.step or np.nan for name in STEPPED}
     rows: list[Sequence[Cell]] = []
     for what, name, sizes, unit, at in (
-        *(("step", name, [part * own for part in STEPS], "s", with_step)
+        *(("step", name, [part * own for part in STEPS], " (s)", with_step)
           for name, own in steps.items()),
         ("terms of each segment", "kantorovich-24", TERMS, "", _with_terms),
-        ("element length", "beam-fe", ELEMENTS, "m", _with_elements),
-        ("element length", "timoshenko", ELEMENTS, "m", _with_elements),
-        ("mesh size", "shell", MESHES, "m", _with_mesh),
+        ("element length", "beam-fe", ELEMENTS, " (m)", _with_elements),
+        ("element length", "timoshenko", ELEMENTS, " (m)", _with_elements),
+        ("mesh size", "shell", MESHES, " (m)", _with_mesh),
     ):  # fmt: skip
         tell(f"{name}: {what}")
         model = model_of(case, name)
         stepped = model if at is with_step else with_step(model, FINE_STEP)
-        rows += refine(case, what, stepped, sizes, unit, at).rows
+        rows += refine(case, f"{name}: {what}{unit}", stepped, sizes, at)
     columns = {
         "refined": "",
         "size": ".3g",

@@ -7,7 +7,7 @@ those of the series by a general solver held to 2000 steps as well.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -37,24 +37,8 @@ TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
 ABOUT = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class Reached:
-    """How far a general solver comes in the steps that the paper allows the series.
-
-    Args:
-        method, tolerance: of the solver.
-        model: of ``SERIES``.
-        friction: whether it rubs.
-        time: in s.
-        steps: that it has taken.
-    """
-
-    method: str
-    tolerance: float
-    model: str
-    friction: bool
-    time: float
-    steps: int
+# Method and tolerance of a general solver, a model of ``SERIES``, and whether it rubs.
+Way = tuple[str, float, str, bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +61,7 @@ class Survey:
     Args:
         without, with_friction: the examples.
         free, rubbed: their samples by the numerics.
-        reached: by the general solver.
+        reached: by the general solver in the steps that the paper allows the series, in s.
         printed: elements without and with friction whose contacts are as stiff as printed.
     """
 
@@ -85,7 +69,7 @@ class Survey:
     with_friction: Example
     free: Mapping[Numerics, Sequence[Sample]]
     rubbed: Mapping[Numerics, Sequence[Sample]]
-    reached: Sequence[Reached]
+    reached: Mapping[Way, float]
     printed: Mapping[Numerics, Sequence[Sequence[Moved]]]
 
     @classmethod
@@ -95,7 +79,7 @@ class Survey:
         free, rubbed = (case_file.load(str(path)) for path in (WITHOUT, WITH))
         without, with_friction = Example.of(free, MEMBERS), Example.of(rubbed, 1)
         tell("the general solver")
-        reached = list(reach(without, False)) + list(reach(with_friction, True))
+        reached = reach(without, False) | reach(with_friction, True)
         tell("without friction")
         of_free = {how: without.samples(how) for how in all_numerics()}
         tell("with friction")
@@ -132,10 +116,11 @@ class Survey:
         return Outcome(found.shown, f"{found.why}; by {how} energy breaks out in {part}, {when}")
 
     def _s10(self) -> Outcome:
-        farthest = max((one for one in self.reached if not one.friction), key=lambda one: one.time)
+        way = max((way for way in self.reached if not way[-1]), key=self.reached.__getitem__)
+        (method, tolerance, *_), farthest = way, self.reached[way]
         reach = (
-            f"{SERIES_STEPS} steps of a general solver reach {farthest.time:.2g} s of the "
-            f"{INTERVAL:g} s at most, by {farthest.method} at a tolerance of {farthest.tolerance:g}"
+            f"{SERIES_STEPS} steps of a general solver reach {farthest:.2g} s of the "
+            f"{INTERVAL:g} s at most, by {method} at a tolerance of {tolerance:g}"
         )
         stand = {
             round(INTERVAL / how.step)
@@ -143,7 +128,7 @@ class Survey:
             if share(one.elements.breaks > INTERVAL for one in found) >= MOST
         }
         fewest = f"elements stand in {min(stand)} steps" if stand else "no elements stand so long"
-        shown = farthest.time >= INTERVAL and bool(stand) and min(stand) > ELEMENT_STEPS
+        shown = farthest >= INTERVAL and bool(stand) and min(stand) > ELEMENT_STEPS
         return Outcome(shown, f"{reach}; {fewest}")
 
 
@@ -161,13 +146,14 @@ def lost_then(sample: Sample) -> bool:
     return abs(sample.elements.breaks - INTERVAL) <= ABOUT
 
 
-def reach(example: Example, friction: bool) -> Iterator[Reached]:
+def reach(example: Example, friction: bool) -> dict[Way, float]:
     """How far each general solver comes at each tolerance, both series."""
-    for method, tolerance, model in product(METHODS, TOLERANCES, SERIES):
-        found = solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS)
-        yield Reached(
-            method, tolerance, model, friction, float(found.time[-1]), found.time.size - 1
+    return {
+        (method, tolerance, model, friction): float(
+            solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]
         )
+        for method, tolerance, model in product(METHODS, TOLERANCES, SERIES)
+    }
 
 
 def share(shows: Iterable[bool]) -> float:

@@ -20,7 +20,7 @@ from runs.studies.as_computed_then import leave, tables
 from runs.studies.then.general_solver import METHODS, solve
 from runs.studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
 from runs.studies.then.scheme_errors import oscillator
-from runs.studies.then.survey import TOLERANCES, WITH, WITHOUT, Reached, Survey, lost_then
+from runs.studies.then.survey import TOLERANCES, WITH, WITHOUT, Survey, lost_then
 
 TIME = np.arange(0.0, 10.0, 1.6e-3)
 CUTOFF = 1.7
@@ -138,7 +138,7 @@ def survey(samples: Sequence[Sample], reached: float) -> Survey:
     found = dict.fromkeys(all_numerics(), samples)
     elements = [one.elements for one in samples]
     ways = product(METHODS, TOLERANCES, SERIES, (False, True))
-    far = [Reached(*way, time=reached, steps=2000) for way in ways]
+    far = dict.fromkeys(ways, reached)
     printed = {how: [elements, elements] for how in found}
     return Survey(*examples, found, found, far, printed)
 

@@ -8,34 +8,31 @@ import pytest
 
 from runs.case.schema import Case
 from runs.studies.model_ladder import LADDER
-from runs.studies.motions import friction_case
-from runs.studies.refinement import Refinement, refine, with_step
+from runs.studies.motions import friction_case, lasting, model_of
+from runs.studies.refinement import orders, refine, with_step
 
 
 @pytest.fixture
 def case() -> Case:
     """The first press of the paper's example with friction."""
-    long = friction_case()
-    time = long.time.model_copy(update={"duration": 0.6})
-    return long.model_copy(update={"time": time})
+    return lasting(friction_case(), 0.6)
 
 
 def test_orders_are_those_of_a_power_law() -> None:
     """Reference: analytic, errors of 3 h²."""
     sizes = np.array([0.4, 0.2, 0.1, 0.05])
-    errors = 3.0 * sizes**2
-    found = Refinement("", sizes.tolist(), "m", np.abs(np.diff(errors)).tolist(), [0.1] * 4)
-    assert found.orders == pytest.approx([2.0, 2.0])
+    assert orders(sizes, np.abs(np.diff(3.0 * sizes**2))) == pytest.approx([2.0, 2.0])
 
 
 def test_a_finer_step_settles_with_the_splitting_s_order(case: Case) -> None:
     """Reference: analytic. The splitting is of second order, with friction too."""
-    model = next(model for model in case.models if model.name == "kantorovich-5-linear")
-    found = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], "s", with_step)
-    assert found.differences[0] < 1e-3
-    assert np.mean(found.orders) == pytest.approx(2.0, abs=0.4)
-    assert [row[0] for row in found.rows] == ["kantorovich-5-linear: step (s)"] * 4
-    assert found.rows[-1][2] is None
+    model = model_of(case, "kantorovich-5-linear")
+    rows = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], with_step)
+    names, _, apart, found, _ = zip(*rows, strict=True)
+    assert set(names) == {"step"}
+    assert apart[0] < 0.1
+    assert (found[0], found[-1], apart[-1]) == (None, None, None)
+    assert np.mean(found[1:-1]) == pytest.approx(2.0, abs=0.4)
 
 
 def test_the_ladder_has_its_models(case: Case) -> None:
