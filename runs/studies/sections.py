@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -53,28 +53,14 @@ SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
 # Of the outer sections, by the program sectionproperties 3.10.2, in m⁴, m² and m: second moments as
 # they are, the others extrapolated from half and a quarter of the thickness to thin walls
 # (tests/geometry/test_sections_elsewhere.py).
-ELSEWHERE: Mapping[str, Mapping[str, float]] = {
-    "hexagon": {
-        "second_moment_of_area": 3.4904e-4,
-        "lateral_second_moment_of_area": 2.37213e-4,
-        "torsion_constant": 5.04895e-4,
-        "shear_area": 5.55004e-3,
-        "lateral_shear_area": 3.77946e-3,
-    },
-    "octagon": {
-        "second_moment_of_area": 3.60563e-4,
-        "lateral_second_moment_of_area": 1.97568e-4,
-        "torsion_constant": 4.68346e-4,
-        "shear_area": 5.24576e-3,
-        "lateral_shear_area": 3.83017e-3,
-    },
-    "U": {
-        "second_moment_of_area": 3.54044e-4,
-        "lateral_second_moment_of_area": 1.92474e-4,
-        "torsion_constant": 4.21478e-4,
-        "shear_area": 5.2764e-3,
-        "lateral_shear_area": 3.5089e-3,
-    },
+PROPERTIES = (
+    "second_moment_of_area", "lateral_second_moment_of_area", "torsion_constant", "shear_area",
+    "lateral_shear_area",
+)  # fmt: skip
+ELSEWHERE: Mapping[str, Sequence[float]] = {
+    "hexagon": (3.4904e-4, 2.37213e-4, 5.04895e-4, 5.55004e-3, 3.77946e-3),
+    "octagon": (3.60563e-4, 1.97568e-4, 4.68346e-4, 5.24576e-3, 3.83017e-3),
+    "U": (3.54044e-4, 1.92474e-4, 4.21478e-4, 5.2764e-3, 3.5089e-3),
 }
 CENTRE_OF_U = -8.64726e-3
 
@@ -250,7 +236,7 @@ def _numbers() -> Iterator[Proof]:
         yield Proof(what, value, reference, unit, "analytic", "thin tube", 1.0e-3)
     program = "finite elements, sectionproperties 3.10.2"
     for name, known in ELSEWHERE.items():
-        for key, reference in known.items():
+        for key, reference in zip(PROPERTIES, known, strict=True):
             what, value = f"{name}: {key.replace('_', ' ')}", getattr(SHAPES[name][0], key)
             unit = "m²" if key.endswith("shear_area") else "m⁴"
             yield Proof(what, value, reference, unit, "external", program, 1.0e-3)
