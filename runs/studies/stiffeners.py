@@ -37,7 +37,7 @@ class Sizes:
 
     mesh: float = 0.05  # edge length in m on the boom
     collar: float = 0.3  # length of a collar in m
-    # Thicknesses of both in m.
+    # Thicknesses of both in m, rising.
     collars: Sequence[float] = (0.005, 0.010, 0.020)
     diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
     # x in m at which the inner segment is held for its static flexibility.
@@ -77,24 +77,17 @@ class Variant:
 def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
     """What each of two segments has → the segment with it: nothing first, the most last."""
     outer, inner = boom.segments
-
-    def at_head(thickness: float) -> tuple[Collar]:
-        return (Collar(outer.end - sizes.collar, outer.end, thickness),)
-
-    def at_tail(thickness: float) -> tuple[Collar]:
-        return (Collar(inner.start, inner.start + sizes.collar, thickness),)
-
-    def plate(thickness: float) -> tuple[Diaphragm]:
-        return (Diaphragm(inner.start, thickness),)
-
+    head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
     outers, inners = {"nothing": outer}, {"nothing": inner}
     for t in sizes.collars:
-        outers[f"collar at the head, {1e3 * t:g} mm"] = replace(outer, collars=at_head(t))
-        inners[f"collar at the tail, {1e3 * t:g} mm"] = replace(inner, collars=at_tail(t))
+        what = f"{1e3 * t:g} mm"
+        outers[f"collar at the head, {what}"] = replace(outer, collars=(Collar(*head, t),))
+        inners[f"collar at the tail, {what}"] = replace(inner, collars=(Collar(*tail, t),))
     for t in sizes.diaphragms:
-        inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plate(t))
-    thickest = at_tail(max(sizes.collars)), plate(max(sizes.diaphragms))
-    both = replace(inner, collars=thickest[0], diaphragms=thickest[1])
+        plates = (Diaphragm(inner.start, t),)
+        inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plates)
+    # Both rise.
+    both = replace(inner, collars=(Collar(*tail, sizes.collars[-1]),), diaphragms=plates)
     return outers, inners | {"the thickest of both": both}
 
 
@@ -287,13 +280,12 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())
     stations = boom.joints[0].stations
-    found: list[list[Variant]] = []
-    for variants in stiffened(boom, sizes):
-        found.append([])
+    outer: list[Variant] = []
+    inner: list[Variant] = []
+    for variants, found in zip(stiffened(boom, sizes), (outer, inner), strict=True):
         for what, segment in variants.items():
             tell(f"{segment.name}: {what}")
-            found[-1].append(measure(segment, what, stations, sizes))
-    outer, inner = found
+            found.append(measure(segment, what, stations, sizes))
     yield table([*outer, *inner], stations, sizes)
     yield sums(outer, inner, stations, sizes)
     tell("a diaphragm in pure shear, and rings")
