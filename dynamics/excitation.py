@@ -54,7 +54,7 @@ def followed(histories: Sequence[History], duration: float) -> Array:
     swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
     number = int(np.clip(np.ceil(_OF_SWING * swings) + 1.0, _TIMES, _MOST_TIMES))
     even = np.linspace(0.0, duration, number)
-    nearest = np.rint(kinks / even[1]).astype(np.int64)
+    nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
     same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
     return np.union1d(np.delete(even, nearest[same]), kinks)
 

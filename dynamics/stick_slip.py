@@ -99,10 +99,14 @@ class Pulled:
         return drop / (_critical_drop(self.damping_ratio) * impedance)
 
     def pushed(self, time: Array, step: float) -> Array:
-        """(num_times,) p in N, by second differences over a step in s."""
+        """(num_times,) p in N, by second differences over a step in s.
+
+        Mirrored at t = 0, where a way that begins with a jump of its speed gives all of its impulse
+        within the first step.
+        """
         return -sum(
             (
-                mass * (way(time + step) - 2.0 * way(time) + way(time - step)) / step**2
+                mass * (way(time + step) - 2.0 * way(time) + way(np.abs(time - step))) / step**2
                 for mass, way in self.beside
             ),
             np.zeros(time.shape),

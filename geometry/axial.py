@@ -128,7 +128,7 @@ def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> 
     locked = inner.start if joint.locked_at is None else joint.locked_at
     if joint.drive.locked == "inner":
         return Entry(joint.outer, locked, 1, force)
-    return Entry(joint.inner, locked, -1, force) if locked > inner.start else None
+    return Entry(joint.inner, locked, -1, force) if locked >= inner.start else None
 
 
 def passed_over(segments: Sequence[Segment], joints: Sequence[Joint], segment: int) -> set[float]:

@@ -108,6 +108,17 @@ def test_other_drives_push() -> None:
     assert found.drive_force[0] == 300.0
 
 
+@pytest.mark.parametrize("start", [0.0, 0.1])
+def test_another_drive_that_starts_at_once(start: float) -> None:
+    """Reference: analytic. A jump to v of another drive gives the impulse m_b v to all that is
+    pulled, which swings by m_b v/(m ω)."""
+    pulled = replace(ROPE, beside=((0.4 * MASS, Stroke(2.0, 1.0, start=start)),))
+    time = np.linspace(0.0, 0.9, 901)
+    found = follow(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
+    behind = 0.4 / OMEGA * np.sin(OMEGA * np.maximum(time - start, 0.0))
+    assert found.drive_lag == pytest.approx(behind, abs=0.01 * behind.max())
+
+
 Friction = Callable[[Array | float], Array]
 
 

@@ -127,6 +127,7 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
         ("inner", None, Entry(0, 6.0, 1, 1000.0 + 40.0 * LIGHT)),
         ("inner", 7.0, Entry(0, 7.0, 1, 1000.0 + 40.0 * LIGHT)),
         ("outer", 8.0, Entry(1, 8.0, -1, 1000.0 + 40.0 * LIGHT)),
+        ("outer", 6.0, Entry(1, 6.0, -1, 1000.0 + 40.0 * LIGHT)),
         ("outer", 5.0, None),
     ],
 )
