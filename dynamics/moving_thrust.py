@@ -15,8 +15,8 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.row_table import RowTable
 
-# ∫₀¹ uⁱ uʲ du of the powers in slopes.
-_PRODUCTS = 1.0 / (1.0 + np.add.outer(np.arange(3), np.arange(3)))
+# i + j + 1 of the powers in slopes: ∫₀¹ uⁱ uʲ du is one over it.
+_POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,20 +50,20 @@ class MovingThrust:
     def passed(self, plane: int) -> Array:
         """(num_pieces, num_modes, num_modes) ∫ w′ᵀ w′ ds from s = 0 to where each piece begins."""
         slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
-        within = np.einsum("p,ij,pik,pjl->pkl", lengths, _PRODUCTS, slopes, slopes, optimize=True)
+        within = np.einsum("p,ij,pik,pjl->pkl", lengths, 1 / _POWERS, slopes, slopes, optimize=True)
         upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
-        return np.asarray(upto[:-1] - self._upto(upto, slopes, 0.0))
+        piece, part, length = self.table.place(0.0)
+        products = length * part**_POWERS / _POWERS
+        return np.asarray(upto[:-1] - upto[piece] - slopes[piece].T @ products @ slopes[piece])
 
     def softening(self, s: float) -> Array:
-        """(num_modes, num_modes) K_G at s in m, less that at 0."""
-        modes = self.table.coefficients.shape[3]
-        total = np.zeros((modes, modes))
-        for plane in range(self.planes):
-            total += self._upto(self.passed(plane), self.slopes[:, :, plane], s)
-        return self.force * total
-
-    def _upto(self, upto: Array, slopes: Array, s: float) -> Array:
-        """What is passed at s, of what is where pieces begin."""
-        piece, part, length = self.table.place(s)
-        products = length * part ** (1.0 + np.add.outer(np.arange(3), np.arange(3))) * _PRODUCTS
-        return np.asarray(upto[piece] + slopes[piece].T @ products @ slopes[piece])
+        """(num_modes, num_modes) K_G at s in m, less that at 0, where it is exactly 0."""
+        (first, start, _), (last, end, _) = (self.table.place(x) for x in sorted((0.0, s)))
+        slopes, lengths = self.slopes[first : last + 1], np.diff(self.table.knots)[first : last + 1]
+        begins, ends = np.zeros((lengths.size, 1, 1)), np.ones((lengths.size, 1, 1))
+        begins[0], ends[-1] = start, end
+        products = lengths[:, None, None] * (ends**_POWERS - begins**_POWERS) / _POWERS
+        weighed = np.einsum("pij,pjkl->pikl", products, slopes)
+        modes = slopes.shape[3]
+        total = slopes.reshape(-1, modes).T @ weighed.reshape(-1, modes)
+        return np.asarray(self.force * np.sign(s) * total)

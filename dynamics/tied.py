@@ -44,7 +44,7 @@ def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, A
     pressed = np.isin(system.station_of_row, system.station_of_row[pressing])
     held = system.rows[~on_ground & (pressing | ~pressed)]
     free = null_space(held) if held.size else np.eye(system.num_modes)
-    omega2, shapes = eigh(free.T @ (system.omega2[:, None] * free))
+    omega2, shapes = eigh(free.T @ system.stiffness @ free)
     least = _RIGID * min(system.omega2[system.omega2 > 0.0], default=0.0)
     omega2[np.abs(omega2) <= least] = 0.0
     basis = free @ shapes
@@ -73,6 +73,7 @@ def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, A
             excitations=[replace(x, load=x.load @ basis) for x in system.excitations],
             released=system.released @ basis,
             thrown=system.thrown @ basis,
+            softening=np.zeros((0, 0)),
         ),
         basis,
     )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -70,6 +71,28 @@ def system(history: SCurve | Table) -> GapSystem:
 def test_what_is_passed_is_softened(s: float) -> None:
     """Reference: analytic, the integral along the way by Gauss's rule."""
     assert thrust().softening(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
+
+
+@pytest.mark.parametrize("knots", [[-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]])
+def test_what_has_passed_nothing_softens_nothing(knots: list[float]) -> None:
+    """Reference: analytic, 0 to the last bit, wherever the knots are."""
+    table = RowTable.of(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
+    assert not MovingThrust(FORCE, table).softening(0.0).any()
+
+
+def test_only_what_is_passed_is_integrated() -> None:
+    """Reference: analytic, of a polynomial whose pieces are many; all pieces of it would take
+    0.6 GB."""
+    modes, knots = 200, np.linspace(-1.0, 1.0, 2001)
+    table = RowTable(
+        knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (2000, 1, 1, modes))
+    )
+    tracemalloc.start()
+    found = MovingThrust(2.0, table).softening(0.0105)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert found == pytest.approx(np.full((modes, modes), 0.021), rel=1e-12)
+    assert most < 50e6
 
 
 @pytest.mark.parametrize("s", [-0.7, 0.2, 1.9])

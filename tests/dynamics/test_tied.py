@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,6 +48,14 @@ def test_the_tied_boom_lacks_the_play_alone(pair: GapSystem) -> None:
     assert pair.observers["tip"].row @ rest - tip == pytest.approx(-0.01 - 5e-6, rel=1e-6)
     np.testing.assert_allclose(tied.omega2, [50.0], rtol=1e-12)
     np.testing.assert_allclose(basis @ tied.excitations[0].load, [0.5, 0.5], rtol=1e-12)
+
+
+def test_what_axial_forces_soften_stays_softer(pair: GapSystem) -> None:
+    """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
+    pressed = replace(pair, softening=np.diag([30.0, 0.0]))
+    tied, _ = tied_system(pressed, [equilibrium(pressed, pressed.load)])
+    np.testing.assert_allclose(tied.omega2, [35.0], rtol=1e-12)
+    assert tied.in_own_modes() is tied
 
 
 def test_the_ground_is_still_met(pair: GapSystem) -> None:
