@@ -23,6 +23,10 @@ from geometry.arrays import Array
 
 _ROUNDS = 1000
 _MOST_NEWTON = 100
+# C in m/N (num_rows, num_rows), contact rows first, what rows read without forces in m (num_rows,);
+# terms of the contacts' laws, one on each side of a row at most; of friction rows (num_frictions,)
+# μN in N and the readings in m at which they stay if they are held.
+Problem = tuple[Array, Array, Terms, Array, Array]
 # Parts of what a row reads, with the numbers that add up to it, that are round-off.
 _ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
 
@@ -66,7 +70,7 @@ class ResistingRows:
         """
         forces, friction = self._forces, slice(self._contacts, None)
         problem = self._compliance, free, self._terms, self._bound, self._place
-        if not (np.isfinite(free).all() and resist(*problem, forces)):
+        if not (np.isfinite(free).all() and resist(problem, forces)):
             raise StepTooLong("the forces of contact and friction are not found; halve the step")
         way = self._onward * (free - self._compliance @ forces - self.readings)
         self.readings += way
@@ -82,58 +86,43 @@ class ResistingRows:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def resist(
-    compliance: Array, free: Array, terms: Terms, bound: Array, place: Array, force: Array
-) -> bool:
-    """Improve ``force`` (num_rows,) until it solves the problem; False if it does not.
+def resist(problem: Problem, force: Array) -> bool:
+    """Improve ``force`` (num_rows,) in N until it solves the problem; False if it does not.
 
-    Args:
-        compliance: (num_rows, num_rows) C in m/N, the contact rows first.
-        free: (num_rows,) what the rows read without forces, in m.
-        terms: of the contact rows' laws, one on each side of a row at most.
-        bound: (num_frictions,) μN in N.
-        place: (num_frictions,) readings in m at which the friction rows stay if they are held.
-        force: (num_rows,) a guess in N, positive against a positive reading.
+    It is positive against a positive reading, and first a guess.
     """
+    compliance, free, _, _, _ = problem
     n = free.size
     left, slope = np.zeros(n), np.zeros(n)
     for _ in range(_ROUNDS):
         settled = True
         for j in range(n):
-            answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
+            answer, slope[j] = _answer(problem, force, j)
             left[j] = answer - force[j]
             settled = settled and _excess(compliance, free, force, left[j], j) <= 1.0
             # The sweep goes on with what it has found.
             force[j] = answer
         if settled:
             return True
-        before = _defect(compliance, free, terms, bound, place, force, left, slope)
+        before = _defect(problem, force, left, slope)
         matrix = np.eye(n)
         for j in range(n):
             for k in range(n):
                 if k != j:
                     matrix[j, k] = slope[j] * compliance[j, k]
         trial = force + np.linalg.lstsq(matrix, left)[0]
-        if _defect(compliance, free, terms, bound, place, trial, left, slope) < before:
+        if _defect(problem, trial, left, slope) < before:
             force[:] = trial
     return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _defect(
-    compliance: Array,
-    free: Array,
-    terms: Terms,
-    bound: Array,
-    place: Array,
-    force: Array,
-    left: Array,
-    slope: Array,
-) -> float:
+def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
     """Largest way in m by which a row misses its answer to the others; the answers' slopes."""
+    compliance, free, _, _, _ = problem
     worst = 0.0
     for j in range(free.size):
-        answer, slope[j] = _answer(compliance, free, terms, bound, place, force, j)
+        answer, slope[j] = _answer(problem, force, j)
         left[j] = answer - force[j]
         worst = max(worst, abs(left[j]) * compliance[j, j])
     return worst
@@ -149,16 +138,9 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _answer(
-    compliance: Array,
-    free: Array,
-    terms: Terms,
-    bound: Array,
-    place: Array,
-    force: Array,
-    j: int,
-) -> tuple[float, float]:
+def _answer(problem: Problem, force: Array, j: int) -> tuple[float, float]:
     """The force of row j under those of the others, and its slope over what it would read."""
+    compliance, free, terms, bound, place = problem
     alone = free[j]
     for i in range(free.size):
         if i != j:

@@ -30,7 +30,7 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
         free = rows @ random.normal(scale=2.0e-3, size=4)
         bound, place = np.array([900.0, 1000.0]), random.normal(scale=1.0e-4, size=2)
         force = np.zeros(6)
-        assert resist(compliance, free, contact_terms(laws), bound, place, force)
+        assert resist((compliance, free, contact_terms(laws), bound, place), force)
         read = free - compliance @ force
         noise = 1.0e-12 * np.abs(compliance).max() * np.abs(force).sum() + 1.0e-15
         for reading, one, pushed in zip(read[:4], laws, force[:4], strict=True):
