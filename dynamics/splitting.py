@@ -53,7 +53,14 @@ from dynamics.kernels.integrator_state import (
     system_arrays,
 )
 from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
-from dynamics.kernels.modal_flow import ModalFlow, mean_place, modal_energy, move, tabulate, travel
+from dynamics.kernels.modal_flow import (
+    mean_place,
+    modal_energy,
+    move,
+    stacked_flows,
+    tabulate,
+    travel,
+)
 from dynamics.kernels.pressed_steps import pressed_steps
 from dynamics.kernels.strides import STRIDES, closing_bounds, dragged_speeds, safe_stride
 from dynamics.motion import Motion
@@ -119,7 +126,7 @@ def _march(
     """Advance by up to ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces), one
-    row an interval; velocities may have no columns. ``flows`` has one (9, num_modes) for each of
+    row an interval; velocities may have no columns. ``flows`` has one (11, num_modes) for each of
     the ``strides`` that may be made, with the rates of damping. ``springs`` are the
     stiffness and the preload (num_rows,) of closed contacts, which are in the modes, and the terms
     and limits of all laws.
@@ -219,16 +226,16 @@ def _march(
                 for p in range(first, last):
                     tabulate(piece, omega2, load, rates if within else none, spans[p])
                     excite(excitations, p, p + 1, 0.0, 1.0)
-                    travel(a, v, piece, spans[p], omega2, load, within, now, then, tally)
+                    travel(a, v, piece, spans[p], within, now, then, tally)
             else:
                 if excited:
                     excite(excitations, first, last, 0.0, 1.0)
                 if striding:
                     share = strides[stride] / substeps
-                    mean_place(a, v, flow, time, omega2, load, now, then, place)
+                    mean_place(a, v, flow, time, now, then, place)
                     add_closed_forces(place, rows, stiffness, preload, share, mean)
                 if excited or within:
-                    travel(a, v, flow, time, omega2, load, within, now, then, tally)
+                    travel(a, v, flow, time, within, now, then, tally)
                 else:
                     move(a, v, flow)
             touching = contact_forces(a, rows, terms, y, force)
@@ -285,7 +292,7 @@ class _Steps:
         longest = DRAGGED / (step * damping[2].max(initial=0.0) + 1.0e-300)
         strides = _CLOSED_STRIDES if contacts.any else STRIDES
         strides = strides[max(1.0, longest) >= strides]
-        flows = np.array([ModalFlow.over(system, stride * step).stacked() for stride in strides])
+        flows = stacked_flows(system, strides * step)
         arrays = (*system_arrays(system)[:3], contacts.terms, contacts.limits)
         space = space_for(system, damping)
         return cls(contacts, strides, flows, arrays, damping, friction_arrays(system), space, step)

@@ -23,9 +23,10 @@ _ROUNDS = 200
 
 # Rows of a problem (``num_rows`` columns each): the slip c without impulses, bounds low ≤ high, the
 # round-off of c, in which rows that depend on one another may contradict themselves, the impulses;
-# what the solution needs besides: their changes, which rows are between their bounds, and from
+# of friction, directions and speeds at the start of a step, and when rows turned in it; what the
+# solution needs besides: changes of impulses, which rows are between their bounds, and from
 # ``_FACTOR`` on a Cholesky factor. One array, since each that is handed on costs as much as a sum.
-FREE, LOW, HIGH, NOISE, IMPULSE, _CHANGE, _INNER, _FACTOR = range(8)
+FREE, LOW, HIGH, NOISE, IMPULSE, SLID, SPED, TURN, _CHANGE, _INNER, _FACTOR = range(11)
 
 
 def problem_for(num_rows: int) -> Array:
@@ -39,11 +40,7 @@ def bounded_impulses(matrix: Array, problem: Array) -> bool:
 
     Rounds of a Gauss-Seidel sweep, which finds the rows that leave their bounds (it needs one round
     where these are the ones of the guess), and exact solutions for the others, in which a row
-    that reaches its bound stays there. Both lower the objective, whatever the rank of the matrix.
-
-    Args:
-        matrix: (num_rows, num_rows) G.
-        problem: of :func:`problem_for`, with c, bounds, round-off and a guess.
+    that reaches its bound stays there. Both lower the objective, whatever the rank of the matrix G.
     """
     size = matrix.shape[0]
     for j in range(size):

@@ -14,30 +14,18 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.contact import Limits, Terms
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
+from dynamics.kernels import friction_step as coulomb
+from dynamics.kernels.bounded_impulses import problem_for
 from dynamics.kernels.compiled import borrowed
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces, damped_kick
 from dynamics.kernels.decay import fade, kept_after
 from dynamics.kernels.drawn_strides import Strides, glide
-from dynamics.kernels.friction_step import (
-    add_pressed_bounds,
-    filter_rows,
-    find_turns,
-    look_ahead,
-    note_directions,
-    prescribed_bounds,
-    round_off,
-    rub,
-    settle,
-)
 from dynamics.kernels.integrator_state import (
     CONTACT,
     DAMPING,
     FRICTION,
     MIDDLE,
-    PLACE,
     REST,
-    SLIDING,
     WORK,
     Excitations,
     State,
@@ -52,9 +40,6 @@ from dynamics.kernels.moving_thrusts import Pushed, Thrusts, kick, press_along
 # After so many steps apart it is worth the while to look how many more can be made at once.
 _APART = 8
 
-# Rows that turn within this part of a step of one another turn together.
-_TOGETHER = 1.0e-9
-
 # ω² and load (num_modes,), terms and limits of the laws, rates c of damping (num_modes,) or none
 # (0,), μ and prescribed N (2, num_frictions), 1 where a contact row presses (num_frictions,
 # num_rows).
@@ -65,20 +50,19 @@ Still = tuple[Array, Array, Terms, Limits, Array, Array, Array]
 # part and in all (3, num_all + num_thrusts).
 Rows = tuple[Array, Array, Array, Array]
 
-# Of a length of step (1,): the flow over its half (9, num_modes), what modes keep over a quarter,
+# Of a length of step (1,): the flow over its half (11, num_modes), what modes keep over a quarter,
 # and likewise the flow over all of it; filtered friction rows and their matrix, D Dᵀ; for modes
-# (num_modes,), contact rows (3, num_rows), friction rows (3, num_frictions); the problem of
-# bounded impulses.
-Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+# (num_modes,) and contact rows (3, num_rows); the problem of bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
 
 def space_for(system: GapSystem) -> Space:
     """What the steps of a system need beside its state."""
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
     r = n if system.damping.any() else 0
-    shapes = ((1,), (9, n), (r,), (f, n), (f, f), (f, f), (n,), (3, m), (3, f))
-    length, half, faded, filtered, matrix, masses, ahead, middle, lines = map(np.zeros, shapes)
-    return length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem_for(f)
+    shapes = ((1,), (11, n), (r,), (f, n), (f, f), (f, f), (n,), (3, m))
+    length, half, faded, filtered, matrix, masses, ahead, middle = map(np.zeros, shapes)
+    return length, half, faded, filtered, matrix, masses, ahead, middle, problem_for(f)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -130,17 +114,15 @@ def drawn_steps(
     moving = tabled[3]
     loads, _, spans, parts, _, pushes = driving
     start, centre, end = pushes
-    length, half, faded, filtered, matrix, masses, ahead, middle, lines, problem = borrowed(space)
+    length, half, faded, filtered, matrix, masses, ahead, middle, problem = borrowed(space)
     push, y_ahead, force_ahead = middle
-    slid, turns = lines[:2], lines[2]
-    slips, noise = problem[FREE], problem[NOISE]
     along, slope, along_then, slope_then = borrowed(pushed)
     pressing_along = borrowed(thrusts)
     forces, of_thrust = pressing_along[0], pressing_along[1]
     softened = forces.size > 0
     carried, driven, done = told
-    fading, pressed, excited = rates.size > 0, pressing.any(), loads.shape[0] > 0
-    rubbing = pressed or (given[0] * given[1]).any()
+    fading, excited = rates.size > 0, loads.shape[0] > 0
+    rubbing = pressing.size > 0 or (given[0] * given[1]).any()
     m, o = y.size, y.size + friction.size
     f = friction.size if rubbing else 0
     d = now.shape[0] - o
@@ -183,7 +165,7 @@ def drawn_steps(
                 if fresh and halved:
                     average(now, then, moving, m, middles)
                 if fresh and f > 0:
-                    filter_rows(between, half, time, filtered)
+                    coulomb.filter_rows(between, half, time, filtered)
                     for j in range(f):
                         ahead[:] = filtered[j]
                         if damped:
@@ -215,7 +197,7 @@ def drawn_steps(
                     push[:] = 0.0
                 if halved:
                     if excited:
-                        travel(a, v, half, 0.5 * time, omega2, load, False, start, centre, tally)
+                        travel(a, v, half, 0.5 * time, False, start, centre, tally)
                     else:
                         move(a, v, half)
                     if moves:
@@ -228,20 +210,16 @@ def drawn_steps(
                         ahead[:] = v
                         if damped:
                             _damp(ahead, faded, dragging, carried_on, 0.5 * time, True, no_work)
-                        look_ahead(a, ahead, half, ahead)
+                        coulomb.look_ahead(a, ahead, half, ahead)
                         if excited:
                             drive(ahead, half, centre, end)
-                        prescribed_bounds(given, time, grip)
-                        if pressed:
-                            add_pressed_bounds(
-                                ahead, v, touching_rows, terms, limits, push, pressing, given, time,
-                                y_ahead, force_ahead, grip,
-                            )  # fmt: skip
-                        read(rubbing_rows, ahead, slips)
-                        round_off(masses, ahead, noise)
-                        for j in range(f):
-                            slips[j] -= grip[PLACE, j]
-                        tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
+                        coulomb.bound_impulses(
+                            ahead, v, touching_rows, terms, limits, push, pressing, given, time,
+                            y_ahead, force_ahead, grip,
+                        )  # fmt: skip
+                        tally[FRICTION] += coulomb.rub(
+                            v, ahead, rubbing_rows, masses, filtered, matrix, grip, problem, time
+                        )
                         for j in range(f):
                             driven[m + j] -= grip[MIDDLE, j] * carried[m + j]
                     if damped:
@@ -249,11 +227,11 @@ def drawn_steps(
                             v, faded, dragging, carried_on, 0.5 * time, True, driven_on
                         )
                     if excited:
-                        travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
+                        travel(a, v, half, 0.5 * time, False, centre, end, tally)
                     else:
                         move(a, v, half)
                 elif excited:
-                    travel(a, v, half, time, omega2, load, False, start, end, tally)
+                    travel(a, v, half, time, False, start, end, tally)
                 else:
                     move(a, v, half)
                 pressed_then = contact_forces(a, touching_rows, terms, y, force)
@@ -280,28 +258,24 @@ def drawn_steps(
                 tally[CONTACT] += loss
                 changed = False
                 if f > 0:
-                    read(rubbing_rows, v, slips)
-                    round_off(masses, v, noise)
-                    for j in range(f):
-                        slips[j] += carried[m + j]
-                    tally[FRICTION] += settle(v, rubbing_rows, masses, grip, problem)
+                    tally[FRICTION] += coulomb.settle(
+                        v, rubbing_rows, carried[m:o], masses, grip, problem
+                    )
                     for j in range(f):
                         driven[m + j] -= grip[REST, j] * carried[m + j]
                         friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
-                    changed = note_directions(masses, grip, problem, slid)
+                    changed = coulomb.note_directions(masses, grip, problem)
                 enter(y, before, limits, time, tally)
                 if cut or not changed or cuts > 2 * f:
                     break
-                first_turn = find_turns(masses, grip, problem, slid, time, turns)
+                first_turn = coulomb.find_turns(masses, grip, problem, time)
                 if not 0.0 < first_turn < left:
                     break
                 for i in range(whole.size):
                     whole[i] = kept[i]
                 time, cut = first_turn, True
             if cut:
-                for j in range(f):
-                    if turns[j] <= time * (1.0 + _TOGETHER):
-                        grip[SLIDING, j] = 0.0
+                coulomb.stop(problem, time, grip)
             for j in range(done.size):
                 done[j] += driven[j]
             if softened:
@@ -346,7 +320,7 @@ def march_drawn(
     modal = omega2, load, rates
     # What rubs, drags or softens does so in every step.
     dragged = len(rows[0]) > y.size + friction.size or thrusts[0].size > 0
-    gliding = not (dragged or pressing.any() or (given[0] * given[1]).any())
+    gliding = not (dragged or pressing.size > 0 or (given[0] * given[1]).any())
     states, velocities, energies, gaps, means, peaks, frictions, drives = out
     done = rows[3][2]
     for interval in range(states.shape[0]):

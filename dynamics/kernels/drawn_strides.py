@@ -10,11 +10,11 @@ from dynamics.arrays import Array, Indices
 from dynamics.contact import Limits
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.integrator_state import Excitations, State, enter, excite, read
-from dynamics.kernels.modal_flow import ModalFlow, move, travel
+from dynamics.kernels.modal_flow import move, stacked_flows, travel
 from dynamics.kernels.moving_rows import Tables, place_rows, row_tables
 from dynamics.kernels.strides import STRIDES, closing_bounds, safe_stride
 
-# Numbers of steps, the flow over each (num_strides, 9, num_modes), through how many steps from
+# Numbers of steps, the flow over each (num_strides, 11, num_modes), through how many steps from
 # each one on the loads go straight (num_steps,), the fastest of each row's travel in m/s and the
 # steepest slope of each of its entries in 1/m (num_rows,), (num_rows, num_modes); scratch
 # (3, num_modes), (num_rows,).
@@ -23,7 +23,7 @@ Strides = tuple[Indices, Array, Indices, Array, Array, Array, Array]
 
 def strides_for(system: GapSystem, step: float) -> Strides:
     """What strides of a system by steps in s need, but for loads and travels of some time."""
-    flows = np.array([ModalFlow.over(system, stride * step).stacked() for stride in STRIDES])
+    flows = stacked_flows(system, STRIDES * step)
     rates, slopes = np.zeros(len(system.laws)), np.zeros(system.rows.shape)
     _, _, coefficients, moving = row_tables(system)
     for row, number, first, *_ in moving:
@@ -107,7 +107,7 @@ def glide(
         excite(excitations, parts[first], parts[first + count], 0.0, 1.0)
     if loads.shape[0] > 0 or rates.size > 0:
         damped, flow = rates.size > 0, flows[stride]
-        travel(a, v, flow, count * step, omega2, load, damped, start, end, tally)
+        travel(a, v, flow, count * step, damped, start, end, tally)
     else:
         move(a, v, flows[stride])
     place_rows(ways[parts[first + count]], tables, now)

@@ -26,12 +26,27 @@ from dynamics.kernels.bounded_impulses import (
     IMPULSE,
     LOW,
     NOISE,
+    SLID,
+    SPED,
+    TURN,
     bounded_impulses,
     slip,
 )
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces
-from dynamics.kernels.integrator_state import BOUND, HELD, MIDDLE, PLACE, REST, SLIDING, SPEED
+from dynamics.kernels.integrator_state import (
+    BOUND,
+    HELD,
+    MIDDLE,
+    PLACE,
+    REST,
+    SLIDING,
+    SPEED,
+    read,
+)
+
+# Rows that turn within this part of a step of one another turn together.
+_TOGETHER = 1.0e-9
 
 _EPSILON = 2.0 * float(np.finfo(np.float64).eps)
 
@@ -65,14 +80,7 @@ def round_off(row_masses: Array, a: Array, noise: Array) -> None:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def prescribed_bounds(given: Array, time: float, grip: Array) -> None:
-    """h μ N of every row by its prescribed N, in N·s."""
-    for j in range(given.shape[1]):
-        grip[BOUND, j] = time * given[0, j] * given[1, j]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def add_pressed_bounds(
+def bound_impulses(
     ahead: Array,
     v: Array,
     contact_rows: Array,
@@ -86,7 +94,7 @@ def add_pressed_bounds(
     force: Array,
     grip: Array,
 ) -> None:
-    """Add μ times the contact impulses of the step to the bounds of the rows that they press.
+    """h μ N of every row in N·s, by its prescribed N and the contact impulses that press it.
 
     Args:
         ahead: (num_modes,) modes at the end of the step but for friction.
@@ -94,6 +102,10 @@ def add_pressed_bounds(
         push: (num_rows,) contact forces at its start in N.
         y, force: (num_rows,) scratch.
     """
+    for j in range(given.shape[1]):
+        grip[BOUND, j] = time * given[0, j] * given[1, j]
+    if pressing.size == 0:
+        return
     contact_forces(ahead, contact_rows, terms, y, force)
     for k in range(force.size):
         damping = limits[k]["damping"]
@@ -116,16 +128,28 @@ def look_ahead(a: Array, v: Array, half: Array, ahead: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rub(
-    v: Array, filtered: Array, matrix: Array, grip: Array, problem: Array, time: float
+    v: Array,
+    ahead: Array,
+    rows: Array,
+    masses: Array,
+    filtered: Array,
+    matrix: Array,
+    grip: Array,
+    problem: Array,
+    time: float,
 ) -> float:
     """The impulses in the middle of a step of ``time``; gives the friction loss in J.
 
     Args:
-        problem: (…, num_frictions) with s_free in m and its round-off; the guess and the bounds
-            are those of ``grip``.
+        ahead: (num_modes,) modes at its end but for friction.
+        rows: (num_frictions, num_modes) there.
+        grip: with the bounds, and the guess.
     """
+    read(rows, ahead, problem[FREE])
+    round_off(masses, ahead, problem[NOISE])
     size = matrix.shape[0]
     for j in range(size):
+        problem[FREE, j] -= grip[PLACE, j]
         problem[HIGH, j] = grip[BOUND, j]
         problem[LOW, j] = -grip[BOUND, j]
         problem[IMPULSE, j] = grip[MIDDLE, j]
@@ -145,16 +169,19 @@ def rub(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def settle(v: Array, rows: Array, masses: Array, grip: Array, problem: Array) -> float:
+def settle(
+    v: Array, rows: Array, carried: Array, masses: Array, grip: Array, problem: Array
+) -> float:
     """Take the speed of held rows at the end of a step; gives the friction loss in J.
 
-    Args:
-        problem: (…, num_frictions) with the rows' speeds in m/s and their round-off; the impulses
-            that it leaves are kept in ``grip``.
+    The impulses are kept in ``grip``; ``carried`` (num_frictions,) are convective rates in m/s.
     """
+    read(rows, v, problem[FREE])
+    round_off(masses, v, problem[NOISE])
     size = masses.shape[0]
     holding = False
     for j in range(size):
+        problem[FREE, j] += carried[j]
         bound, impulse, held = grip[BOUND, j], grip[MIDDLE, j], grip[HELD, j]
         problem[IMPULSE, j] = grip[REST, j] = 0.0
         problem[LOW, j] = held * min(-bound - impulse, 0.0)
@@ -172,45 +199,46 @@ def settle(v: Array, rows: Array, masses: Array, grip: Array, problem: Array) ->
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def note_directions(masses: Array, grip: Array, problem: Array, before: Array) -> bool:
-    """Note speeds and directions of the rows at the end of a step; whether a direction changed.
-
-    Args:
-        problem: as :func:`settle` leaves it.
-        before: (2, num_frictions) is set to the directions and speeds at its start.
-    """
+def note_directions(masses: Array, grip: Array, problem: Array) -> bool:
+    """Note speeds and directions of the rows at the end of a step; whether a direction changed."""
     changed = False
     for j in range(masses.shape[0]):
-        before[0, j], before[1, j] = grip[SLIDING, j], grip[SPEED, j]
+        problem[SLID, j], problem[SPED, j] = grip[SLIDING, j], grip[SPEED, j]
         after = slip(masses, problem, j)
         still = grip[HELD, j] > 0.0 or abs(after) <= problem[NOISE, j]
         grip[SPEED, j] = after
         grip[SLIDING, j] = 0.0 if still else np.sign(after)
-        changed = changed or grip[SLIDING, j] != before[0, j]
+        changed = changed or grip[SLIDING, j] != problem[SLID, j]
     return changed
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def find_turns(
-    masses: Array, grip: Array, problem: Array, before: Array, time: float, turns: Array
-) -> float:
+def find_turns(masses: Array, grip: Array, problem: Array, time: float) -> float:
     """When in a step of ``time`` the first row turned, infinity if none did.
 
     A row that slid at the start and is at rest or slides back at the end has turned: on the line
     between its speed then and the one that friction without any change of direction would have
-    left it with. ``turns`` (num_frictions,) is set, to infinity where a row did not.
+    left it with.
     """
     first = np.inf
     size = masses.shape[0]
     for j in range(size):
-        slid, speed = before[0, j], before[1, j]
+        slid, speed = problem[SLID, j], problem[SPED, j]
         straight = problem[FREE, j]
         for k in range(size):
-            if before[0, k] != 0.0:
-                kept = before[0, k] * grip[BOUND, k] + grip[MIDDLE, k]
+            if problem[SLID, k] != 0.0:
+                kept = problem[SLID, k] * grip[BOUND, k] + grip[MIDDLE, k]
                 straight -= masses[j, k] * kept
-        turns[j] = np.inf
+        problem[TURN, j] = np.inf
         if grip[BOUND, j] > 0.0 and grip[SLIDING, j] != slid and straight * slid < 0.0:
-            turns[j] = time * speed / (speed - straight)
-            first = min(first, turns[j])
+            problem[TURN, j] = time * speed / (speed - straight)
+            first = min(first, problem[TURN, j])
     return first
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def stop(problem: Array, time: float, grip: Array) -> None:
+    """Let rows rest that turn at a time, or so shortly after it that they turn together."""
+    for j in range(grip.shape[1]):
+        if problem[TURN, j] <= time * (1.0 + _TOGETHER):
+            grip[SLIDING, j] = 0.0

@@ -18,7 +18,7 @@ from dynamics.kernels.contact_kicks import contact_forces, first_closing
 System = tuple[Array, Array, Array, Terms, Limits]
 
 # Friction rows (num_frictions, num_modes), their μ and prescribed N (2, num_frictions), 1 where a
-# contact row presses (num_frictions, num_rows), D Dᵀ.
+# contact row presses (num_frictions, num_rows) or nothing (num_frictions, 0) where none does, D Dᵀ.
 Dry = tuple[Array, Array, Array, Array]
 
 # Loads of the excitations (num_excitations, num_modes). Kinks cut steps into parts, over each of
@@ -58,6 +58,7 @@ def friction_arrays(system: GapSystem) -> Dry:
     pressing = np.zeros((len(frictions), len(system.laws)))
     for j, friction in enumerate(frictions):
         pressing[j, list(friction.pressed_by)] = 1.0
+    pressing = pressing if pressing.any() else pressing[:, :0].copy()
     given = np.array([[f.coefficient, f.normal_force] for f in frictions]).reshape(-1, 2)
     rows = np.ascontiguousarray(system.friction_rows)
     return rows, given.T.copy(), pressing, rows @ rows.T

@@ -8,29 +8,17 @@ from numba import njit
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.bounded_impulses import FREE, NOISE, problem_for
+from dynamics.kernels import friction_step as coulomb
+from dynamics.kernels.bounded_impulses import problem_for
 from dynamics.kernels.compiled import borrowed
 from dynamics.kernels.contact_kicks import contact_forces, damped_kick
 from dynamics.kernels.decay import Damping, damp, kept_after
-from dynamics.kernels.friction_step import (
-    add_pressed_bounds,
-    filter_rows,
-    find_turns,
-    look_ahead,
-    note_directions,
-    prescribed_bounds,
-    round_off,
-    rub,
-    settle,
-)
 from dynamics.kernels.integrator_state import (
     CONTACT,
     DAMPING,
     FRICTION,
     MIDDLE,
-    PLACE,
     REST,
-    SLIDING,
     Dry,
     Excitations,
     State,
@@ -41,14 +29,11 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.modal_flow import drive, move, tabulate, travel
 
-# Rows that turn within this part of a step of one another turn together.
-_TOGETHER = 1.0e-9
-
-# A length of step in s (1,), and of this the flow over its half (9, num_modes), what modes keep
+# A length of step in s (1,), and of this the flow over its half (11, num_modes), what modes keep
 # over a quarter (num_rates,) and dashpots over a half (num_dashpots,), the filtered friction rows
-# and their matrix; scratch for modes (num_modes,), contact rows (5, num_rows), friction rows
-# (3, num_frictions), and the problem of bounded impulses.
-Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array, Array]
+# and their matrix; scratch for modes (num_modes,) and contact rows (5, num_rows); the problem of
+# bounded impulses.
+Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
 
 def space_for(system: GapSystem, damping: Damping) -> Space:
@@ -56,9 +41,9 @@ def space_for(system: GapSystem, damping: Damping) -> Space:
     n, m, f = system.num_modes, len(system.laws), len(system.frictions)
     rates, _, dashpot_rates = damping
     r, d = rates.size, dashpot_rates.size
-    shapes = ((1,), (9, n), (r,), (d,), (f, n), (f, f), (n,), (5, m), (3, f))
-    length, half, faded, dragged, filtered, matrix, ahead, middle, lines = map(np.zeros, shapes)
-    return length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem_for(f)
+    shapes = ((1,), (11, n), (r,), (d,), (f, n), (f, f), (n,), (5, m))
+    length, half, faded, dragged, filtered, matrix, ahead, middle = map(np.zeros, shapes)
+    return length, half, faded, dragged, filtered, matrix, ahead, middle, problem_for(f)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -91,14 +76,11 @@ def lossy_steps(
     friction_rows, given, pressing, masses = borrowed(dry)
     loads, _, spans, parts, _, pushes = borrowed(excitations)
     start, centre, end = pushes
-    length, half, faded, dragged, filtered, matrix, ahead, middle, lines, problem = borrowed(space)
+    length, half, faded, dragged, filtered, matrix, ahead, middle, problem = borrowed(space)
     push, y_ahead, force_ahead, resting, driven = middle
-    slid, turns = lines[:2], lines[2]
-    slips, noise = problem[FREE], problem[NOISE]
-    pressed = pressing.any()
     damped = rates.size > 0 or dashpot_rates.size > 0
     excited = loads.shape[0] > 0
-    none = np.zeros(a.size)
+    none, still = np.zeros(a.size), np.zeros(friction.size)
     k = first
     for p in range(parts[first], parts[last]):
         span = spans[p]
@@ -115,7 +97,7 @@ def lossy_steps(
                     tabulate(half, omega2, load, none, 0.5 * time)
                     kept_after(rates, 0.25 * time, faded)
                     kept_after(dashpot_rates, 0.5 * time, dragged)
-                    filter_rows(friction_rows, half, time, filtered)
+                    coulomb.filter_rows(friction_rows, half, time, filtered)
                     for j in range(friction.size):
                         ahead[:] = filtered[j]
                         damp(ahead, faded, directions, dragged)
@@ -129,36 +111,30 @@ def lossy_steps(
                 for j in range(y.size):
                     mean[j] += share * push[j]
                 if excited:
-                    travel(a, v, half, 0.5 * time, omega2, load, False, start, centre, tally)
+                    travel(a, v, half, 0.5 * time, False, start, centre, tally)
                 else:
                     move(a, v, half)
 
                 if damped:
                     tally[DAMPING] += damp(v, faded, directions, dragged)
+                ahead[:] = v
                 if damped:
-                    ahead[:] = v
                     damp(ahead, faded, directions, dragged)
-                    look_ahead(a, ahead, half, ahead)
-                else:
-                    look_ahead(a, v, half, ahead)
+                coulomb.look_ahead(a, ahead, half, ahead)
                 if excited:
                     drive(ahead, half, centre, end)
-                prescribed_bounds(given, time, grip)
-                if pressed:
-                    add_pressed_bounds(
-                        ahead, v, rows, terms, limits, push, pressing, given, time, y_ahead,
-                        force_ahead, grip,
-                    )  # fmt: skip
-                read(friction_rows, ahead, slips)
-                round_off(masses, ahead, noise)
-                for j in range(friction.size):
-                    slips[j] -= grip[PLACE, j]
-                tally[FRICTION] += rub(v, filtered, matrix, grip, problem, time)
+                coulomb.bound_impulses(
+                    ahead, v, rows, terms, limits, push, pressing, given, time, y_ahead,
+                    force_ahead, grip,
+                )  # fmt: skip
+                tally[FRICTION] += coulomb.rub(
+                    v, ahead, friction_rows, masses, filtered, matrix, grip, problem, time
+                )
                 if damped:
                     tally[DAMPING] += damp(v, faded, directions, dragged)
 
                 if excited:
-                    travel(a, v, half, 0.5 * time, omega2, load, False, centre, end, tally)
+                    travel(a, v, half, 0.5 * time, False, centre, end, tally)
                 else:
                     move(a, v, half)
                 contact_forces(a, rows, terms, y, force)
@@ -169,26 +145,22 @@ def lossy_steps(
                     if abs(push[j]) > abs(peak[j]):
                         peak[j] = push[j]
 
-                read(friction_rows, v, slips)
-                round_off(masses, v, noise)
-                tally[FRICTION] += settle(v, friction_rows, masses, grip, problem)
+                tally[FRICTION] += coulomb.settle(v, friction_rows, still, masses, grip, problem)
                 for j in range(friction.size):
                     friction[j] += (grip[MIDDLE, j] + grip[REST, j]) / (substeps * step)
-                changed = note_directions(masses, grip, problem, slid)
+                changed = coulomb.note_directions(masses, grip, problem)
                 enter(y, before, limits, time, tally)
 
                 if cut or not changed or cuts > 2 * friction.size:
                     break
-                first_turn = find_turns(masses, grip, problem, slid, time, turns)
+                first_turn = coulomb.find_turns(masses, grip, problem, time)
                 if not 0.0 < first_turn < left:
                     break
                 for i in range(whole.size):
                     whole[i] = kept[i]
                 time, cut = first_turn, True
             if cut:
-                for j in range(friction.size):
-                    if turns[j] <= time * (1.0 + _TOGETHER):
-                        grip[SLIDING, j] = 0.0
+                coulomb.stop(problem, time, grip)
             left -= time
             cuts += 1
         if p + 1 == parts[k + 1]:

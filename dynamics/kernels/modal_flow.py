@@ -52,11 +52,12 @@ class ModalFlow:
         aa, av, va, vv, rise, ramp, mean = rows
         return cls(aa, av, rise * system.load, va, vv, av * system.load, rise, ramp, mean)
 
-    def stacked(self) -> Array:
-        """(9, num_modes), the layout of the compiled loop."""
-        return np.array(
-            [self.aa, self.av, self.ap, self.va, self.vv, self.vp, self.rise, self.ramp, self.mean]
-        )
+
+def stacked_flows(system: GapSystem, times: Array) -> Array:
+    """(num_times, 11, num_modes) in the compiled loops' layout, with ω² and the constant load."""
+    flows = [ModalFlow.over(system, time) for time in times.tolist()]
+    own = [[getattr(flow, name) for name in ModalFlow.__slots__] for flow in flows]
+    return np.array([[*rows, system.omega2, system.load] for rows in own])
 
 
 def _lag(x: Array) -> Array:
@@ -82,7 +83,7 @@ def _general_flow(omega2: float, damping: float, step: float) -> Array:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: float) -> None:
-    """Fill ``flow`` (9, num_modes) for any time, as :class:`ModalFlow` stacks it.
+    """Fill ``flow`` (11, num_modes) for any time, as :func:`stacked_flows` does.
 
     By the power series of the response to a unit impulse, x'' = −c x' − ω² x, and of its
     integrals over a time as short as needed, and doublings of that time.
@@ -117,6 +118,7 @@ def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: floa
         flow[6, i] = rise
         flow[7, i] = fall / time
         flow[8, i] = drift / (time * time)
+        flow[9, i], flow[10, i] = square, load[i]
 
 
 @njit(**SUMS)
@@ -131,11 +133,11 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
 
 
 @njit(**SUMS)
-def _energy_under_load(a: Array, v: Array, omega2: Array, load: Array) -> float:
+def _energy_under_load(a: Array, v: Array, flow: Array) -> float:
     """Kinetic and strain energy less load times way, which modes without damping keep."""
     total = 0.0
     for i in range(a.size):
-        total += 0.5 * (v[i] * v[i] + omega2[i] * a[i] * a[i]) - load[i] * a[i]
+        total += 0.5 * (v[i] * v[i] + flow[9, i] * a[i] * a[i]) - flow[10, i] * a[i]
     return total
 
 
@@ -156,16 +158,7 @@ def drive(a: Array, flow: Array, now: Array, then: Array) -> None:
 
 
 @njit(**SUMS)
-def _driven_move(
-    a: Array,
-    v: Array,
-    flow: Array,
-    time: float,
-    omega2: Array,
-    load: Array,
-    now: Array,
-    then: Array,
-) -> float:
+def _driven_move(a: Array, v: Array, flow: Array, time: float, now: Array, then: Array) -> float:
     """Move under a load that goes from now to then too; gives its work in J.
 
     ∫ p·ȧ dt = [p·a] − ṗ·∫ a dt, the integral exact as the flow is.
@@ -173,12 +166,12 @@ def _driven_move(
     work = 0.0
     for i in range(a.size):
         ai, vi, more = a[i], v[i], then[i] - now[i]
-        held = load[i] + now[i]
+        held = flow[10, i] + now[i]
         a[i] = flow[0, i] * ai + flow[1, i] * vi + flow[2, i] + flow[6, i] * now[i]
         a[i] += flow[7, i] * more
         v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i] + flow[1, i] * now[i]
         v[i] += flow[6, i] / time * more
-        mean = (1.0 - omega2[i] * flow[7, i]) * ai + flow[6, i] / time * vi
+        mean = (1.0 - flow[9, i] * flow[7, i]) * ai + flow[6, i] / time * vi
         mean += flow[7, i] * held + flow[8, i] * more
         work += then[i] * a[i] - now[i] * ai - more * mean
     return work
@@ -186,43 +179,27 @@ def _driven_move(
 
 @njit(**SUMS)
 def mean_place(
-    a: Array,
-    v: Array,
-    flow: Array,
-    time: float,
-    omega2: Array,
-    load: Array,
-    now: Array,
-    then: Array,
-    mean: Array,
+    a: Array, v: Array, flow: Array, time: float, now: Array, then: Array, mean: Array
 ) -> None:
     """Fill in where the modes are in the mean while they move under a load from now to then."""
     for i in range(a.size):
-        mean[i] = (1.0 - omega2[i] * flow[7, i]) * a[i] + flow[6, i] / time * v[i]
-        mean[i] += flow[7, i] * (load[i] + now[i]) + flow[8, i] * (then[i] - now[i])
+        mean[i] = (1.0 - flow[9, i] * flow[7, i]) * a[i] + flow[6, i] / time * v[i]
+        mean[i] += flow[7, i] * (flow[10, i] + now[i]) + flow[8, i] * (then[i] - now[i])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def travel(
-    a: Array,
-    v: Array,
-    flow: Array,
-    time: float,
-    omega2: Array,
-    load: Array,
-    damped: bool,
-    now: Array,
-    then: Array,
+    a: Array, v: Array, flow: Array, time: float, damped: bool, now: Array, then: Array,
     tally: Array,
-) -> None:
+) -> None:  # fmt: skip
     """:func:`move`, with excitations; enters their work and the damping loss in J.
 
     Args:
         now, then: (num_modes,) what they push with at the start and at the end, in N/√kg.
         tally: of the integration.
     """
-    held = _energy_under_load(a, v, omega2, load)
-    work = _driven_move(a, v, flow, time, omega2, load, now, then)
+    held = _energy_under_load(a, v, flow) if damped else 0.0
+    work = _driven_move(a, v, flow, time, now, then)
     tally[WORK] += work
     if damped:
-        tally[DAMPING] += held + work - _energy_under_load(a, v, omega2, load)
+        tally[DAMPING] += held + work - _energy_under_load(a, v, flow)

@@ -25,7 +25,7 @@ def pressed_steps(
 ) -> int:
     """Make up to ``left`` steps, of which ``substeps`` make an output interval; how many.
 
-    It ends where nothing touches any more. ``flow`` (9, num_modes) is that over a step.
+    It ends where nothing touches any more. ``flow`` (11, num_modes) is that over a step.
     """
     _, a, v, y, force, _, tally, mean, peak, _, _, before = borrowed(state)
     _, _, rows, terms, _ = borrowed(system)
