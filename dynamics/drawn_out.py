@@ -34,7 +34,7 @@ from dynamics.kernels.moving_thrusts import pushed_by, thrust_arrays
 from dynamics.motion import Motion
 from dynamics.record import Record
 from dynamics.stick_slip import FOLLOWED, follow
-from dynamics.trajectory import Trajectory
+from dynamics.trajectory import OF_DRIVES, Trajectory
 from dynamics.travel import Travel
 
 
@@ -115,12 +115,8 @@ def _with_drives(record: Record) -> Trajectory:
         against = (rubbed + travel.borne) * np.diff(way, prepend=way[0])
         power = np.diff(work + np.cumsum(against), prepend=0.0)
         power[1:] /= np.diff(found.time)
-        for name, (values, unit, said) in {
-            "drawn_out": (way, "m", "length drawn out since the start"),
-            "drive_friction": (rubbed, "N", "force of the drive against friction along the boom"),
-            "drive_power": (power, "W", "power of the drive, with what presses along the boom"),
-        }.items():
-            added[f"{name}{travel.suffix}"] = ("time", values, {"units": unit, "long_name": said})
+        for (name, of), values in zip(OF_DRIVES.items(), (way, rubbed, power), strict=True):
+            added[f"{name}{travel.suffix}"] = ("time", values, of)
         if travel.pulled is not None:
             followed = follow(travel.pulled, travel.history, found.time, friction)
             told[f"drive_force{travel.suffix}"] = followed.told

@@ -42,6 +42,19 @@ OF_STATIONS: Mapping[str, Mapping[str, str]] = {
     "gap": {"units": "m", "long_name": "deflection of the inner segment less that of the outer"},
 }
 
+# What is known of each drive, behind each name the suffix of its travel.
+OF_DRIVES: Mapping[str, Mapping[str, str]] = {
+    "drawn_out": {"units": "m", "long_name": "length drawn out since the start"},
+    "drive_friction": {
+        "units": "N",
+        "long_name": "force of the drive against friction along the boom",
+    },
+    "drive_power": {
+        "units": "W",
+        "long_name": "power of the drive, with what presses along the boom",
+    },
+}
+
 # A peak below this part of the deflection is the round-off of something at rest.
 STILL = 1.0e-6
 

@@ -124,7 +124,7 @@ class Stroke:
         return 1.0 / self.ramp if self.ramp else 0.0
 
     def __call__(self, time: Array) -> Array:
-        after = np.asarray(time) - self.start
+        after = np.clip(np.asarray(time) - self.start, 0.0, self.duration)
         way = self._begun(after) - self._begun(after - self.duration + self.ramp)
         return np.asarray(np.sign(self.travel) * self.speed * way)
 

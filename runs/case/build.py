@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dynamics.contact import ContactLaw
 from dynamics.energy import DRAWN_ENERGIES
 from dynamics.stick_slip import FOLLOWED
-from dynamics.trajectory import OF_STATIONS
+from dynamics.trajectory import OF_DRIVES, OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (
     Boom,
@@ -45,7 +45,6 @@ from runs.case.segment import SegmentTable, SupportTable
 _TAKEN = {
     *OF_STATIONS,
     *DRAWN_ENERGIES,
-    *FOLLOWED,
     "time",
     "station",
     "direction",
@@ -90,9 +89,10 @@ def build_boom(case: Case) -> Boom:
 def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:
     check_names("observe", [table.name for table in case.observe])
     found = []
+    of_drives = {name + suffix for suffix in case.driven for name in (*OF_DRIVES, *FOLLOWED)}
     for number, table in enumerate(case.observe, start=1):
         index = actions.called(f"observe[{number}].segment", table.segment, segments)
-        if table.name in _TAKEN:
+        if table.name in _TAKEN | of_drives:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",

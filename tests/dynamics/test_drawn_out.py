@@ -220,6 +220,14 @@ def test_histories_of_a_drive(history: History, way: float, speed: float) -> Non
     assert not history(np.array([history.kinks[0]])).any()
 
 
+def test_a_stroke_that_has_ended_stands() -> None:
+    """Reference: analytic, to the last bit, at a length and a ramp that round off."""
+    stroke = Stroke(-1.3, 0.3, ramp=0.37, start=0.1)
+    ways = stroke(np.linspace(stroke.kinks[-1], 20.0, 2000))
+    assert ways[-1] == pytest.approx(-1.3)
+    assert not np.diff(ways).any()
+
+
 def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
     """Reference: analytic, a cubic between knots, a sine within the tolerance."""
 

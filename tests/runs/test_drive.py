@@ -193,6 +193,19 @@ def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str)
     assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
 
 
+@pytest.mark.parametrize("name", ["drawn_out", "drive_power-2", "drive_lag-3"])
+def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
+    """Reference: the line that a user reads."""
+    path = tmp_path / "case.toml"
+    observe = '[[observe]]\nname = "{}"\nsegment = "fly"\nx = "head"\n'
+    text = (CASES / "crane-telescopes.toml").read_text(encoding="utf-8")
+    path.write_text(f"{text}\n{observe.format(f'{name}-of')}", encoding="utf-8")
+    assert load(str(path)).observe[-1].name == f"{name}-of"
+    path.write_text(f"{text}\n{observe.format(name)}", encoding="utf-8")
+    with pytest.raises(BadInput, match=f"'{name}' is the name of another output already; give it"):
+        load(str(path))
+
+
 @pytest.mark.usefixtures("unprinted")
 def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the ways of the case, and the drive's force from contact forces."""
