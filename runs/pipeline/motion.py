@@ -18,12 +18,12 @@ from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.schema import Case, EnsembleTable, Model
 from runs.pipeline.models import damped
-from runs.pipeline.summary import Growth
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from dynamics.integrators import Events, Splitting
+    from runs.pipeline.summary import Growth
 
 Progress = Callable[[float], None]
 _Found = TypeVar("_Found")
@@ -138,6 +138,7 @@ class Plan:
         NaN stands for what does not happen within the run.
         """
         from dynamics.predictability.horizon import measure_horizons
+        from runs.pipeline.summary import Growth
 
         found = measure_horizons(
             self.motion,
