@@ -11,7 +11,7 @@ is straight in the element as well, and the curvature what the local flexibility
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -26,11 +26,17 @@ Theory = Literal["euler-bernoulli", "timoshenko"]
 class Element(Protocol):
     """Its shape functions at the parts ξ = x/h of its length h."""
 
-    def deflection(self, xi: Array) -> tuple[Array, Array]:
-        """Shape functions of w and their slopes w′, each (4, num_points)."""
+    def deflection(self, xi: Array) -> Array:
+        """(4, num_points) shape functions of w."""
 
-    def rotation(self, xi: Array) -> tuple[Array, Array]:
-        """Shape functions of θ and the curvatures θ′, each (4, num_points)."""
+    def slope(self, xi: Array) -> Array:
+        """(4, num_points) w′ of these."""
+
+    def rotation(self, xi: Array) -> Array:
+        """(4, num_points) shape functions of θ."""
+
+    def curvature(self, xi: Array) -> Array:
+        """(4, num_points) θ′ of these."""
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
         """(4, 4) by a rule of points ξ and weights in m, both (num_points,)."""
@@ -60,54 +66,62 @@ class PlainElement:
     bending_stiffness: float
     phi: float
 
-    def deflection(self, xi: Array) -> tuple[Array, Array]:
-        h, phi = self.h, self.phi
+    def deflection(self, xi: Array) -> Array:
+        h, phi, (one, square, cube) = self.h, self.phi, _powers(xi)
+        sheared = 0.5 * phi * (one - square)
         w = np.array(
             [
-                1.0 - 3.0 * xi**2 + 2.0 * xi**3 + phi * (1.0 - xi),
-                h * (xi - 2.0 * xi**2 + xi**3 + 0.5 * phi * (xi - xi**2)),
-                3.0 * xi**2 - 2.0 * xi**3 + phi * xi,
-                h * (-(xi**2) + xi**3 - 0.5 * phi * (xi - xi**2)),
+                1.0 - 3.0 * square + 2.0 * cube + phi * (1.0 - one),
+                h * (one - 2.0 * square + cube + sheared),
+                3.0 * square - 2.0 * cube + phi * one,
+                h * (-square + cube - sheared),
             ]
         )
+        return w / (1.0 + phi)
+
+    def slope(self, xi: Array) -> Array:
+        h, phi, (one, square, _) = self.h, self.phi, _powers(xi)
+        sheared = 0.5 * phi * (1.0 - 2.0 * one)
         slope = np.array(
             [
-                (-6.0 * xi + 6.0 * xi**2 - phi) / h,
-                1.0 - 4.0 * xi + 3.0 * xi**2 + 0.5 * phi * (1.0 - 2.0 * xi),
-                (6.0 * xi - 6.0 * xi**2 + phi) / h,
-                -2.0 * xi + 3.0 * xi**2 - 0.5 * phi * (1.0 - 2.0 * xi),
+                (-6.0 * one + 6.0 * square - phi) / h,
+                1.0 - 4.0 * one + 3.0 * square + sheared,
+                (6.0 * one - 6.0 * square + phi) / h,
+                -2.0 * one + 3.0 * square - sheared,
             ]
         )
-        return w / (1.0 + phi), slope / (1.0 + phi)
+        return slope / (1.0 + phi)
 
-    def rotation(self, xi: Array) -> tuple[Array, Array]:
-        h, phi = self.h, self.phi
+    def rotation(self, xi: Array) -> Array:
+        h, phi, (one, square, _) = self.h, self.phi, _powers(xi)
         theta = np.array(
             [
-                6.0 * (xi**2 - xi) / h,
-                1.0 - 4.0 * xi + 3.0 * xi**2 + phi * (1.0 - xi),
-                6.0 * (xi - xi**2) / h,
-                -2.0 * xi + 3.0 * xi**2 + phi * xi,
+                6.0 * (square - one) / h,
+                1.0 - 4.0 * one + 3.0 * square + phi * (1.0 - one),
+                6.0 * (one - square) / h,
+                -2.0 * one + 3.0 * square + phi * one,
             ]
         )
+        return theta / (1.0 + phi)
+
+    def curvature(self, xi: Array) -> Array:
+        h, phi, (one, _, _) = self.h, self.phi, _powers(xi)
         curvature = np.array(
             [
-                6.0 * (2.0 * xi - 1.0) / h**2,
-                (-4.0 + 6.0 * xi - phi) / h,
-                6.0 * (1.0 - 2.0 * xi) / h**2,
-                (-2.0 + 6.0 * xi + phi) / h,
+                6.0 * (2.0 * one - 1.0) / h**2,
+                (-4.0 + 6.0 * one - phi) / h,
+                6.0 * (1.0 - 2.0 * one) / h**2,
+                (-2.0 + 6.0 * one + phi) / h,
             ]
         )
-        return theta / (1.0 + phi), curvature / (1.0 + phi)
+        return curvature / (1.0 + phi)
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
-        _, slope = self.deflection(xi)
-        theta, curvature = self.rotation(xi)
-        bending = self.bending_stiffness * products(curvature, weights)
+        bending = self.bending_stiffness * products(self.curvature(xi), weights)
         if self.phi == 0.0:
             return bending
         shear_stiffness = 12.0 * self.bending_stiffness / (self.phi * self.h**2)
-        return bending + shear_stiffness * products(slope - theta, weights)
+        return bending + shear_stiffness * products(self.slope(xi) - self.rotation(xi), weights)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,24 +139,33 @@ class TaperedElement:
     bending: Polynomial
     shear: Polynomial
 
-    def deflection(self, xi: Array) -> tuple[Array, Array]:
+    def deflection(self, xi: Array) -> Array:
         zero, one = np.zeros_like(xi), np.ones_like(xi)
-        _, slopes, deflections = self._of_moments()
-        bent = _at(deflections, xi), _at(slopes, xi)
-        w = np.array([one, self.h * xi, zero, zero]) + self._moments().T @ bent[0]
-        return w, np.array([zero, one, zero, zero]) + self._moments().T @ bent[1]
+        _, _, deflections = self._of_moments()
+        rigid = np.array([one, self.h * xi, zero, zero])
+        return np.asarray(rigid + self._moments().T @ _at(deflections, xi))
 
-    def rotation(self, xi: Array) -> tuple[Array, Array]:
+    def slope(self, xi: Array) -> Array:
+        zero, one = np.zeros_like(xi), np.ones_like(xi)
+        _, slopes, _ = self._of_moments()
+        rigid = np.array([zero, one, zero, zero])
+        return np.asarray(rigid + self._moments().T @ _at(slopes, xi))
+
+    def rotation(self, xi: Array) -> Array:
         zero, one = np.zeros_like(xi), np.ones_like(xi)
         rotations, _, _ = self._of_moments()
-        theta = np.array([zero, one, zero, zero]) + self._moments().T @ _at(rotations, xi)
-        return theta, self._moments().T @ (self.bending(xi) * np.array([one, xi]))
+        rigid = np.array([zero, one, zero, zero])
+        return np.asarray(rigid + self._moments().T @ _at(rotations, xi))
+
+    def curvature(self, xi: Array) -> Array:
+        return np.asarray(self._moments().T @ (self.bending(xi) * np.array([np.ones_like(xi), xi])))
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
         moments = np.array([np.ones_like(xi), xi])
         sheared = np.array([[0.0, 0.0], [0.0, (self.shear(xi) / self.h**2) @ weights]])
         flexibility = products(moments, self.bending(xi) * weights) + sheared
-        return np.asarray(self._moments().T @ flexibility @ self._moments())
+        moved = self._moments()
+        return np.asarray(moved.T @ flexibility @ moved)
 
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
         """Rotations, slopes and deflections under the moments 1 and ξ, clamped at ξ = 0."""
@@ -156,6 +179,12 @@ class TaperedElement:
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
         moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
         return np.asarray(np.linalg.solve(ends, moved))
+
+
+def _powers(xi: Array) -> tuple[Any, Any, Any]:
+    """ξ, ξ² and ξ³; those of a single place as plain numbers, which take less time."""
+    powers = xi, xi**2, xi**3
+    return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
 
 _Pair = tuple[Polynomial, Polynomial]

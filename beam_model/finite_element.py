@@ -19,8 +19,8 @@ from beam_model.elements import Element, Theory, element
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 
-# An element and ξ to shape functions and their derivatives along x, each (4, num_points).
-_Shapes = Callable[[Element, Array], tuple[Array, Array]]
+# An element and ξ to shape functions (4, num_points).
+_Shapes = Callable[[Element, Array], Array]
 
 # Exact for products of the cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
@@ -86,14 +86,14 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         dofs = slice(2 * k, 2 * k + 4)
         xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
         here = element(segment, theory, nodes[k], h)
-        w, slope = here.deflection(xi)
-        theta, _ = here.rotation(xi)
+        w, slope = here.deflection(xi), here.slope(xi)
         x = nodes[k] + h * xi
         heavy, turned = (weight * segment.relative(number, x) for number in (_MASS, _ROTARY))
         stiffness[dofs, dofs] += here.stiffness(xi, weight)
         mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
         turning[dofs] += segment.mass_per_length * w @ (heavy * x)
         if rotary_inertia:
+            theta = here.rotation(xi)
             mass[dofs, dofs] += segment.rotary_inertia * products(theta, turned)
             turning[dofs] += segment.rotary_inertia * theta @ turned
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
@@ -122,11 +122,11 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         felt[dof] += point.mass / segment.mass_per_length
     free = np.setdiff1d(np.arange(num_dofs), held)
 
-    def read(shapes: _Shapes, order: int, x: float) -> Array:
+    def read(shapes: _Shapes, x: float) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        values = shapes(element(segment, theory, nodes[k], h), np.array((x - nodes[k]) / h))
-        row[2 * k : 2 * k + 4] = values[order]
+        here = element(segment, theory, nodes[k], h)
+        row[2 * k : 2 * k + 4] = shapes(here, np.array((x - nodes[k]) / h))
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
@@ -137,9 +137,9 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
         felt=felt[free],
-        at=partial(read, _deflection, 0),
-        rotation=partial(read, _rotation, 0),
-        curvature=partial(read, _rotation, 1),
+        at=partial(read, _deflection),
+        rotation=partial(read, _rotation),
+        curvature=partial(read, _curvature),
         turning=turning[free],
         breaks=nodes,
         rigid_modes=segment.rigid_modes,
@@ -208,9 +208,13 @@ def _element(nodes: Array, x: float) -> tuple[int, float]:
     return k, float(nodes[k + 1] - nodes[k])
 
 
-def _deflection(here: Element, xi: Array) -> tuple[Array, Array]:
+def _deflection(here: Element, xi: Array) -> Array:
     return here.deflection(xi)
 
 
-def _rotation(here: Element, xi: Array) -> tuple[Array, Array]:
+def _rotation(here: Element, xi: Array) -> Array:
     return here.rotation(xi)
+
+
+def _curvature(here: Element, xi: Array) -> Array:
+    return here.curvature(xi)

@@ -9,6 +9,7 @@ Timoshenko and Gere 1961). Of rows that are cubics in s it is exact.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from dynamics.row_table import RowTable
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class MovingThrust:
     """A force that moves along with a travel, and softens what it has passed.
 
@@ -40,7 +41,7 @@ class MovingThrust:
         """In how many it moves."""
         return self.table.coefficients.shape[2]
 
-    @property
+    @cached_property
     def slopes(self) -> Array:
         """(num_pieces, 3, num_planes, num_modes) of w′ per m, of the powers of a part passed."""
         factors = np.arange(1.0, 4.0)[:, None, None]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 from geometry.axial import passed_over
@@ -54,7 +55,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Boom:
     """Segments from the base to the tip, the joints between them, what acts on them, cylinders.
 
@@ -130,7 +131,7 @@ class Boom:
         """Whether the segments move along y and twist, too."""
         return any(joint.lateral_clearance is not None for joint in self.joints)
 
-    @property
+    @cached_property
     def play_free(self) -> Boom:
         """The same with all joints tied."""
         tied = tuple(joint.without_play for joint in self.joints)
