@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,23 +41,24 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
         data: the trajectories of its models.
         summary: of the run, with all that has failed.
     """
-    models = summary.models.items()
+    models = summary.models
     return [
         *of_case(case, boom),
         *lag_cautions(boom, data),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
-        *(line for name, model in models for line in _bent(name, model, boom)),
+        *_bent(models, boom),
         *_far(boom, data),
-        *(line for name, model in models for line in _poor(name, model)),
-        *(line for name, model in models for line in _coarse(name, model)),
-        *(line for name, model in models for line in _halved(name, model)),
+        *_poor(models),
+        *_coarse(models),
+        *_halved(models),
         *series_notes(case),
     ]
 
 
-def _bent(name: str, model: ModelSummary, boom: Boom) -> list[str]:
-    rests = of_tip(f"in {name}", model.static_tip, boom)
-    return of_buckling(name, model.critical_factor) + rests
+def _bent(models: Mapping[str, ModelSummary], boom: Boom) -> Iterator[str]:
+    for name, model in models.items():
+        yield from of_buckling(name, model.critical_factor)
+        yield from of_tip(f"in {name}", model.static_tip, boom)
 
 
 def _far(boom: Boom, data: xr.Dataset) -> Iterator[str]:
@@ -70,24 +71,28 @@ def _far(boom: Boom, data: xr.Dataset) -> Iterator[str]:
             )
 
 
-def _poor(name: str, model: ModelSummary) -> Iterator[str]:
-    if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
-        yield (
-            f"caution: the {model.modes} coordinates of {name} err by {TO_PERCENT * error:.2g} % "
-            "where the segments touch; allow more modes, or --modes auto"
-        )
+def _poor(models: Mapping[str, ModelSummary]) -> Iterator[str]:
+    for name, model in models.items():
+        if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
+            yield (
+                f"caution: the {model.modes} coordinates of {name} err by {TO_PERCENT * error:.2g} "
+                "% where the segments touch; allow more modes, or --modes auto"
+            )
 
 
-def _coarse(name: str, model: ModelSummary) -> Iterator[str]:
-    if (error := model.mesh_error or 0.0) > POOR:
-        yield (
-            f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of what the walls "
-            "give way where the segments touch; give a smaller mesh_size"
-        )
+def _coarse(models: Mapping[str, ModelSummary]) -> Iterator[str]:
+    for name, model in models.items():
+        if (error := model.mesh_error or 0.0) > POOR:
+            yield (
+                f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of what the walls "
+                "give way where the segments touch; give a smaller mesh_size"
+            )
 
 
-def _halved(name: str, model: ModelSummary) -> Iterator[str]:
-    if refused := model.refused_steps:
-        yield (
-            f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: {refused[0]}"
-        )
+def _halved(models: Mapping[str, ModelSummary]) -> Iterator[str]:
+    for name, model in models.items():
+        if refused := model.refused_steps:
+            yield (
+                f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: "
+                f"{refused[0]}"
+            )

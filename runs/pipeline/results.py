@@ -109,7 +109,7 @@ class Results:
     @property
     def moved(self) -> dict[str, Moved]:
         """What is known of the motions of the models that are read first."""
-        own = self.summary.answers.models if self.summary.answers else {}
+        own = self.summary.answers.models
         return {
             name: moved
             for name in self.read_first
@@ -149,8 +149,8 @@ class Results:
     @property
     def play(self) -> PlayAdds | None:
         """What play adds to the model that the others are held against."""
-        known = self.summary.answers.play if self.summary.answers else []
-        return next((one for one in known if one.model == self.reference and one.numbers), None)
+        known = (one for one in self.summary.answers.play if one.numbers)
+        return next((one for one in known if one.model == self.reference), None)
 
     @cached_property
     def read_first(self) -> list[str]:

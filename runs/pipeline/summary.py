@@ -292,7 +292,7 @@ class Summary(Entry):
     models: dict[str, ModelSummary]
     failures: dict[str, str]
     ensemble: Ensembles | None = None
-    answers: Answers | None = None
+    answers: Answers = Answers({})
     pads: list[PressedPad] = []
     cautions: list[str] = []
     comparisons: Comparisons | None = None

@@ -43,8 +43,6 @@ def play_table(results: Results) -> Table | None:
 def rest_tables(results: Results) -> list[Table]:
     """Tilts by play, what presses and what holds, at rest under the largest loads."""
     answers = results.summary.answers
-    if answers is None:
-        return []
     farthest = {name: own.farthest_rest for name, own in answers.models.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_drawn = of_rests(results.case, rests.values())
@@ -114,10 +112,8 @@ def _pressed_table(rests: dict[str, AtRest], places: Sequence[str], as_drawn: st
 
 def mode_table(results: Results) -> Table | None:
     """The first modes of the boom as it works, its joints pressed, of all models side by side."""
-    answers = results.summary.answers
-    with_modes = (
-        {name: own.modes for name, own in answers.models.items() if own.modes} if answers else {}
-    )
+    answers = results.summary.answers.models
+    with_modes = {name: own.modes for name, own in answers.items() if own.modes}
     if not with_modes:
         return None
     ways = dict.fromkeys((mode.way, mode.number) for modes in with_modes.values() for mode in modes)

@@ -68,7 +68,7 @@ def render(
         *_numbered("Figure", chain(*pictures.values())),
     ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
-    answers, costs = results.summary.answers, _costs(results)
+    costs = _costs(results)
     judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
@@ -86,7 +86,7 @@ def render(
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         look=look,
-        trust=[known.line for known in answers.trust] if answers else [],
+        trust=[known.line for known in results.summary.answers.trust],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",
         plotly=packed_plotly() if charts else "",

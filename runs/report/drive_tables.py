@@ -74,8 +74,7 @@ def stick_slip_table(results: Results) -> Table | None:
 
 def swing_table(results: Results) -> Table | None:
     """Of every model that is drawn out, beside the same boom that stands; None of none."""
-    answers = results.summary.answers
-    models = {} if answers is None else answers.models
+    models = results.summary.answers.models
     rows = {name: own.swing for name, own in models.items() if own.swing is not None}
     if not rows:
         return None

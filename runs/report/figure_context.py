@@ -82,7 +82,7 @@ class Pen:
             for model in results.case.models
             if model.play_free
         }
-        self.answers = results.summary.answers
+        self.answers = results.summary.answers.models
         self.leading = results.read_first
 
     def of(self, name: str, variable: str) -> Array:

@@ -26,14 +26,8 @@ NEAR = 0.9
 
 
 class FirstLook(NamedTuple):
-    """What stands on the first screen; a sentence that has nothing to say is empty.
-
-    Args:
-        answers: the table of :func:`first_table`.
-        adds: what play adds.
-        of: whose numbers that has.
-        strength: what steel and pads reach of what they bear.
-        nearness: how far the other models are off.
+    """What stands on the first screen: the table of the answers, what play adds and of which model
+    that is, what steel and pads bear, how far other models are off; empty sentences say nothing.
     """
 
     answers: Table | None
@@ -56,11 +50,10 @@ def first_look(results: Results) -> FirstLook:
 
 def first_table(results: Results) -> Table | None:
     """The answers of the models that are read first, the reference's before the others'."""
-    answers = results.summary.answers
-    if answers is None:
+    names, answers = results.read_first, results.summary.answers.models
+    if not answers:
         return None
-    names = results.read_first
-    own = [answers.models[name] for name in names]
+    own = [answers[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
     walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
     hardest = _hardest_pads(results)
@@ -98,11 +91,11 @@ def first_table(results: Results) -> Table | None:
 
 def trust_line(results: Results) -> str:
     """How far the other models with play are off the one they are held against; else empty."""
-    answers, reference = results.summary.answers, results.reference
-    if answers is None or reference is None:
+    answers, reference = results.summary.answers.models, results.reference
+    if not answers or reference is None:
         return ""
     loose = [model.name for model in results.ran if not model.play_free and model.name != reference]
-    offs = {name: off_at_rest(answers.models[reference], answers.models[name]) for name in loose}
+    offs = {name: off_at_rest(answers[reference], answers[name]) for name in loose}
     told = [
         f"{name} {signed(f'{TO_PERCENT * off:+.2g}')} %"
         for name, off in offs.items()
@@ -144,8 +137,8 @@ def strength_sentence(results: Results) -> str:
 
     Where neither strengths, allowable pressures nor a life are known there is nothing to be said.
     """
-    answers, first = results.summary.answers, results.read_first[0]
-    own = answers.models[first] if answers else ModelAnswers()
+    first = results.read_first[0]
+    own = results.summary.answers.models.get(first, ModelAnswers())
     pad = _hardest_pads(results).get(first)
     used: list[tuple[float, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):

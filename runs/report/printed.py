@@ -64,8 +64,7 @@ def print_models(results: Results, console: Console) -> None:
 
 def _print_swings(results: Results, console: Console) -> None:
     """Print how far the tip swings in each model that is drawn out."""
-    answers = results.summary.answers
-    for name, own in ({} if answers is None else answers.models).items():
+    for name, own in results.summary.answers.models.items():
         if (swing := own.swing) is None:
             continue
         levels = swing.where_begun, swing.where_ended

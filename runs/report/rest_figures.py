@@ -125,11 +125,9 @@ def _moving(mode: Mode) -> str:
 
 
 def _read_first(pen: Pen) -> Iterator[tuple[str, ModelAnswers]]:
-    if pen.answers is None:
-        return
     for name in pen.models:
-        if name in pen.leading and name in pen.answers.models:
-            yield name, pen.answers.models[name]
+        if name in pen.leading and name in pen.answers:
+            yield name, pen.answers[name]
 
 
 def _rest_lines(rest: AtRest, name: str, color: str) -> dict[str, list[_Line]]:

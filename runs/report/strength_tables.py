@@ -70,10 +70,9 @@ def stress_table(results: Results) -> Table | None:
 
 def life_table(results: Results) -> Table | None:
     """Rainflow ranges of each segment, of the models that are read first."""
-    answers = results.summary.answers
     rows = [
         (name, life)
-        for name, own in (answers.models.items() if answers else ())
+        for name, own in results.summary.answers.models.items()
         if name in results.read_first
         for life in own.life
     ]

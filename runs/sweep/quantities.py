@@ -95,9 +95,9 @@ def measure(results: Results, model: str) -> Measured:
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
-    summary, answers = results.summary.models[model], results.summary.answers
+    summary, answers = results.summary.models[model], results.summary.answers.models
     return {
-        **_answered(ModelAnswers() if answers is None else answers.models[model]),
+        **_answered(answers.get(model, ModelAnswers())),
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "peak_contact_force": summary.peak_contact_force,
         "mass": mass(results.boom),

@@ -11,7 +11,7 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, Life, PlayAdds, Reaction, WallStress
+from runs.pipeline.answers import Added, Answers, Life, PlayAdds, Reaction, WallStress
 from runs.pipeline.life import COUNTS
 from runs.pipeline.results import Results
 from runs.report.answer_tables import (
@@ -47,7 +47,6 @@ def cells(table: Table | None) -> dict[str, dict[str, str]]:
 
 def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
     """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
-    assert results.summary.answers is not None
     own = results.summary.answers.models[PLAYED]
     assert own.moved is not None
     found = cells(first_table(results))
@@ -69,7 +68,6 @@ def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
 
 def test_play_is_said_in_a_sentence(results: Results) -> None:
     """Reference: by hand, of numbers that are given."""
-    assert results.summary.answers is not None
     numbers = [
         Added("deflection at rest", "tip", "m", 0.15, 0.10),
         Added("first frequency", "bending in z", "Hz", 1.5, 2.0),
@@ -92,7 +90,6 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
 
 def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
     """Reference: by hand, a hinge whose moment is round-off beside a clamp of 5 kN m."""
-    assert results.summary.answers is not None
     bears = [
         Reaction("outer", 0.0, 1e3, 5e3, None),
         Reaction("outer", 3.0, 2e3, 1.6e-7, None),
@@ -112,7 +109,6 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
 def with_stress(results: Results, stress: float) -> Results:
     """The outer segment's largest stress in Pa, of a steel of 355 MPa, its wall a tenth more."""
     answers = results.summary.answers
-    assert answers is not None
     own = answers.models[PLAYED]
     assert own.moved is not None
     fibre = replace(own.moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
@@ -156,7 +152,6 @@ def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
 def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
     answers = results.summary.answers
-    assert answers is not None
     own = answers.models[PLAYED]
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     models = answers.models | {PLAYED: replace(own, life=[life])}
@@ -186,7 +181,6 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     """Reference: by hand, a second model whose tip rests a tenth lower."""
     assert trust_line(results) == ""
     answers = results.summary.answers
-    assert answers is not None
     own = answers.models[PLAYED]
     other = replace(own, rests=[replace(rest, tip=0.9 * rest.tip) for rest in own.rests])
     models = {"kantorovich-4": other, **answers.models}
@@ -226,7 +220,7 @@ def test_every_answer_has_its_table(results: Results) -> None:
 
 def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     """Reference: a summary of an earlier version."""
-    without = replace(results, summary=results.summary.model_copy(update={"answers": None}))
+    without = replace(results, summary=results.summary.model_copy(update={"answers": Answers({})}))
     assert first_table(without) is None
     assert answer_tables(without) == []
     assert play_sentence(without) == play_note(without) == ""

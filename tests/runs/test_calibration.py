@@ -155,7 +155,6 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
     results = run_case(case, ["shell", "sprung", "fielded"])
     assert results.summary.failures == {}
     answers = results.summary.answers
-    assert answers is not None
     shell, sprung, fielded = (answers.models[name].modes for name in ("shell", "sprung", "fielded"))
     for mode, of_springs, of_fields in zip(shell[:2], sprung[:2], fielded[:2], strict=True):
         assert of_springs.frequency == pytest.approx(mode.frequency, rel=1e-3)

@@ -52,7 +52,6 @@ def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
 
 def swing_of(case: Case) -> Swing | None:
     answers = run_case(case, models=["kantorovich-5"]).summary.answers
-    assert answers is not None
     return answers.models["kantorovich-5"].swing
 
 
@@ -122,7 +121,6 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
         data = standing.trajectories.sel(model="kantorovich-5")
         ramp = np.minimum(data["time"].values / 0.2, 1.0)
         answers = standing.summary.answers
-        assert answers is not None
         first, last = (rest.tip for rest in answers.models["kantorovich-5"].rests)
         rest = first + ramp * (last - first)
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
