@@ -17,13 +17,10 @@ from scipy.sparse import csr_matrix
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom
-from shell_model.stress.stresses import SAME_LINE, ShellStress, lines_around
+from shell_model.stress.stresses import SAME_LINE, ShellStress, lines_around, within
 
 # Bands of a segment, at most.
 _BANDS = 60
-
-# In m².
-_NOTHING = 1.0e-300
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
@@ -133,7 +130,7 @@ def _forces(
     s_y, s_z = up, -across
     own = shell.thickness[triangles] * strength / 6.0
     within_z, within_y = (
-        _within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
+        within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
     )
     weights = (
         {2: s_z * strength, 0: -slope * up * strength},
@@ -153,20 +150,3 @@ def _forces(
             total += csr_matrix((weight, (band, columns)), shape) @ modes[:, :, component].T
         found.append(total)
     return np.array(found)
-
-
-def _within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """(num_triangles,) what a stress that is linear up a wall adds to its centroids' moment, in m³.
-
-    Args:
-        part: (num_triangles,) wall within a band of each triangle.
-        reach: (num_parts,) of walls from end to end in m.
-        strength: (num_triangles,) thickness times width in m².
-        place: (num_triangles,) of the centroids in m.
-    """
-    whole = np.bincount(part, strength)
-    about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
-    second = np.bincount(part, strength * about**2)[part]
-    flat = reach[part] < SAME_LINE
-    missing = whole[part] * reach[part] ** 2 / 12.0 - second
-    return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))

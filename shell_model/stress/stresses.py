@@ -38,6 +38,9 @@ FACES: dict[Face, float] = {"outer": 1.0, "middle": 0.0, "inner": -1.0}
 # Lengths in m that are the same.
 SAME_LINE = 1.0e-6
 
+# In m².
+_NOTHING = 1.0e-300
+
 # Numbers that are in memory at once when a history is computed: what a processor keeps at hand.
 _AT_ONCE = 1_000_000
 
@@ -257,7 +260,8 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
         z, sigma = shell.centroids[part, 2], membrane[:, 0]
         _, across, up = shell.outward[part].mean(axis=0).round(12)
         own = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
-        moment = (strength * z) @ sigma + _within(strength, z, sigma, width.sum())
+        reach, whole = np.array([abs(across) * width.sum()]), np.zeros(part.size, dtype=np.int64)
+        moment = (strength * z + within(whole, reach, strength, z)) @ sigma
         # s runs along -z on the right and along -y on the bottom.
         sense = np.sign(up if abs(up) > abs(across) else -across)
         forces[name] = WallForces(
@@ -268,21 +272,21 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
     return forces
 
 
-def _within(strength: Array, z: Array, sigma: npt.NDArray[np.float32], height: float) -> float:
-    """What a stress that is linear up a web adds to the moment of its centroids' values, in N m.
+def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
+    """(num_triangles,) what a stress that is linear up a wall adds to its centroids' moment, in m³.
 
     Args:
+        part: (num_triangles,) wall within a band of each triangle.
+        reach: (num_parts,) of walls from end to end in m.
         strength: (num_triangles,) thickness times width in m².
-        z: (num_triangles,) of the centroids in m.
-        sigma: (num_triangles,) in Pa.
-        height: of the web in m.
+        place: (num_triangles,) of the centroids in m.
     """
-    if np.ptp(z) < 1.0e-6 * height:
-        return 0.0
-    z = z - strength @ z / strength.sum()
-    at_centroids = strength @ z**2
-    slope = (strength * z) @ sigma / at_centroids
-    return float(slope * (strength.sum() * height**2 / 12.0 - at_centroids))
+    whole = np.bincount(part, strength)
+    about = place - (np.bincount(part, strength * place) / np.maximum(whole, _NOTHING))[part]
+    second = np.bincount(part, strength * about**2)[part]
+    flat = reach[part] < SAME_LINE
+    missing = whole[part] * reach[part] ** 2 / 12.0 - second
+    return np.where(flat, 0.0, strength * about * missing / np.where(flat, 1.0, second))
 
 
 def _axial(fields: xr.Dataset) -> npt.NDArray[np.float32]:
