@@ -106,16 +106,6 @@ class Results:
             results.conclude()
         return results
 
-    @property
-    def moved(self) -> dict[str, Moved]:
-        """What is known of the motions of the models that are read first."""
-        own = self.summary.answers.models
-        return {
-            name: moved
-            for name in self.read_first
-            if name in own and (moved := own[name].moved) is not None
-        }
-
     def conclude(self) -> None:
         """Put what follows from the motion and the rest of the summary into it."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
@@ -158,6 +148,16 @@ class Results:
         names = list(self.summary.models)
         first = leading(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
+
+    @property
+    def moved(self) -> dict[str, Moved]:
+        """What is known of the motions of the models that are read first."""
+        own = self.summary.answers.models
+        return {
+            name: moved
+            for name in self.read_first
+            if name in own and (moved := own[name].moved) is not None
+        }
 
 
 def read_fields(path: Path) -> xr.Dataset:
