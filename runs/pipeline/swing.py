@@ -22,7 +22,7 @@ from runs.pipeline.motion import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
 # where something turns back to where the next does; none where they do more often than the most.
-_RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 2000
+_RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
