@@ -153,14 +153,22 @@ def strength_sentence(results: Results) -> str:
     if not used:
         return ""
     used.sort(reverse=True)
-    unknown = [one.name for one in results.boom.segments if one.material.yield_strength is None]
+    unknown = _not_given(results, first)
     if used[0][0] > 1.0:
         verdict = "Not strong enough"
     else:
         verdict = "Of what is known all is" if unknown else "All is"
         verdict += " strong enough without a safety factor"
-    told = f"{verdict}: {listed(phrase for _, phrase in used)}."
-    return told + (f" No yield strength is given of {listed(unknown)}." if unknown else "")
+    return f"{verdict}: {listed(phrase for _, phrase in used)}.{unknown}"
+
+
+def _not_given(results: Results, model: str) -> str:
+    """Of what strength is not known: steel, and pads that a model presses."""
+    steels = [one.name for one in results.boom.segments if one.material.yield_strength is None]
+    pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
+    pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
+    missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
+    return "".join(f" No {what} {listed([*of])}." for what, of in missing.items() if of)
 
 
 _SAID = {

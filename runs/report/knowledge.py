@@ -222,8 +222,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
             Column(f"rms\nto {end:g} s, %", rms, ".2f", TO_PERCENT),
         ]
     notes = (
-        "Parts of the larger range of both within that time. What is well above the change by half "
-        "the step, in the table of steps, is the models' own.",
+        "Parts of the larger range of both within that time. What is well above the change by "
+        "twice the step, in the table of steps, is the models' own.",
     )
     return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole", ("S7",))
 

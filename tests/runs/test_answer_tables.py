@@ -14,6 +14,7 @@ from runs.case import reading as case_file
 from runs.pipeline.answers import Added, Answers, Life, PlayAdds, Reaction, WallStress
 from runs.pipeline.life import COUNTS
 from runs.pipeline.results import Results
+from runs.pipeline.summary import PressedPad
 from runs.report.answer_tables import (
     answer_tables,
     mode_table,
@@ -147,6 +148,25 @@ def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
         "yield strength (outer, 2.0 m). No yield strength is given of outer and inner."
     )
     assert strength_sentence(with_stress(results, 340e6)).startswith("Not strong enough: ")
+
+
+def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> None:
+    """Reference: by hand, a pad without an allowable pressure, and one that nothing presses."""
+    of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
+    pad = PressedPad.model_validate(of | {"force": 2.7e3, "pressure": 27e6, "utilisation": None})
+    steel = change(results.case, **{"material.yield_strength": 355e6})
+    told = with_stress(replace(results, case=steel), 300e6)
+    for pads, start, end in (
+        ([pad], "Of what is known all is ", "No allowable pressure is given of pads of inner."),
+        (
+            [pad.model_copy(update={"force": 0.0, "pressure": 0.0})],
+            "All is ",
+            "yield strength (outer, 2.0 m).",
+        ),
+    ):
+        found = replace(told, summary=told.summary.model_copy(update={"pads": pads}))
+        assert strength_sentence(found).startswith(f"{start}strong enough without a safety factor")
+        assert strength_sentence(found).endswith(end)
 
 
 def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:

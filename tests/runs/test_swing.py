@@ -105,7 +105,7 @@ def test_what_follows_its_loads_does_not_swing(load: History) -> None:
 
 
 def test_a_load_that_turns_too_often_has_no_swing() -> None:
-    """Reference: by hand, 5.5 Hz turn 110 times in 10 s; each takes four rests, of a boom seconds."""
+    """Reference: by hand, 5.5 Hz turn 110 times in 10 s; each takes four rests."""
     with pytest.raises(NumericsError, match=r"^loads turn back 110 times, too often$"):
         of_follower(Sine(5.5))
 
