@@ -76,13 +76,9 @@ class BoomModes:
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
     ) -> Array:
-        """(num_modes,) row that reads a displacement of a segment.
+        """(num_modes,) row that reads a displacement of a segment at x in m.
 
-        Args:
-            segment: its position.
-            x: m.
-            direction: of the displacement.
-            offset: (y, z) of the point from the axis in m.
+        ``offset`` is (y, z) of the point from the axis in m.
         """
         row = self._expand(segment, direction, self._component(segment, direction).at(x))
         # A small turn θ about x moves (y, z) by (−θ z, θ y).

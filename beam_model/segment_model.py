@@ -56,12 +56,8 @@ def gap_system(
 ) -> GapSystem:
     """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
 
-    Args:
-        boom: its joints, loads and stops.
-        models: one for each segment.
-        laws: one for each joint, along z.
-        lateral_laws: one for each joint, along y; none for a flat boom.
-        touch: where its pads are read.
+    Laws are one for each joint, along z and, of a boom in space, along y; ``touch`` tells where
+    pads are read.
     """
     modes = BoomModes(boom, models)
     rows_at = partial(_rows, boom, modes, {"z": laws, "y": lateral_laws}, touch)

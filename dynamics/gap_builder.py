@@ -120,14 +120,8 @@ class GapBuilder(Generic[R]):
         normal_force: float | None,
         pressing: tuple[int, ...],
     ) -> None:
-        """Friction where something presses.
-
-        Args:
-            station: its place.
-            coefficient: μ; no row without it.
-            slide: what is read.
-            normal_force: the prescribed N in N; that of the pressing rows where it is None.
-            pressing: positions of contact rows; no row without them.
+        """Friction μ where something presses: by the prescribed N in N, or by that of the rows at
+        ``pressing`` where it is None. No row without μ, or where nothing presses.
         """
         if coefficient > 0.0 and pressing:
             pressed_by = pressing if normal_force is None else ()
@@ -137,13 +131,7 @@ class GapBuilder(Generic[R]):
     def drag(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """A dashpot resists the mean speed of all points of a station, given as to :meth:`press`.
-
-        Args:
-            station: its place.
-            coefficient: c in N·s/m; no row without it.
-            points: some of the station's.
-        """
+        """A dashpot in N·s/m resists the mean speed of points of a station, as of :meth:`press`."""
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, []))
             # The weights of each of two sides sum to one.

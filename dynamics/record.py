@@ -34,13 +34,9 @@ class Record:
 
     @classmethod
     def begin(cls, motion: Motion, step: float, terms: int, *others: int) -> Record:
-        """With the initial state as the first row.
+        """With the initial state as the first row, so many terms of energy, and columns of others.
 
-        Args:
-            motion: its loads are gathered.
-            step: in s, made smaller to fit the output step.
-            terms: of the energy.
-            others: how many columns what else there is has.
+        The step in s is made smaller to fit the output step.
         """
         system = motion.system
         n, m, f = system.num_modes, len(system.laws), len(system.frictions)

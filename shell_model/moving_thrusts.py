@@ -30,12 +30,7 @@ def moving_thrusts(
 ) -> Iterator[MovingThrust]:
     """The axial force, if there is one, that goes along with a course. Collective.
 
-    Args:
-        boom: its joints have drives.
-        full: its shells.
-        coordinates: of the boom.
-        course: of one joint, or of several that move a stop.
-        behind: how many coordinates come behind these, which sections do not move.
+    Behind the coordinates come so many that sections do not move.
     """
     found = entry(boom.segments, boom.joints, course.joints[0])
     if found is None or len(course.joints) > 1:

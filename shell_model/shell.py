@@ -189,13 +189,9 @@ def free_rows(space: Any, holds: list[Any]) -> Mask:
 
 
 def hold(space: Any, part: int, component: int, where: Callable[[Array], Mask]) -> Any:
-    """Dirichlet condition: zero.
+    """Dirichlet condition: zero of a component of displacements, part 0, or rotations, part 1.
 
-    Args:
-        space: of displacements and rotations.
-        part: 0 for the displacement, 1 for the rotation.
-        component: of it.
-        where: tells of places (num_places, 3) in m which are held.
+    ``where`` tells of places (num_places, 3) in m which are held.
     """
     held = space.sub(part).sub(component)
     collapsed, _ = held.collapse()

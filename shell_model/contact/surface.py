@@ -84,14 +84,7 @@ def surface_points(
     laws: Mapping[Direction, Sequence[ContactLaw]],
     options: SurfaceOptions,
 ) -> list[SurfacePoint]:
-    """All points of all joints that are not tied. Collective.
-
-    Args:
-        boom: its joints.
-        shells: of its segments.
-        laws: along each direction, one for each joint.
-        options: points and penalty.
-    """
+    """All points of all joints that are not tied; laws along each direction. Collective."""
     walls = [WallPoints(shell) for shell in shells]
     found: list[SurfacePoint] = []
     first = 0

@@ -74,13 +74,9 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """The view for pictures of these instants.
+        """The view for pictures of these instants, of so many pixels each way.
 
-        Args:
-            shell: in motion.
-            instants: of the pictures.
-            pixels: width and height of the picture.
-            displacement: up to which part of the boom's length displacements are drawn.
+        Displacements are drawn up to a part of the boom's length.
         """
         low, high = 0.0, 0.0
         for moved in shell.displacements([instant.time for instant in instants]):

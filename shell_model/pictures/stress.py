@@ -103,14 +103,7 @@ def _rounded_down(number: float) -> float:
 def draw_stress(
     shell: MovingShell, instants: Sequence[Instant], scale: StressScale, overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Von Mises stresses of the whole boom, and below it of an overlap cut open.
-
-    Args:
-        shell: in motion.
-        instants: of the pictures.
-        scale: of the stresses.
-        overlap: one of the shell's.
-    """
+    """Von Mises stresses of the whole boom, and below it of an overlap cut open."""
     overlap_view = OverlapView.of(shell, instants, overlap, OVERLAP_PIXELS)
     view = BoomView.of(shell, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
     sheet = Sheet(OVERLAP_PIXELS, floor=85)

@@ -141,14 +141,7 @@ class Scene:
         self._logger.SetStderrVerbosity(self._verbosity)
 
     def surface(self, name: str, points: Array, triangles: Triangles, **look: Any) -> None:
-        """Draw a surface.
-
-        Args:
-            name: of the thing.
-            points: (num_points, 3) in m.
-            triangles: (num_triangles, 3) point numbers.
-            look: as pyvista has it, on matte ground.
-        """
+        """Draw (num_points, 3) places in m and (num_triangles, 3), by a look of pyvista."""
         surface = self._kinds.from_regular_faces(points, triangles)
         self._plotter.add_mesh(
             surface, name=name, show_scalar_bar=False, render=False, **(MATTE | look)

@@ -241,14 +241,7 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 
 
 def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
-    """The forces of each wall, means over the row of elements that holds x.
-
-    Args:
-        shell: in motion.
-        t: in s.
-        segment: which.
-        x: in m.
-    """
+    """The forces of each wall at t in s, means over the row of elements that holds x in m."""
     stress, row = shell.at(t), shell.row(segment, x)
     length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
     forces = {}
