@@ -133,25 +133,26 @@ class ContactLaw(ABC):
         """How far in m it is pressed in at a gap in m, 0 where it is open."""
         return max(0.0, *(term.side * y - term.onset for term in self.terms))
 
-    def slope_where(self, measure: Callable[[ContactLaw, Array], Array], value: float) -> float:
+    def slope_where(self, measure: OfTerm, value: float) -> float:
         """dF/dy in N/m where a measure of the law has come to a value, on its stiffer side.
 
         Args:
-            measure: ``ContactLaw.force``, whose amount counts, or ``ContactLaw.energy``.
+            measure: :func:`force_of`, whose amount counts, or :func:`energy_of`.
             value: in N or J, not negative.
         """
         # The least penetration would be lost beside a clearance.
         law = self.behind(0.0)
         return max(law._slope_on(side, measure, value) for side in {t.side for t in law.terms})
 
-    def _slope_on(
-        self, side: float, measure: Callable[[ContactLaw, Array], Array], value: float
-    ) -> float:
+    def _slope_on(self, side: float, measure: OfTerm, value: float) -> float:
         from scipy.optimize import brentq
 
+        terms, wanted = contact_terms([self]), np.log(max(value, _LEAST))
+
         def excess(log_depth: float) -> float:
-            found = abs(float(measure(self, np.array(side * np.exp(log_depth)))))
-            return float(np.log(max(found, _LEAST)) - np.log(max(value, _LEAST)))
+            depth = float(side * np.exp(log_depth))
+            found = abs(sum(measure(term, depth) for term in terms))
+            return float(np.log(max(found, _LEAST)) - wanted)
 
         # In logarithms a power is a straight line, however deep or stiff.
         high, up = 0.0, 1.0 if excess(0.0) < 0.0 else -1.0

@@ -13,7 +13,6 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from dynamics.arrays import Array
 from dynamics.contact import (
-    ContactLaw,
     OfTerm,
     Terms,
     contact_terms,
@@ -53,9 +52,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     # or stiffer than another: L Lᵀ scales the unknowns.
     whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
     force = whole * np.sqrt(system.row_masses)
-    spring = np.array(
-        [w.slope_where(ContactLaw.force, f) for w, f in zip(system.laws, force, strict=True)]
-    )
+    spring = np.array([w.slope_where(force_of, f) for w, f in zip(system.laws, force, strict=True)])
     try:
         factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
     except LinAlgError:

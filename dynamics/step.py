@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw
+from dynamics.contact import energy_of
 from dynamics.excitation import History
 from dynamics.gap_system import GapSystem
 
@@ -63,9 +63,7 @@ def contact_frequencies(system: GapSystem, initial: Array | float = 0.0) -> Arra
     mass = system.row_masses
     speed = 2.0 * closing_speeds(system, initial)
     energies = 0.5 * mass * speed**2
-    stiffness = [
-        w.slope_where(ContactLaw.energy, e) for w, e in zip(system.laws, energies, strict=True)
-    ]
+    stiffness = [w.slope_where(energy_of, e) for w, e in zip(system.laws, energies, strict=True)]
     return np.asarray(np.sqrt(np.array(stiffness) / mass))
 
 

@@ -299,13 +299,13 @@ def frequencies(
 @app.command()
 def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print what follows from it."""
-    from runs.case.reading import load
+    from runs.case.reading import declared
     from runs.pipeline.inferred import print_inferred
 
-    checked = load(case)
+    found = declared(case)
     if picture is not None:
-        import_module("runs.report.boom_drawing").save_drawing(checked, case, picture)
-    print_inferred(checked, Terminal())
+        import_module("runs.report.boom_drawing").save_drawing(found.case, case, picture)
+    print_inferred(found, Terminal())
     return 0
 
 

@@ -12,11 +12,12 @@ from typing import TypeVar
 import numpy as np
 from pydantic import ValidationError
 
-from geometry.boom import Boom, BoomError
-from runs.case.build import build_boom, check_names, joined
+from geometry.boom import BoomError
+from runs.case.build import build_boom, check_names
 from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.conversion import in_si
+from runs.case.declared import Declared
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, described
 from runs.case.messages import BadInput, choices
@@ -49,6 +50,11 @@ def load(path: str) -> Case:
     Raises:
         BadInput: the file cannot be read, or what it says cannot be.
     """
+    return declared(path).case
+
+
+def declared(path: str) -> Declared:
+    """What a case file declares; raises what :func:`load` raises."""
     try:
         case = in_si(_read_tables(Case.model_validate(_read(path)), path))
     except ValidationError as error:
@@ -56,26 +62,26 @@ def load(path: str) -> Case:
     except OverflowError:
         what = "a number is too large for SI units; look for one that is out of proportion"
         raise BadInput(path, "units", what) from None
-    check(case, path)
-    return case
+    return check(case, path)
 
 
-def check(case: Case, path: str) -> None:
-    """Whether a case can be, beyond what its tables say each for itself.
+def check(case: Case, path: str) -> Declared:
+    """What a case declares, if it can be, beyond what its tables say each for itself.
 
     Raises:
         BadInput: it cannot.
     """
+    found = Declared(case)
     try:
         _check_time(case.time)
-        boom = build_boom(case)
-        _check_models(case, boom)
+        _check_boom(found)
     except BoomError as error:
         raise BadInput(path, error.where, error.what) from None
     except ArithmeticError as error:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
         ) from None
+    return found
 
 
 def select(
@@ -295,12 +301,14 @@ def _check_time(time: TimeTable) -> None:
         )
 
 
-def _check_models(case: Case, boom: Boom) -> None:
+def _check_boom(found: Declared) -> None:
+    """Whether there is such a boom, and whether its models suit it."""
+    case, _ = found.case, found.boom
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
-        model.check(where, joined(case, boom, model))
+        model.check(where, found.joined(model))
     _check_step("time.step", case.time.step, case.time)
 
 

@@ -8,16 +8,15 @@ from itertools import pairwise
 from rich.console import Console
 from rich.table import Table
 
-from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA
-from runs.case.schema import Case
+from runs.case.declared import Declared
 from runs.pipeline.proportions import of_buckling
 
 
-def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
+def print_axial_forces(declared: Declared, console: Console) -> None:
     """Print the largest force of each segment, and the buckling factor of each model."""
     carried = Table("axial force, pressing", "largest (kN)", "over the plain area (MPa)")
-    for segment in boom.segments:
+    for segment in declared.boom.segments:
         force, pressed = segment.compression.largest, segment.compression
         stress = "unknown"
         if segment.section is not None:
@@ -31,10 +30,10 @@ def print_axial_forces(case: Case, boom: Boom, console: Console) -> None:
     console.print(carried)
     buckling = Table("joints pressed", "buckling factor", "of the critical forces")
     cautions: list[str] = []
-    for model in case.models:
+    for model in declared.case.models:
         # A shell would have to be computed first.
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        factor = model.critical_factor(boom)
+        factor = model.critical_factor(declared.joined(model))
         cautions += of_buckling(name, factor)
         row = "unknown", "unknown"
         if factor is not None:

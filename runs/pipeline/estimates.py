@@ -17,13 +17,11 @@ import numpy as np
 
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
-from dynamics.step import contact_step
-from geometry.boom import Boom
-from runs.case.build import build_boom
+from runs.case.declared import Declared
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
-from runs.pipeline.models import build
-from runs.pipeline.motion import asked
+from runs.pipeline.foreseen import Foreseen
+from runs.pipeline.motion import step_of
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0
@@ -65,13 +63,18 @@ class Cost:
 
 def of_run(case: Case) -> Cost:
     """What a run of a checked case takes."""
-    boom = build_boom(case)
+    return of_foreseen(Foreseen(Declared(case)))
+
+
+def of_foreseen(foreseen: Foreseen) -> Cost:
+    """What a run of a case takes, some of whose models may be built as beams already."""
+    case = foreseen.declared.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
     # What overflows is found when it is run.
     with np.errstate(all="ignore"):
         for model in case.models:
-            total += _of_model(case, boom, model)
+            total += _of_model(foreseen, model)
     return total
 
 
@@ -98,18 +101,18 @@ def refuse_large(cost: Cost, file: str) -> None:
         )
 
 
-def _of_model(case: Case, boom: Boom, model: Model) -> Cost:
-    stand_in = model.stand_in(boom)
+def _of_model(foreseen: Foreseen, model: Model) -> Cost:
+    case, stand_in = foreseen.declared.case, model.stand_in(foreseen.declared.boom)
     before = Cost(stand_in.memory, stand_in.seconds)
     try:
-        motion, _ = asked(build(case, boom, stand_in.beam).system, case, stand_in.beam)
+        motion = foreseen.motion(model, stand_in.beam)
+        step = step_of(motion, case, stand_in.beam)
     except NUMERICS:
         # The run ends with it, and says so.
         return before
     system, time = motion.system, case.time
-    step = model.step or time.step
-    if step is None:
-        step = contact_step(system, time.output_step, motion.initial_speeds) / stand_in.shorter
+    if not (model.step or time.step):
+        step /= stand_in.shorter
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     doubled = bool(system.frictions) and case.regular
     motions = 1 + 0.5 * doubled + members + (_HORIZONS if members else 0)

@@ -15,15 +15,17 @@ from dynamics.failure import NUMERICS
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from runs.case import actions
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import contact_laws
 from runs.case.contact import JointTable
+from runs.case.declared import Declared
+from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.axial_forces import print_axial_forces
 from runs.pipeline.cautions import of_case
 from runs.pipeline.drives import drive_lines
-from runs.pipeline.estimates import of_run
-from runs.pipeline.models import build, damped
+from runs.pipeline.estimates import of_foreseen
+from runs.pipeline.foreseen import Foreseen
 from runs.pipeline.slipping import slip_lines
 from runs.pipeline.statics import print_statics
 
@@ -34,9 +36,9 @@ SHOWN_MODES = 3
 _ROUND_OFF = 1.0e-12
 
 
-def print_inferred(case: Case, console: Console) -> None:
+def print_inferred(declared: Declared, console: Console) -> None:
     """Print a checked case's segments, joints and models."""
-    boom = build_boom(case)
+    case, boom, foreseen = declared.case, declared.boom, Foreseen(declared)
     console.print(case.title, markup=False)
     console.print(_segments(case, boom))
     stiffeners = _stiffeners(boom, case.system)
@@ -48,8 +50,8 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(line, markup=False, highlight=False)
     console.print(_models(case))
     if boom.compressed:
-        print_axial_forces(case, boom, console)
-    ratios = _damping_ratios(case, boom)
+        print_axial_forces(declared, console)
+    ratios = _damping_ratios(foreseen)
     if ratios.rows:
         console.print(ratios)
     print_statics(case, boom, console)
@@ -57,7 +59,7 @@ def print_inferred(case: Case, console: Console) -> None:
         console.print(note, highlight=False, markup=False)
     for caution in of_case(case, boom):
         console.print(caution, markup=False, highlight=False)
-    console.print(f"A run may take {of_run(case)}.", highlight=False)
+    console.print(f"A run may take {of_foreseen(foreseen)}.", highlight=False)
 
 
 def _segments(case: Case, boom: Boom) -> Table:
@@ -154,8 +156,9 @@ def _models(case: Case) -> Table:
     return table
 
 
-def _damping_ratios(case: Case, boom: Boom) -> Table:
+def _damping_ratios(foreseen: Foreseen) -> Table:
     """What the first modes of the boom get in each model, its joints pressed, from all damping."""
+    case, boom = foreseen.declared.case, foreseen.declared.boom
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
     table = Table("damping, joints pressed", *shapes)
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
@@ -166,15 +169,14 @@ def _damping_ratios(case: Case, boom: Boom) -> Table:
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.needs_shell else model
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        table.add_row(name, *islice(_ratios(case, boom, beam), SHOWN_MODES))
+        table.add_row(name, *islice(_ratios(foreseen, model, beam), SHOWN_MODES))
     return table
 
 
-def _ratios(case: Case, boom: Boom, model: Model) -> list[str]:
+def _ratios(foreseen: Foreseen, model: Model, beam: ModelTable) -> list[str]:
     try:
         with np.errstate(all="ignore"):
-            system = damped(actions.start(build(case, boom, model).system, case)[0], case)
-            found = pressed_ratios(system)
+            found = pressed_ratios(foreseen.motion(model, beam).system)
     except NUMERICS:
         return ["cannot be computed"]
     # What stations that nothing presses leave of a dashpot between them is round-off.

@@ -14,7 +14,7 @@ from dynamics.damping import with_ratio
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from runs.case.build import joined
-from runs.case.kinds.model import Built, Workshop
+from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
 from runs.case.pulled import with_pulled
 from runs.case.schema import Case, Model
 
@@ -37,8 +37,15 @@ def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None
     Raises:
         BoomError: the boom lacks what the model needs.
     """
-    built = model.build(joined(case, boom, model), workshop)
-    return replace(built, system=with_pulled(built.system, case, boom))
+    return build_on(joined(case, boom, model), case, model, workshop)
+
+
+def build_on(
+    joined: Joined, case: Case, model: ModelTable, workshop: Workshop | None = None
+) -> Built:
+    """A model on the boom of a case; arguments and errors as of :func:`build`."""
+    built = model.build(joined, workshop)
+    return replace(built, system=with_pulled(built.system, case, joined.boom))
 
 
 def workshop(

@@ -16,6 +16,7 @@ from dynamics.motion import Motion
 from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.case import actions
+from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, EnsembleTable, Model
 from runs.pipeline.models import damped
 
@@ -166,9 +167,28 @@ def asked(system: GapSystem, case: Case, model: Model) -> tuple[Motion, float]:
     Raises:
         NumericsError: there is no equilibrium to start from, or it would take days.
     """
+    motion = begun(system, case)
+    return motion, step_of(motion, case, model)
+
+
+def begun(system: GapSystem, case: Case) -> Motion:
+    """The motion that a case asks of a system.
+
+    Raises:
+        NumericsError: there is no equilibrium to start from.
+    """
     system, position, velocity = actions.start(system, case)
     time = case.time
-    motion = Motion(damped(system, case), time.duration, time.output_step, position, velocity)
+    return Motion(damped(system, case), time.duration, time.output_step, position, velocity)
+
+
+def step_of(motion: Motion, case: Case, model: ModelTable) -> float:
+    """The step that would do, in s.
+
+    Raises:
+        NumericsError: it would take days.
+    """
+    time = case.time
     step = (
         model.step
         or time.step
@@ -179,4 +199,4 @@ def asked(system: GapSystem, case: Case, model: Model) -> tuple[Motion, float]:
             f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make the contact "
             "softer or the step longer"
         )
-    return motion, step
+    return step

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
+from dynamics.contact import force_of
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Thrown
 from dynamics.failure import NumericsError
@@ -114,7 +114,7 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * _weight(inner)
-            stiffness = law.slope_where(ContactLaw.force, force)
+            stiffness = law.slope_where(force_of, force)
             if stiffness < bending:
                 yield (
                     f"the contacts of {inner.name!r} in {model.name!r} give way by "

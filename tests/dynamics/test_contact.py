@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
+from dynamics.contact import PowerContact, energy_of, force_of
 
 LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3, stiffness_below=4.0e12)
 
@@ -110,10 +110,8 @@ def test_the_slope_is_known_at_any_energy_and_force(exponent: float, value: floa
     n, k = exponent, 1.0e13
     law = PowerContact(0.5 * k, n, clearance=7.0e-3, stiffness_below=k)
     deep = ((n + 1.0) * value / k) ** (1.0 / (n + 1.0))
-    assert law.slope_where(PowerContact.energy, value) == pytest.approx(
-        n * k * deep ** (n - 1.0), rel=1e-9
-    )
-    assert law.slope_where(PowerContact.force, value) == pytest.approx(
+    assert law.slope_where(energy_of, value) == pytest.approx(n * k * deep ** (n - 1.0), rel=1e-9)
+    assert law.slope_where(force_of, value) == pytest.approx(
         n * k * (value / k) ** ((n - 1.0) / n), rel=1e-9
     )
 
@@ -124,6 +122,6 @@ def test_the_slope_at_no_energy_and_at_none_that_is_a_number() -> None:
     for value in (0.0, np.inf, np.nan):
         # Runs find what overflows where it matters.
         with np.errstate(all="ignore"):
-            found = linear.slope_where(PowerContact.energy, value)
+            found = linear.slope_where(energy_of, value)
         assert found == pytest.approx(1.0e9)
-    assert LAW.slope_where(PowerContact.energy, 0.0) == pytest.approx(0.0, abs=1e-6)
+    assert LAW.slope_where(energy_of, 0.0) == pytest.approx(0.0, abs=1e-6)

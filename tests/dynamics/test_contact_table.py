@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from dynamics.contact import PowerContact
+from dynamics.contact import PowerContact, energy_of, force_of
 from dynamics.contact_table import TableContact
 from dynamics.event_driven import what_hinders
 from dynamics.gap_system import GapSystem, Observer
@@ -51,7 +51,7 @@ def test_one_line_is_a_linear_stop() -> None:
     table, power = TableContact((1.0e-3,), (2.0e3,), 5.0e-3), PowerContact(2.0e6, 1.0, 5.0e-3)
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
     np.testing.assert_allclose(table.force(y), power.force(y), rtol=1e-14)
-    for measure in (PowerContact.force, PowerContact.energy):
+    for measure in (force_of, energy_of):
         found = table.slope_where(measure, 3.0)
         assert found == pytest.approx(power.slope_where(measure, 3.0), rel=1e-12)
 

@@ -14,6 +14,7 @@ from geometry.section import BoxSection
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
+from runs.case.declared import Declared
 from runs.case.messages import BadInput
 from runs.pipeline.inferred import print_inferred
 from runs.report.model_tables import buckling_table
@@ -129,7 +130,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     factor = results.summary.models["tied"].critical_factor
     assert factor is not None
     shown = io.StringIO()
-    print_inferred(case, Console(file=shown, width=120))
+    print_inferred(Declared(case), Console(file=shown, width=120))
     words = [line.replace("│", " ").split() for line in shown.getvalue().splitlines()]
     assert ["mast", "40", f"{0.04 / MAST.area:.4g}"] in words
     assert f"{factor:.4g}" in shown.getvalue()
@@ -160,7 +161,7 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
     """Each on its slip, none on what is in proportion."""
     case = case_file.load(str(written(tmp_path, text + TIED)))
     shown = io.StringIO()
-    print_inferred(case, Console(file=shown, width=200))
+    print_inferred(Declared(case), Console(file=shown, width=200))
     checked, told = shown.getvalue().splitlines(), run_case(case, models=["tied"]).summary.cautions
     if caution is None:
         assert told == []

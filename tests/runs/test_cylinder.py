@@ -13,6 +13,7 @@ from geometry.boom import Boom, Cylinder, Support
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
+from runs.case.declared import Declared
 from runs.case.toml import dumps
 from runs.pipeline.inferred import print_inferred
 from tests.runs.case_texts import STEEL, box, joint
@@ -107,7 +108,7 @@ def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(
     path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Reference: analytic, the arm of its line about the pin, and the moment of the weights."""
-    print_inferred(case_file.load(str(path)), Console(width=200))
+    print_inferred(Declared(case_file.load(str(path))), Console(width=200))
     told = capsys.readouterr().out
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = (cell.strip() for cell in row.strip("│").split("│"))

@@ -14,6 +14,7 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.actions import start
 from runs.case.build import build_boom, contact_laws
+from runs.case.declared import Declared
 from runs.case.schema import Case
 from runs.pipeline.at_rest import positions, pressed
 from runs.pipeline.inferred import print_inferred
@@ -65,7 +66,9 @@ def test_a_play_may_be_more_above_than_below(tmp_path: Path) -> None:
 
 
 def test_check_tells_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    print_inferred(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n"), Console(width=200))
+    print_inferred(
+        Declared(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")), Console(width=200)
+    )
     assert "4 above, 10 below" in capsys.readouterr().out
 
 

@@ -20,6 +20,7 @@ from runs.case import reading, toml
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import in_si
+from runs.case.declared import Declared
 from runs.case.limits import declared_units, described
 from runs.case.messages import BadInput
 from runs.case.schema import Case, case_schema
@@ -260,7 +261,7 @@ def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
 def test_check_shows_the_units_of_the_case() -> None:
     """Reference: the numbers of the case file."""
     shown = io.StringIO()
-    print_inferred(in_mm(), Console(file=shown, width=200))
+    print_inferred(Declared(in_mm()), Console(file=shown, width=200))
     text = shown.getvalue()
     for part in ("span (mm)", "m (t/mm)", "J (mm⁴)", "I_p (t mm)", "8500–18200", "5.507e-05"):
         assert part in text

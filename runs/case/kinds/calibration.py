@@ -96,7 +96,7 @@ class CalibratedTable(BeamTable):
             beam,
             beam.num_modes,
             made.seconds,
-            self.critical_factor(boom),
+            self.critical_factor(joined),
             calibration=calibration,
         )
         moving = self.moving(built, made.shell, boom)

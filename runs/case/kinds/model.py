@@ -6,6 +6,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar
@@ -27,6 +28,38 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
+@dataclass(frozen=True)
+class Beams:
+    """The segments of a boom as beams, and when these buckle, each found when it is first asked.
+
+    Args:
+        boom: of a case.
+        model: whose segments are beams.
+    """
+
+    boom: Boom
+    model: BeamTable
+
+    @cached_property
+    def segments(self) -> list[SegmentModel]:
+        """As the model makes them."""
+        return self.model.segments(self.boom)
+
+    @cached_property
+    def critical_factor(self) -> float | None:
+        """Of the boom's axial forces, as in :class:`Built`."""
+        from beam_model.boom_modes import critical_factor
+
+        if not self.boom.compressed:
+            return float("inf")
+        try:
+            with np.errstate(all="ignore"):
+                return critical_factor(self.boom, self.segments)
+        except (ArithmeticError, np.linalg.LinAlgError, ValueError):
+            # Numbers out of proportion: the run ends with them, and says so.
+            return None
+
+
 @dataclass(frozen=True, slots=True)
 class Joined:
     """The boom of a case, and the contact laws of its joints as one model sees them.
@@ -40,6 +73,15 @@ class Joined:
     boom: Boom
     laws: Sequence[ContactLaw]
     lateral_laws: Sequence[ContactLaw]
+    _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    def beams(self, model: BeamTable) -> Beams:
+        """The same ones whenever a model asks, or one that is equal."""
+        for known in self._beams:
+            if known.model == model:
+                return known
+        self._beams.append(Beams(self.boom, model))
+        return self._beams[-1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +217,7 @@ class ModelTable(Table):
                     f"missing, and {self.name!r} needs it; give section or height_to_width",
                 )
         self._check_drives(where, joined.boom)
-        factor = self.critical_factor(joined.boom)
+        factor = self.critical_factor(joined)
         if factor is not None and factor <= 1.0:
             raise BoomError(
                 where,
@@ -206,7 +248,7 @@ class ModelTable(Table):
             raise BoomError(where, f"{self.not_drawn}, or joint[{driven[0]}].drive")
 
     @abstractmethod
-    def critical_factor(self, boom: Boom) -> float | None:
+    def critical_factor(self, joined: Joined) -> float | None:
         """Of the boom's axial forces, as in :class:`Built`, or about that of a meshed one."""
 
     @abstractmethod
@@ -233,13 +275,13 @@ class BeamTable(ModelTable):
         from beam_model.segment_model import gap_system, tied_system
 
         start = perf_counter()
-        segments = self.segments(joined.boom)
+        beams = joined.beams(self)
         if self.play_free:
-            system = tied_system(joined.boom, segments)
+            system = tied_system(joined.boom, beams.segments)
         else:
-            system = gap_system(joined.boom, segments, joined.laws, joined.lateral_laws)
-        factor = self.critical_factor(joined.boom)
-        return Built(system, system.num_modes, {"build": perf_counter() - start}, factor)
+            system = gap_system(joined.boom, beams.segments, joined.laws, joined.lateral_laws)
+        factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
+        return Built(system, system.num_modes, seconds, factor)
 
     def lines(self, boom: Boom, built: Built) -> list[Line]:
         from beam_model.lines import lines
@@ -253,17 +295,8 @@ class BeamTable(ModelTable):
         segments = self.segments(boom)
         return tied_system(boom, segments), lines(boom.play_free, segments)
 
-    def critical_factor(self, boom: Boom) -> float | None:
-        from beam_model.boom_modes import critical_factor
-
-        if not boom.compressed:
-            return float("inf")
-        try:
-            with np.errstate(all="ignore"):
-                return critical_factor(boom, self.segments(boom))
-        except (ArithmeticError, np.linalg.LinAlgError, ValueError):
-            # Numbers out of proportion: the run ends with them, and says so.
-            return None
+    def critical_factor(self, joined: Joined) -> float | None:
+        return joined.beams(self).critical_factor
 
 
 _Kind = TypeVar("_Kind", bound=ModelTable)

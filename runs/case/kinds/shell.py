@@ -112,7 +112,8 @@ class ShellTable(ModelTable):
         factor = shell.critical_factor
         if boom.driven and factor is not None:
             # On the way it is known of beams alone.
-            factor = min(factor, self.critical_factor(boom) or factor)
+            on_the_way = self.critical_factor(replace(joined, boom=boom))
+            factor = min(factor, on_the_way or factor)
         return Built(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
     def options(self) -> ShellOptions:
@@ -139,8 +140,8 @@ class ShellTable(ModelTable):
     def longest_edge(self) -> float:
         return self.mesh_size
 
-    def critical_factor(self, boom: Boom) -> float | None:
-        return self.stand_in(boom).beam.critical_factor(boom)
+    def critical_factor(self, joined: Joined) -> float | None:
+        return self.stand_in(joined.boom).beam.critical_factor(joined)
 
     def stand_in(self, boom: Boom) -> StandIn:
         from runs.case.kinds.finite_element import FiniteElementTable
