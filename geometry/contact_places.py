@@ -16,17 +16,16 @@ from typing import Literal
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint, PadSize, Stop
+from geometry.boom import Boom, Direction, Joint
 from geometry.drive import Carrier
 from geometry.section import Face, Offset, Side
 from geometry.segment import Segment
 
 ContactLine = Literal["near webs", "across", "surface"]
 
-# What stations press of a segment's corners, over the least overlap, and stops, over the height of
-# the box: about 0.1 m in the paper's boom, as slide pads are long.
+# What stations press of a segment's corners, over the least overlap: about 0.1 m in the paper's
+# boom, as slide pads are long.
 _OF_OVERLAP = 0.1
-_OF_HEIGHT = 0.2
 
 _SIDES: tuple[Side, Side] = (1, -1)
 _BOTH: tuple[Side] = (0,)
@@ -35,6 +34,9 @@ _BOTH: tuple[Side] = (0,)
 @dataclass(frozen=True, slots=True)
 class Patch:
     """Where a pad of a given size lies on a wall of the inner segment.
+
+    It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
+    its offset from the corner of the inner box.
 
     Args:
         start, end: x in m.
@@ -108,7 +110,7 @@ class Pad:
         pressed: what it presses of the corners of the inner and of the outer segment.
         patch: the wall that it covers; None where it is a point.
         raised: how far it stands out beyond the joint's clearance in m.
-        across: how far the middle of what it covers is from its points, across its wall, in m.
+        face: of the inner segment in space, which touches in a corner of it; None in a flat boom.
         carrier: the segment on which it sits as the joint is drawn out; None where it is not.
         moved: m by which it has moved along the inner and the outer segment.
     """
@@ -127,14 +129,31 @@ class Pad:
     pressed: tuple[Stretch, Stretch]
     patch: Patch | None
     raised: float = 0.0
-    across: float = 0.0
+    face: Face | None = None
     carrier: Carrier | None = None
     moved: tuple[float, float] = (0.0, 0.0)
 
     @property
     def half(self) -> int:
         """On which half of its wall it sits in space: 1 where the coordinate across is positive."""
-        return int(np.sign(self.inner[0] if self.direction == "z" else self.inner[1]))
+        return int(np.sign(self._corner))
+
+    @property
+    def _corner(self) -> float:
+        """Where its point is across its wall in m."""
+        return self.inner[0] if self.direction == "z" else self.inner[1]
+
+    @property
+    def across(self) -> float:
+        """How far the middle of what it covers is from its points, across its wall, in m."""
+        if self.patch is None or self.face is None:
+            return 0.0
+        return self.half * 0.5 * sum(self.patch.across(self.face)) - self._corner
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """How far in and out its joint is drawn, in m."""
+        return (0.0, 0.0) if self.joint.drive is None else self.joint.drive.reach
 
     @property
     def middle(self) -> float:
@@ -173,39 +192,6 @@ class Pad:
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
 
-@dataclass(frozen=True, slots=True)
-class Rest:
-    """Where a stop presses a segment's corners.
-
-    Args:
-        station: position in ``Boom.stations``.
-        stop: the stop.
-        pressed: of the corners.
-    """
-
-    station: int
-    stop: Stop
-    pressed: Stretch
-
-    def drawn(self, boom: Boom, way: float) -> Rest:
-        """Where its segment is drawn out by ``way`` in m."""
-        pressed = self.pressed.moved(boom.segments[self.stop.segment], -way)
-        return replace(self, pressed=pressed)
-
-
-def rests(boom: Boom) -> list[Rest]:
-    """Every stop of a boom whose sections are known."""
-    found = []
-    for station, stop in boom.numbered_stops:
-        segment = boom.segments[stop.segment]
-        assert segment.section is not None
-        length = stop.contact_length or min(
-            _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length
-        )
-        found.append(Rest(station, stop, Stretch.on(segment, stop.x, length)))
-    return found
-
-
 def pads(boom: Boom) -> list[Pad]:
     """Every pad of every joint that is not tied, by rising station.
 
@@ -218,17 +204,22 @@ def pads(boom: Boom) -> list[Pad]:
         for number, joint in enumerate(boom.joints):
             if joint.tied:
                 continue
-            start, end = boom.overlap(joint)
+            overlap = boom.overlap(joint)
             drawn = 0.0 if joint.drive is None else joint.drive.reach[1]
-            length = joint.contact_length or _OF_OVERLAP * (end - start - drawn)
+            length = joint.contact_length or _OF_OVERLAP * (overlap[1] - overlap[0] - drawn)
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
                 pressed = Stretch.on(inner_segment, x, length), Stretch.on(outer_segment, x, length)
-                for side, inner, outer, whole in _points(boom, joint, direction, x):
+                for side, inner, outer, whole, face in _points(boom, joint, direction, x):
                     for size, share, shim in joint.pads_of(direction, side):
                         weight = whole * share
-                        patch = _patch(boom, joint, size, x)
+                        # Where plates are not known, pads are points.
+                        patch = (
+                            None
+                            if size is None or inner_segment.section is None
+                            else Patch(*size.span(x, overlap), size.offset, size.width)
+                        )
                         pad = Pad(
                             station=station,
                             joint=joint,
@@ -247,7 +238,7 @@ def pads(boom: Boom) -> list[Pad]:
                             pressed=pressed,
                             patch=patch,
                             raised=shim,
-                            across=_across(boom, joint, patch, x, direction, side, inner),
+                            face=face,
                             carrier=None if joint.drive is None else joint.drive.carriers[k],
                         )
                         found.append(pad)
@@ -255,30 +246,13 @@ def pads(boom: Boom) -> list[Pad]:
     return found
 
 
-def _across(
-    boom: Boom,
-    joint: Joint,
-    patch: Patch | None,
-    x: float,
-    direction: Direction,
-    side: Side,
-    corner: Offset,
-) -> float:
-    """How far the middle of a patch is from the corner beside which it lies in space, in m."""
-    if patch is None or joint.lateral_clearance is None:
-        return 0.0
-    face = boom.segments[joint.inner].section_at(x).face(direction, side)
-    end = corner[0] if direction == "z" else corner[1]
-    return float(np.sign(end) * 0.5 * sum(patch.across(face)) - end)
-
-
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
-) -> Iterator[tuple[Side, Offset, Offset, float]]:
-    """Side, inner and outer point, and weight of the pads at one station along one direction."""
+) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
+    """Side, inner and outer point, weight, and inner face in space, of the pads at one station."""
     if joint.lateral_clearance is None:
         for side in _SIDES if joint.pads else _BOTH:
-            yield side, (0.0, 0.0), (0.0, 0.0), 1.0
+            yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
         return
     inner, outer = (boom.segments[number].section_at(x) for number in (joint.inner, joint.outer))
     clearance = joint.clearance if direction == "z" else joint.lateral_clearance
@@ -288,15 +262,4 @@ def _points(
             within, around = (corner, surface - side * clearance), (corner, surface)
             if direction == "y":
                 within, around = within[::-1], around[::-1]
-            yield side, within, around, 0.5
-
-
-def _patch(boom: Boom, joint: Joint, size: PadSize | None, x: float) -> Patch | None:
-    """The wall that a pad covers; None where pads are points, or plates not known.
-
-    It is centred at its station, but moved inwards where the overlap ends, and reaches inwards from
-    its offset from the corner of the inner box.
-    """
-    if size is None or boom.segments[joint.inner].section is None:
-        return None
-    return Patch(*size.span(x, boom.overlap(joint)), size.offset, size.width)
+            yield side, within, around, 0.5, touching

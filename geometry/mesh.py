@@ -30,9 +30,6 @@ from geometry.section import Offset, Plate, Section
 # Part of a mesh's extent below which a coordinate is 0.
 _ROUND_OFF = 1.0e-12
 
-# Of a part of a segment's length: below any triangle, above round-off.
-_DIGITS = 9
-
 
 @dataclass(frozen=True, slots=True)
 class SegmentMesh:
@@ -57,6 +54,11 @@ class SegmentMesh:
     def on_walls(self) -> Mask:
         """(num_triangles,) False on diaphragms."""
         return np.asarray(self.walls < len(self.plates))
+
+    @property
+    def along(self) -> Array:
+        """(num_triangles,) x in m of their middles."""
+        return np.asarray(self.points[self.triangles, 0].mean(axis=1))
 
     def write(self, path: Path) -> None:
         """Write for ParaView (``.vtu``) with the wall of each triangle as a field."""
@@ -147,45 +149,6 @@ def collar_breaks(segment: Segment) -> dict[str, float]:
 def diaphragm_breaks(segment: Segment) -> dict[str, float]:
     """Name → x in m of a segment's diaphragms, in their order."""
     return {f"diaphragm-{k}": plate.x for k, plate in enumerate(segment.diaphragms, start=1)}
-
-
-def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) thickness in m of the walls without collars, 0 on diaphragms."""
-    of_wall = [plate.thickness for plate in section.plates]
-    return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
-
-
-def wall_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) as :func:`plain_thickness`, where a segment tapers as it is there."""
-    assert segment.section is not None
-    tail = plain_thickness(segment.section, mesh)
-    if segment.head_section is None:
-        return tail
-    part = part_along(segment, mesh)
-    return np.asarray(tail + part * (plain_thickness(segment.head_section, mesh) - tail))
-
-
-def part_along(segment: Segment, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) where triangles are, from 0 at the start of a segment to 1 at its end."""
-    part = (mesh.points[mesh.triangles, 0].mean(axis=1) - segment.start) / segment.length
-    # Mirror images have the same to the last bit.
-    return np.asarray(np.round(part, _DIGITS))
-
-
-def plate_thickness(segment: Segment, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) thickness in m of all plates of a segment whose section is known.
-
-    Args:
-        segment: its diaphragms are those of the mesh, in the same order.
-        mesh: with lines at the ends of the collars.
-    """
-    thickness = wall_thickness(segment, mesh)
-    x = mesh.points[mesh.triangles, 0].mean(axis=1)
-    for collar in segment.collars:
-        thickness[mesh.on_walls & (x > collar.start) & (x < collar.end)] += collar.thickness
-    for number, diaphragm in enumerate(segment.diaphragms, start=len(mesh.plates)):
-        thickness[mesh.walls == number] = diaphragm.thickness
-    return thickness
 
 
 def _merge_places(values: Iterable[float]) -> list[float]:

@@ -9,14 +9,14 @@ without end, and its error goes with the square of the size.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from geometry.boom import Boom
-from geometry.contact_places import ContactLine, Pad, Stretch, pads, rests
-from geometry.drawing import drives_of, reach
+from geometry.contact_places import ContactLine, Pad, Stretch
 from geometry.grading import Spot
+from geometry.rests import Rest
 from geometry.section import Direction, Face, Section
 
 # The tolerance at which the parts below were measured.
@@ -29,7 +29,14 @@ _PAD, _PAD_GROWTH = 0.18, 0.3
 _WALLS, _WALLS_GROWTH = 0.1, 0.5
 
 
-def spots(boom: Boom, number: int, tolerance: float, line: ContactLine) -> list[Spot]:
+def spots(
+    boom: Boom,
+    number: int,
+    tolerance: float,
+    line: ContactLine,
+    rests: Sequence[Rest],
+    pads: Sequence[Pad],
+) -> list[Spot]:
     """Of a segment with known plates.
 
     Args:
@@ -37,11 +44,12 @@ def spots(boom: Boom, number: int, tolerance: float, line: ContactLine) -> list[
         number: its position in ``Boom.segments``.
         tolerance: relative error of the local compliance.
         line: where walls touch.
+        rests, pads: of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
     return [
         Spot(low, high, finer * size, finer * growth)
-        for low, high, size, growth in _measured(boom, number, line)
+        for low, high, size, growth in _measured(boom, number, line, rests, pads)
     ]
 
 
@@ -49,7 +57,9 @@ _Place = tuple[float, float, float]
 _Measured = tuple[_Place, _Place, float, float]
 
 
-def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]:
+def _measured(
+    boom: Boom, number: int, line: ContactLine, rests: Sequence[Rest], pads: Sequence[Pad]
+) -> Iterator[_Measured]:
     """Ends, size and growth of each spot at the tolerance ``MEASURED_AT``."""
     segment = boom.segments[number]
     section = segment.widest
@@ -61,18 +71,16 @@ def _measured(boom: Boom, number: int, line: ContactLine) -> Iterator[_Measured]
     across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
         yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
-    resting, touching = rests(boom), pads(boom)
-    for rest in resting:
+    for rest in rests:
         if rest.stop.segment == number:
-            drawn = [rest.drawn(boom, way) for way in reach(drives_of(boom.joints, number))]
+            drawn = [rest.drawn(boom, way) for way in rest.reach]
             for face in _faces(section, "z"):
                 yield _swept(_corner(one.pressed, face) for one in drawn)
-    for pad in touching:
-        over = (0.0, 0.0) if pad.joint.drive is None else pad.joint.drive.reach
+    for pad in pads:
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    drawn_pads = (pad.drawn(boom, way) for way in over)
+                    drawn_pads = (pad.drawn(boom, way) for way in pad.reach)
                     yield _swept(_pressed(boom, one, end, face, line) for one in drawn_pads)
 
 

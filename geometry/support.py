@@ -46,6 +46,11 @@ class Support:
         lateral = self.lateral_kind or self.kind
         return (self.kind if direction == "z" else lateral) == "clamped"
 
+    @property
+    def clamped(self) -> bool:
+        """Whether it holds both slopes rigidly."""
+        return self.holds_slope("z") and self.holds_slope("y")
+
     def turned(self) -> Support:
         """Of a segment whose two planes are exchanged."""
         if self.lateral_kind is None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.arrays import Array, Indices
-from geometry.mesh import SegmentMesh
+from geometry.plating import PlatedMesh
 from geometry.section import Section
 from geometry.segment import Segment
 
@@ -16,7 +16,7 @@ from geometry.segment import Segment
 _ROUND_OFF = 1.0e-12
 
 
-def tapered_mesh(segment: Segment, mesh: SegmentMesh) -> SegmentMesh:
+def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
     """Each point where it is in the section of its x, all walls flat from mesh line to mesh line.
 
     A section is a fan of triangles, from its middle to each plate: a point keeps its place in its

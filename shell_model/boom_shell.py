@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -17,17 +16,19 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine
+from geometry.contact_places import ContactLine, pads
 from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
-from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.observation import Quantity, Read
+from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.plating import PlatedMesh, plated
+from geometry.rests import rests
 from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
-from shell_model.cross_section import Outline, Reading, Row
+from shell_model.cross_section import Reading
+from shell_model.observers import observers
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment_shell import SegmentShell, assemble_segment
 
@@ -188,7 +189,7 @@ def assemble_boom(
             ties=ties(boom, shells),
             own_loads=[shell.own_load(boom.directions) for shell in shells],
             loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
-            observed=_observed(boom, shells),
+            observed=observers(boom, shells),
             lines=list(ground_lines(boom, shells)),
         )
 
@@ -207,7 +208,7 @@ def assemble_segments(
     return shells
 
 
-def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
+def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     """Mesh the walls of one segment, with mesh lines wherever something acts."""
     segment = boom.segments[number]
     if segment.section is None:
@@ -231,36 +232,12 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> SegmentMesh:
     if options.contact_tolerance is None or options.contact_line == "surface":
         mesh = mesh_segment(*box, closed=closed)
     else:
-        fine = spots(boom, number, options.contact_tolerance, options.contact_line)
+        tolerance, line = options.contact_tolerance, options.contact_line
+        fine = spots(boom, number, tolerance, line, rests(boom), pads(boom))
         mesh = graded_mesh(*box, fine, closed=closed)
+    built = plated(segment, mesh)
     if segment.head_section is not None:
-        mesh = tapered_mesh(segment, mesh)
+        built = tapered_mesh(segment, built)
     if options.mesh_folder is not None:
-        mesh.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
-    return mesh
-
-
-def _observed(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
-    """What is reported of the boom's ends, and what is observed besides. Collective."""
-    ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
-    if boom.spatial:
-        ends += ("lateral", "twist")
-    outlines: dict[tuple[int, float], Outline] = {}
-    observed = {}
-    for place in boom.recorded(ends):
-        at = place.segment, place.x
-        if at not in outlines:
-            outlines[at] = shells[place.segment].outline(place.x)
-        kind = place.kind
-        row = _READ[kind.read](outlines[at])
-        observed[place.name] = Observed(Reading({place.segment: row}), kind.unit, kind.derivative)
-    return observed
-
-
-_READ: Mapping[Read, Callable[[Outline], Row]] = {
-    "deflection": Outline.mean_deflection,
-    "rotation": Outline.rotation,
-    "distortion": Outline.distortion,
-    "lateral": partial(Outline.mean_deflection, direction="y"),
-    "twist": Outline.twist,
-}
+        built.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
+    return built

@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 
-from geometry.arrays import Array, Indices
+from geometry.arrays import Array, Indices, Mask
 from geometry.section import COMPONENT, Direction, Plate, Section
 
 _X = 0
@@ -54,6 +55,12 @@ class Reading(dict[int, Row]):
         return Reading({number: factor * row for number, row in self.items()})
 
 
+def on_outline(places: Array, section: Section, x: float) -> Mask:
+    """(num_places,) whether places (num_places, 3) are on the walls at x."""
+    at_x = np.abs(places[:, 0] - x) < section.near
+    return np.asarray(section.on_plates(places[:, 1:]) & at_x)
+
+
 def quadratic(s: Array) -> Array:
     """(..., 3) shape functions of an edge's first end, middle and last end at the parts s of it."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
@@ -74,6 +81,23 @@ class Outline:
     places: Array
     dofs: Indices
     section: Section
+
+    @classmethod
+    def of(
+        cls, comm: MPI.Comm, nodes: Array, node_dofs: Indices, section: Section, x: float
+    ) -> Outline:
+        """The same on every rank. Collective.
+
+        Args:
+            comm: the ranks that share the nodes.
+            nodes: (num_owned_nodes, 3) in m.
+            node_dofs: (num_owned_nodes, 3) global rows of their displacements.
+            section, x: see above.
+        """
+        at = on_outline(nodes, section, x)
+        places = np.concatenate(comm.allgather(nodes[at]))
+        dofs = np.concatenate(comm.allgather(node_dofs[at]))
+        return cls(x, places, dofs, section)
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
         """u_z or u_y averaged over the section's area: its neutral axis' deflection, in m."""

@@ -98,15 +98,14 @@ class ShellForms:
         thickness: wall thickness t in m, constant on each cell.
         material: isotropic.
         drilling: part of G t that ties the drilling rotation.
-        loaded: thickness in m that carries the unit load, constant on each cell; all of it
-            unless given.
         shear_correction: part of G t that resists transverse shear; a large one is a thin shell
             after Kirchhoff and Love, whatever its thickness.
         compression: membrane force along x in N/m, constant on each cell, positive where it
             presses; none unless given.
 
     Attributes:
-        loaded: as given; what it is when the load is assembled counts.
+        loaded: thickness in m that carries the unit load, constant on each cell; all of it unless
+            whoever assembles the load sets another.
         load_direction: (3,) a constant that whoever assembles the load sets.
     """
 
@@ -116,14 +115,13 @@ class ShellForms:
         thickness: Any,
         material: Material,
         drilling: float = DRILLING,
-        loaded: Any | None = None,
         shear_correction: float = SHEAR_CORRECTION,
         compression: Any | None = None,
     ) -> None:
         self._space, self._thickness, self._material = space, thickness, material
         self._drilling, self._shear_correction = drilling, shear_correction
         self._compression = compression
-        self.loaded = thickness if loaded is None else loaded
+        self.loaded = thickness.copy()
         self.load_direction = fem.Constant(space.mesh, np.zeros(3, dtype=PETSc.ScalarType))
 
     @cached_property

@@ -12,26 +12,25 @@ import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
-from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.far_field import FarField
-from geometry.mesh import SegmentMesh
+from geometry.plating import PlatedMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
+from shell_model.buckling import critical_factor
 from shell_model.contact.local_compliance import (
     compliance,
     extrapolated_error,
     full_compliance,
     local_compliance,
 )
-from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.drawn_shell import MOMENTS, DrawnShell
 from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
-from shell_model.stress.fields import gather_fields, with_cylinders
+from shell_model.stress.fields import gather_fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +65,7 @@ class ReducedShell:
     local_compliance: Array
     mesh_error: float
     seconds: dict[str, float]
-    meshes: Sequence[SegmentMesh]
+    meshes: Sequence[PlatedMesh]
     critical_factor: float | None = float("inf")
     far_fields: Sequence[FarField] = ()
     own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
@@ -96,23 +95,15 @@ def reduce_boom(
     stages = Stages(progress)
     planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     full = assemble_boom(boom, planes, options, comm, stages)
-    reduced, coordinates, system, pressed, lost = (_drawn if boom.driven else _resting)(
-        boom, full, options, stages
-    )
-    # Springs that go along with pads move nothing else.
-    springs = system.num_modes - coordinates.omega2.size
-    own_loads = np.pad(_own_loads(full, coordinates), ((0, 0), (0, springs)))
+    found = (_drawn if boom.driven else _resting)(boom, full, options, stages)
     with stages.stage("fields"):
-        fields = gather_fields(full.shells, reduced)
-        if fields is not None:
-            fields = coordinates.of_fields(fields).pad({"mode": (0, springs)}, constant_values=0)
-            fields = with_cylinders(fields, boom, full.shells, system)
+        fields = gather_fields(boom, full.shells, found.segments, found.coordinates, found.system)
     with stages.stage("mesh error"):
         coarse = assemble_boom(boom, planes, options.coarser, comm)
         local, coarse_local = (
             local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
             for whole, rows in (
-                (pressed, full.rows.contacts),
+                (found.compliance, full.rows.contacts),
                 (full_compliance(coarse.shells, coarse.rows.contacts), coarse.rows.contacts),
             )
         )
@@ -120,21 +111,21 @@ def reduce_boom(
     with stages.stage("far field"):
         far_fields = [far_field(boom, number, shell) for number, shell in enumerate(full.shells)]
     return ReducedShell(
-        system=system,
+        system=found.system,
         num_dofs=full.num_dofs,
         fields=fields,
         errors={
-            "contact_compliance": _largest(lost / local),
-            "readings": max(segment.reading_error for segment in reduced),
-            "frequency_limit_in_hz": min(segment.frequency_limit for segment in reduced),
+            "contact_compliance": _largest(found.lost / local),
+            "readings": max(segment.reading_error for segment in found.segments),
+            "frequency_limit_in_hz": min(segment.frequency_limit for segment in found.segments),
         },
         local_compliance=local,
         mesh_error=_largest(mesh_error),
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
-        critical_factor=_critical_factor(boom, full, reduced),
+        critical_factor=critical_factor(boom, full, found.segments),
         far_fields=far_fields,
-        own_loads=own_loads,
+        own_loads=found.own_loads,
     )
 
 
@@ -145,6 +136,7 @@ class _Reduction(NamedTuple):
         segments: in theirs.
         coordinates: of all of it, less springs.
         system: which these are.
+        own_loads: (num_segments, num_modes) what each segment's own loads push, in N/√kg.
         compliance: (num_contacts, num_contacts) of the contacts in m/N.
         lost: (num_contacts,) the most by which they give way wrongly in m/N.
     """
@@ -152,6 +144,7 @@ class _Reduction(NamedTuple):
     segments: Sequence[ReducedSegment]
     coordinates: BoomCoordinates
     system: GapSystem
+    own_loads: Array
     compliance: Array
     lost: Array
 
@@ -161,9 +154,10 @@ def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) ->
     reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
     coordinates = BoomCoordinates(full.comm, full.shells, reduced, full.ties, full.lines)
     with stages.stage("rows"):
-        system = _gap_system(full, coordinates)
-    lost = _lost_compliance(full, reduced)
-    return _Reduction(reduced, coordinates, system, _compliance(full, reduced), lost)
+        loads = _own_loads(full, coordinates)
+        system = _gap_system(full, coordinates, loads)
+    pressed, lost = _compliance(full, reduced), _lost_compliance(full, reduced)
+    return _Reduction(reduced, coordinates, system, loads, pressed, lost)
 
 
 def _drawn(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
@@ -176,9 +170,11 @@ def _drawn(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -
     drawn = DrawnShell(boom, full, options.mesh_size, reduce, options.krylov.tests[0])
     coordinates = BoomCoordinates(full.comm, full.shells, drawn.reduced, full.ties, full.lines)
     with stages.stage("rows"):
-        system = drawn.with_springs(_gap_system(full, coordinates), coordinates)
-    pressed = compliance(system.omega2, system.rows)
-    return _Reduction(drawn.reduced, coordinates, system, pressed, drawn.lost(len(system.laws)))
+        loads = _own_loads(full, coordinates)
+        system = drawn.with_springs(_gap_system(full, coordinates, loads), coordinates)
+    loads = np.pad(loads, ((0, 0), (0, system.num_modes - loads.shape[1])))
+    pressed, lost = compliance(system.omega2, system.rows), drawn.lost(len(system.laws))
+    return _Reduction(drawn.reduced, coordinates, system, loads, pressed, lost)
 
 
 def _reduced(
@@ -203,12 +199,12 @@ def _own_loads(full: BoomShell, coordinates: BoomCoordinates) -> Array:
     return np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
 
 
-def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
+def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:
     """The boom in its coordinates."""
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
-        _own_loads(full, coordinates).sum(axis=0),
+        own_loads.sum(axis=0),
         full.stations,
         full.observed,
         [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],
@@ -217,26 +213,6 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates) -> GapSystem:
             for line in full.lines
         ],
     )
-
-
-def _critical_factor(
-    boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]
-) -> float | None:
-    """Of the boom without play. Collective.
-
-    Raises:
-        NumericsError: it is 1 or less, and the boom buckles.
-    """
-    if not boom.compressed:
-        return float("inf")
-    held = ties(boom.play_free, full.shells)
-    factor = BoomCoordinates(full.comm, full.shells, reduced, held, full.lines).critical_factor
-    if factor is not None and factor <= 1.0:
-        raise NumericsError(
-            f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "
-            "smaller, or the sections larger"
-        )
-    return factor
 
 
 def _compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Array:

@@ -5,27 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import Direction, Segment, Support
-from geometry.mesh import SegmentMesh, part_along, plate_thickness, wall_thickness
+from geometry.arrays import Array, Mask
+from geometry.boom import Direction, Segment
+from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Section
-from geometry.taper import areas
 from shell_model import compat
-from shell_model.contact.attachments import Attached
+from shell_model.contact.attachments import Attached, masses, springs
 from shell_model.cross_section import Outline, Row
-from shell_model.forms import ShellForms
+from shell_model.plates import assemble_plates
 from shell_model.reduction.products import times
-from shell_model.shell import Matrices, Plates, Shell, free_rows, hold, owned_nodes
-
-# What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
-# segment can tell it from a rigid hold.
-RIGID_TURN = 1.0e5
+from shell_model.shell import Matrices, Plates, Shell, free_rows, owned_nodes
 
 # Part of the largest value below which a value of a load is round-off.
 _ROUND_OFF = 1.0e-10
@@ -54,32 +47,12 @@ class SegmentShell(Shell):
     masses: Attached
     section: Section
     segment: Segment
-    mesh: SegmentMesh | None
-
-    @property
-    def thickness(self) -> Array | None:
-        """(num_triangles,) of all plates in m, on rank 0."""
-        return None if self.mesh is None else plate_thickness(self.segment, self.mesh)
-
-    @property
-    def axial_stress(self) -> Array | None:
-        """(num_triangles,) what the axial force adds to the stress along x in Pa, on rank 0."""
-        return self.pulled(lambda x: -self.segment.compression(x))
-
-    def pulled(self, force: Callable[[Array], Array]) -> Array | None:
-        """(num_triangles,) the stress along x of normal forces in N at x in Pa, on rank 0.
-
-        The plain walls carry them, and hand them on to collars.
-        """
-        if self.mesh is None:
-            return None
-        x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
-        plain = force(x) / self.segment.area
-        return plain * _evenly(self.segment, self.mesh) / plate_thickness(self.segment, self.mesh)
+    mesh: PlatedMesh | None
 
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
-        return _outline(self.comm, self.nodes, self.node_dofs, self.segment.section_at(x), x)
+        section = self.segment.section_at(x)
+        return Outline.of(self.comm, self.nodes, self.node_dofs, section, x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
         """(num_owned,) the segment's uniform loads that are applied at t = 0 and kept, in N."""
@@ -108,12 +81,10 @@ class SegmentShell(Shell):
         start, end = span
         thickness = None
         if self.mesh is not None:
-            x = self.mesh.points[self.mesh.triangles, 0].mean(axis=1)
-            thickness = _evenly(self.segment, self.mesh) * ((x > start) & (x < end))
-        forms = self.matrices.plates.forms
-        loaded = compat.cellwise_function(self.space.mesh, self.comm.bcast(thickness))
-        forms.loaded.x.array[:] = loaded.x.array
-        return _unit_load(self.comm, forms, direction) / self.segment.area * self.free
+            x = self.mesh.along
+            thickness = self.mesh.even * ((x > start) & (x < end))
+        load = _unit_loads(self.comm, self.matrices.plates, thickness)[direction]
+        return load / self.segment.area * self.free
 
     def inertia(self, direction: Direction, force: float) -> Array:
         """(num_owned,) an acceleration that the plain segment feels as so many N/m."""
@@ -135,7 +106,7 @@ class SegmentShell(Shell):
         return _local_row(self.owned[0], self.free, weights)
 
 
-def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> SegmentShell:
+def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> SegmentShell:
     """Assemble a segment's shell. Collective.
 
     A rigid support holds the section's outline against y and z, which leaves it free to tilt; a
@@ -154,39 +125,36 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     section = segment.section
     assert section is not None
     plates = assemble_plates(comm, segment, mesh)
-    space, forms = plates.space, plates.forms
-    plain_loads = {d: _unit_load(comm, forms, d) / segment.area for d in COMPONENT}
-    unit_loads = plain_loads
-    forms.loaded.x.array[:] = plates.thickness.x.array - forms.loaded.x.array
-    density = segment.material.density
-    stiffener_loads = {d: density * _unit_load(comm, forms, d) for d in COMPONENT}
-    if segment.head_section is not None:
-        even = None if mesh is None else _evenly(segment, mesh)
-        spread = compat.cellwise_function(space.mesh, comm.bcast(even))
-        forms.loaded.x.array[:] = spread.x.array
-        unit_loads = {d: _unit_load(comm, forms, d) / segment.area for d in COMPONENT}
-    free = free_rows(space, plates.holds)
+    space, free = plates.space, free_rows(plates.space, plates.holds)
+    plain, even, stiffening = (
+        {d: load * free for d, load in _unit_loads(comm, plates, thickness).items()}
+        for thickness in (
+            (None, None, None)
+            if mesh is None
+            else (mesh.plain, mesh.even, mesh.thickness - mesh.plain)
+        )
+    )
     nodes, node_dofs = owned_nodes(space, 0)
     rotation_nodes, rotation_dofs = owned_nodes(space, 1)
 
     def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
         rows, factors = [], []
         for x, row, factor in what:
-            outline = _outline(comm, nodes, node_dofs, segment.section_at(x), x)
+            outline = Outline.of(comm, nodes, node_dofs, segment.section_at(x), x)
             rows.append(_local_row(space.dofmap.index_map.local_range[0], free, row(outline)))
             factors.append(factor)
         return Attached.of(rows, factors, free.size)
 
-    springs, masses = attached(_springs(segment)), attached(_masses(segment))
+    pulling, carried = attached(springs(segment)), attached(masses(segment))
     return SegmentShell(
         comm=comm,
-        matrices=Matrices(comm, plates, plates.holds, springs, masses),
-        unit_loads={d: load * free for d, load in unit_loads.items()},
-        plain_loads={d: load * free for d, load in plain_loads.items()},
-        stiffener_loads={d: load * free for d, load in stiffener_loads.items()},
+        matrices=Matrices(comm, plates, plates.holds, pulling, carried),
+        unit_loads={d: load / segment.area for d, load in even.items()},
+        plain_loads={d: load / segment.area for d, load in plain.items()},
+        stiffener_loads={d: segment.material.density * load for d, load in stiffening.items()},
         free=free,
-        springs=springs,
-        masses=masses,
+        springs=pulling,
+        masses=carried,
         nodes=nodes,
         node_dofs=node_dofs,
         rotation_nodes=rotation_nodes,
@@ -198,58 +166,6 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None)
     )
 
 
-def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: SegmentMesh | None) -> Plates:
-    """The plates of a mesh, a segment's whole one or a part of it. Collective."""
-    if mesh is not None:
-        points, triangles = mesh.points, mesh.triangles
-        plain = wall_thickness(segment, mesh)
-        # The plain walls carry the whole axial force, so that it is the same in each section.
-        force = segment.compression(points[triangles, 0].mean(axis=1))
-        pressing = force / segment.area * _evenly(segment, mesh)
-        of_cells = plate_thickness(segment, mesh), plain, pressing
-    else:
-        points, triangles = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
-        of_cells = None
-    domain = compat.create_triangle_mesh(comm, points, triangles)
-    thickness, loaded, pressed = (
-        compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
-    )
-    space = compat.shell_space(domain)
-    forms = ShellForms(space, thickness, segment.material, loaded=loaded, compression=pressed)
-    holds = _holds(space, segment)
-    return Plates(space, thickness, forms, holds, bool(segment.compression))
-
-
-def _evenly(segment: Segment, mesh: SegmentMesh) -> Array:
-    """(num_triangles,) thickness in m by which a force per length that is the same at each x is
-    spread over the walls: theirs, over the section's part of the mean area where it tapers.
-    """
-    thickness = wall_thickness(segment, mesh)
-    if segment.section is None or segment.head_section is None:
-        return thickness
-    parabola = np.polyfit([0.0, 0.5, 1.0], areas(segment.section, segment.head_section), 2)
-    return np.asarray(thickness * segment.area / np.polyval(parabola, part_along(segment, mesh)))
-
-
-def _outline(
-    comm: MPI.Comm,
-    nodes: Array,
-    node_dofs: Indices,
-    section: Section,
-    x: float,
-) -> Outline:
-    at = _on_outline(nodes, section, x)
-    places = np.concatenate(comm.allgather(nodes[at]))
-    dofs = np.concatenate(comm.allgather(node_dofs[at]))
-    return Outline(x, places, dofs, section)
-
-
-def _on_outline(places: Array, section: Section, x: float) -> Mask:
-    """(num_places,) whether places (num_places, 3) are on the walls at x."""
-    at_x = np.abs(places[:, 0] - x) < section.near
-    return np.asarray(section.on_plates(places[:, 1:]) & at_x)
-
-
 def _local_row(first: int, free: Mask, weights: Row) -> Array:
     local = np.zeros(free.size)
     for dof, weight in weights.items():
@@ -258,68 +174,20 @@ def _local_row(first: int, free: Mask, weights: Row) -> Array:
     return local
 
 
-def _unit_load(comm: MPI.Comm, forms: ShellForms, direction: Direction) -> Array:
-    """The assembled load. It has exact zeros at the vertices, where a quadratic function has no
-    mean, and at most two cells that carry it elsewhere, so that no order of summation is left in
-    that of a plain box.
+def _unit_loads(comm: MPI.Comm, plates: Plates, thickness: Array | None) -> dict[Direction, Array]:
+    """Direction → (num_owned,) 1 N/m³ along it on a thickness (num_triangles,) in m on rank 0.
+
+    Collective. It has exact zeros at the vertices, where a quadratic function has no mean, and at
+    most two cells that carry it elsewhere, so that no order of summation is left in that of a plain
+    box.
     """
-    forms.load_direction.value[:] = np.eye(3)[COMPONENT[direction]]
-    load = compat.assemble_vector(forms.unit_load)
-    largest = comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
-    load[np.abs(load) < _ROUND_OFF * largest] = 0.0
-    return load
-
-
-def _springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Where supports pull that are elastic, or hold a turn, at what, and how stiffly."""
-    for support in segment.supports:
-        section = segment.section_at(support.x)
-        torsion = segment.material.shear_modulus * section.torsion_constant
-        bending: Mapping[Direction, float] = {
-            "z": segment.material.youngs_modulus * section.second_moment_of_area,
-            "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
-        }
-        if support.stiffness is not None:
-            yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
-            yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
-            yield support.x, Outline.twist, RIGID_TURN * torsion / segment.length
-        for direction, stiffness in bending.items():
-            turn = partial(Outline.rotation, direction=direction)
-            if support.holds_slope(direction) and not _is_clamped(support):
-                yield support.x, turn, RIGID_TURN * stiffness / segment.length
-            elif support.rotation_stiffness is not None:
-                yield support.x, turn, support.rotation_stiffness
-
-
-def _masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
-    """Where point masses are, what moves them, and how heavy they are."""
-    for mass in segment.masses:
-        yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
-        yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass
-        yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
-
-
-def _holds(space: Any, segment: Segment) -> list[Any]:
-    """Dirichlet conditions of the rigid supports."""
-
-    def at(x: float) -> Callable[[Array], Mask]:
-        section = segment.section_at(x)
-        return lambda places: _on_outline(places, section, x)
-
-    return [
-        hold(space, part, component, at(support.x))
-        for support in segment.supports
-        if support.stiffness is None
-        for part, component in _held_components(support)
-    ]
-
-
-def _held_components(support: Support) -> list[tuple[int, int]]:
-    """Components that a rigid support holds: (0, i) of displacement, (1, i) of rotation."""
-    if _is_clamped(support):
-        return [(part, component) for part in (0, 1) for component in (0, 1, 2)]
-    return [(0, COMPONENT["y"]), (0, COMPONENT["z"])]
-
-
-def _is_clamped(support: Support) -> bool:
-    return support.holds_slope("z") and support.holds_slope("y")
+    loaded = compat.cellwise_function(plates.space.mesh, comm.bcast(thickness))
+    plates.forms.loaded.x.array[:] = loaded.x.array
+    found: dict[Direction, Array] = {}
+    for direction, component in COMPONENT.items():
+        plates.forms.load_direction.value[:] = np.eye(3)[component]
+        load = compat.assemble_vector(plates.forms.unit_load)
+        largest = comm.allreduce(np.abs(load).max(initial=0.0), MPI.MAX)
+        load[np.abs(load) < _ROUND_OFF * largest] = 0.0
+        found[direction] = load
+    return found

@@ -23,14 +23,18 @@ from shell_model.forms import ShellForms
 ON_LINE = 1.0e-7
 
 
+# What a support holds: 0 of the displacement or 1 of the rotation, which component, and of places
+# (num_places, 3) in m where.
+Hold = tuple[int, int, Callable[[Array], Mask]]
+
+
 class Plates(NamedTuple):
-    """What plates are before they are matrices: function space, thickness, forms, supports.
+    """What plates are before they are matrices: function space, forms, supports.
 
     ``compressed``: whether they carry an axial force.
     """
 
     space: Any
-    thickness: Any
     forms: ShellForms
     holds: list[Any]
     compressed: bool = False

@@ -27,7 +27,7 @@ from shell_model.stress.stresses import ShellStress
 from shell_model.stress.summary import StressSummary
 
 if TYPE_CHECKING:
-    from geometry.mesh import SegmentMesh
+    from geometry.plating import PlatedMesh
     from shell_model.reduced_shell import ReducedShell
 
 
@@ -51,7 +51,7 @@ class ShellOutput:
     fields: xr.Dataset
     stresses: xr.Dataset
     largest: StressSummary
-    meshes: dict[str, SegmentMesh]
+    meshes: dict[str, PlatedMesh]
 
     @property
     def modes(self) -> xr.Dataset | None:

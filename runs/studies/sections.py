@@ -19,6 +19,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Joint, Material, Segment, Support
 from geometry.contact_places import Stretch
 from geometry.mesh import mesh_segment
+from geometry.plating import plated
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
@@ -165,7 +166,7 @@ def ring_of_shell(section: Section, length: float, size: float) -> float:
     """The same of a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
     mesh = mesh_segment(section, {"start": 0.0, "end": length}, size)
-    shell = assemble_segment(MPI.COMM_SELF, segment, mesh)
+    shell = assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
     stretch = Stretch.on(segment, 0.5 * length, length)
     corners = CornerLines(shell)
     top, bottom = (corners.deflection(stretch, "z", 0.0, side) for side in (1, -1))
@@ -176,9 +177,8 @@ def tip_of_shell(section: Section, direction: Direction, size: float) -> float:
     """How the tip of a cantilever of shell gives way along a direction, in m/N."""
     clamp = Support(0.0, "clamped")
     segment = Segment.of_section("arm", 0.0, ARM, STEEL, section, supports=(clamp,))
-    shell = assemble_segment(
-        MPI.COMM_SELF, segment, mesh_segment(section, {"start": 0.0, "end": ARM}, size)
-    )
+    mesh = mesh_segment(section, {"start": 0.0, "end": ARM}, size)
+    shell = assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
     return gives_way(shell, shell.force(ARM, direction))
 
 

@@ -16,7 +16,6 @@ from mpi4py import MPI
 from dynamics.contact import ContactLaw
 from geometry.boom import Boom
 from geometry.contact_places import pads
-from geometry.mesh import plate_thickness
 from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
 from runs.studies.refined import Refined, refined_table
@@ -83,8 +82,7 @@ class Pressed:
         modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
         assert modes is not None
         assert shell.mesh is not None
-        thickness = plate_thickness(segment, shell.mesh)
-        return cls(boom, ShellStress.still(shell.mesh, thickness, modes))
+        return cls(boom, ShellStress.still(shell.mesh, modes))
 
     @classmethod
     def reduced(cls, boom: Boom, laws: Sequence[ContactLaw], size: float) -> Pressed:
@@ -108,9 +106,7 @@ class Pressed:
         state = np.divide(force, system.omega2, out=np.zeros_like(force), where=elastic)
         own = fields[f"coordinates_{INNER + 1}"].values @ state
         modes = np.tensordot(own, fields[f"stress_{INNER + 1}"].values, axes=1)[None]
-        mesh = shell.meshes[INNER]
-        thickness = plate_thickness(boom.segments[INNER], mesh)
-        return cls(boom, ShellStress.still(mesh, thickness, modes.astype(np.float32)))
+        return cls(boom, ShellStress.still(shell.meshes[INNER], modes.astype(np.float32)))
 
     def top(self, x: float) -> tuple[float, float]:
         """Mean σ_x over the width of the top in Pa, and what a beam has there.

@@ -7,7 +7,8 @@ reads, and every other motion of the section stays as free as it was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,12 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from geometry.arrays import Array
+from geometry.boom import Direction, Segment
+from shell_model.cross_section import Outline, Row
+
+# What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
+# segment can tell it from a rigid hold.
+RIGID_TURN = 1.0e5
 
 
 class Attached(NamedTuple):
@@ -37,6 +44,35 @@ class Attached(NamedTuple):
         """Add factor · r rᵀ of each to a matrix that is distributed by rows. Collective."""
         for row, factor in zip(self.rows.T, self.factors, strict=True):
             _add_outer_product(comm, matrix, row, float(factor))
+
+
+def springs(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+    """Where supports pull that are elastic, or hold a turn, at what, and how stiffly."""
+    for support in segment.supports:
+        section = segment.section_at(support.x)
+        torsion = segment.material.shear_modulus * section.torsion_constant
+        bending: Mapping[Direction, float] = {
+            "z": segment.material.youngs_modulus * section.second_moment_of_area,
+            "y": segment.material.youngs_modulus * section.lateral_second_moment_of_area,
+        }
+        if support.stiffness is not None:
+            yield support.x, partial(Outline.wall_deflection, direction="z"), support.stiffness
+            yield support.x, partial(Outline.wall_deflection, direction="y"), support.stiffness
+            yield support.x, Outline.twist, RIGID_TURN * torsion / segment.length
+        for direction, stiffness in bending.items():
+            turn = partial(Outline.rotation, direction=direction)
+            if support.holds_slope(direction) and not support.clamped:
+                yield support.x, turn, RIGID_TURN * stiffness / segment.length
+            elif support.rotation_stiffness is not None:
+                yield support.x, turn, support.rotation_stiffness
+
+
+def masses(segment: Segment) -> Iterator[tuple[float, Callable[[Outline], Row], float]]:
+    """Where point masses are, what moves them, and how heavy they are."""
+    for mass in segment.masses:
+        yield mass.x, partial(Outline.mean_displacement, component=0), mass.mass
+        yield mass.x, partial(Outline.wall_deflection, direction="y"), mass.mass
+        yield mass.x, partial(Outline.wall_deflection, direction="z"), mass.mass
 
 
 def _add_outer_product(comm: MPI.Comm, matrix: PETSc.Mat, local: Array, factor: float) -> None:

@@ -16,8 +16,9 @@ from functools import partial
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, Pad, pads, rests
+from geometry.contact_places import ContactLine, Pad, pads
 from geometry.drawing import drives_below
+from geometry.rests import rests
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.stations import (
     Touch,

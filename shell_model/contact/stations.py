@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.contact_places import Pad, Patch, Rest, Stretch
+from geometry.contact_places import Pad, Patch, Stretch
+from geometry.rests import Rest
 from geometry.section import Direction, Section, Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints, gauss

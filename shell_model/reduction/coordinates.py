@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
 from mpi4py import MPI
 from scipy.linalg import block_diag, eigh, null_space
 
@@ -87,20 +86,9 @@ class BoomCoordinates:
 
     def of_rows(self, apart: Array) -> Array:
         """(…, num_modes) of rows in the segments' own modes."""
-        return apart if self._combination is None else apart @ self._combination
-
-    def of_fields(self, fields: xr.Dataset) -> xr.Dataset:
-        """Fields of the segments' own modes as fields of these coordinates."""
         if self._combination is None:
-            return fields
-        combined = {}
-        for name, variable in fields.data_vars.items():
-            if "mode" in variable.dims:
-                axis = variable.dims.index("mode")
-                combination = self._combination.astype(variable.dtype)
-                values = np.tensordot(variable.values, combination, axes=([axis], [0]))
-                combined[name] = (variable.dims, np.moveaxis(values, -1, axis))
-        return fields.assign(combined)
+            return apart
+        return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
 
 
 def _held_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array, Array]:

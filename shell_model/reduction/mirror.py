@@ -20,7 +20,7 @@ from scipy.spatial import cKDTree
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices, Mask
-from geometry.mesh import SegmentMesh
+from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 
 # Nodes closer than this part of a mesh's extent to a place lie on it; meshes are exact to
@@ -106,20 +106,20 @@ def matches(places: Array, among: Array) -> Indices | None:
     return np.asarray(number, dtype=np.int64)
 
 
-def quarter_mesh(mesh: SegmentMesh, thickness: Array, mirrors: Sequence[Direction]) -> SegmentMesh:
+def quarter_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
     """The part of a segment's mesh on the positive side of its section's mirrors.
 
     Raises:
-        NumericsError: the mesh or its thickness (num_triangles,) is not its own image.
+        NumericsError: the mesh or its thickness is not its own image.
     """
-    ours = _sorted(mesh.triangles, thickness)
+    ours = _sorted(mesh.triangles, mesh.thickness)
     for axis in mirrors:
         mirror = np.ones(3)
         mirror[COMPONENT[axis]] = -1.0
         partner = matches(mesh.points * mirror, mesh.points)
         if partner is None:
             raise NumericsError(f"a segment's mesh is not its own mirror image in {axis}")
-        images = _sorted(partner[mesh.triangles], thickness)
+        images = _sorted(partner[mesh.triangles], mesh.thickness)
         if not all(np.array_equal(own, image) for own, image in zip(ours, images, strict=True)):
             raise NumericsError(f"a segment's shell is not its own mirror image in {axis}")
     mine = (quarter_of(mesh.points, mirrors) == 0)[mesh.triangles].all(axis=1)
@@ -132,7 +132,36 @@ def quarter_mesh(mesh: SegmentMesh, thickness: Array, mirrors: Sequence[Directio
         triangles=triangles.reshape(-1, 3).astype(np.int64),
         walls=mesh.walls[mine],
         lines={},
+        thickness=mesh.thickness[mine],
+        plain=mesh.plain[mine],
+        even=mesh.even[mine],
     )
+
+
+class Rows(NamedTuple):
+    """What the rows of a quarter are.
+
+    Args:
+        component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
+        in_mirrors: (2, num_rows) whether they lie in the plane y = 0, and in z = 0.
+    """
+
+    component: Indices
+    in_mirrors: Mask
+
+
+def components(part: int) -> Indices:
+    return np.arange(3 * part, 3 * part + 3)
+
+
+def rows_of(quarter: Sequence[tuple[Array, Indices]]) -> Rows:
+    size = sum(rows.size for _, rows in quarter)
+    found = Rows(np.empty(size, dtype=np.int64), np.empty((2, size), dtype=bool))
+    for part, (places, rows) in enumerate(quarter):
+        found.component[rows] = components(part)
+        for axis in (1, 2):
+            found.in_mirrors[axis - 1, rows] = on_plane(places, axis)[:, None]
+    return found
 
 
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:

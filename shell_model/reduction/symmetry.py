@@ -20,22 +20,25 @@ from petsc4py import PETSc
 from scipy.sparse import csr_array
 
 from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices, Mask
+from geometry.arrays import Array, Indices
 from geometry.boom import Segment
-from geometry.mesh import SegmentMesh
+from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
 from shell_model.contact.attachments import Attached
+from shell_model.plates import assemble_plates
 from shell_model.reduction.mirror import (
     Family,
+    components,
     families,
     folded,
     matches,
     on_plane,
     quarter_mesh,
     quarter_of,
+    rows_of,
 )
-from shell_model.segment_shell import SegmentShell, assemble_plates
+from shell_model.segment_shell import SegmentShell
 from shell_model.shell import Matrices, Shell, free_rows, hold, owned_nodes
 
 _Found = TypeVar("_Found")
@@ -78,7 +81,7 @@ class Job:
     family: Family
     segment: Segment
     mirrors: Sequence[Direction]
-    mesh: SegmentMesh
+    mesh: PlatedMesh
     forces: Array
     readings: Array
     springs: Attached
@@ -112,18 +115,6 @@ class Job:
         )
 
 
-class _Rows(NamedTuple):
-    """What the rows of a quarter are.
-
-    Args:
-        component: (num_rows,) 0 to 2 of the displacement, 3 to 5 of the rotation.
-        in_mirrors: (2, num_rows) whether they lie in the plane y = 0, and in z = 0.
-    """
-
-    component: Indices
-    in_mirrors: Mask
-
-
 class Folding:
     """How the rows of a segment, distributed, are those of its quarter. Collective.
 
@@ -136,7 +127,9 @@ class Folding:
 
     def __init__(self, shell: SegmentShell) -> None:
         self._shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
-        self._mesh = together(self._comm, lambda: _quarter_mesh(shell))
+        self._mesh = together(
+            self._comm, lambda: shell.mesh and quarter_mesh(shell.mesh, self._mirrors)
+        )
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         quarter: list[tuple[Array, Indices]] = []
         if self._mesh is not None:
@@ -145,7 +138,7 @@ class Folding:
                 compat.create_triangle_mesh(MPI.COMM_SELF, points, triangles)
             )
             quarter = [owned_nodes(space, part) for part in range(len(parts))]
-            self._quarter_rows = _rows_of(quarter)
+            self._quarter_rows = rows_of(quarter)
         first, _ = shell.owned
         self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int64)
         for part, (nodes, dofs) in enumerate(parts):
@@ -156,7 +149,7 @@ class Folding:
                 found = [rows[matches(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(found)
             self._quarter[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
-            self._component[dofs - first] = _components(part)
+            self._component[dofs - first] = components(part)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
         """One for each family that an input excites, on rank 0; none elsewhere. Collective.
@@ -281,26 +274,6 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
     "y": ((0, 1), (2, 3)),
     "z": ((0, 2), (1, 3)),
 }
-
-
-def _quarter_mesh(shell: SegmentShell) -> SegmentMesh | None:
-    if shell.mesh is None or shell.thickness is None:
-        return None
-    return quarter_mesh(shell.mesh, shell.thickness, shell.section.mirrors)
-
-
-def _components(part: int) -> Indices:
-    return np.arange(3 * part, 3 * part + 3)
-
-
-def _rows_of(quarter: Sequence[tuple[Array, Indices]]) -> _Rows:
-    size = sum(rows.size for _, rows in quarter)
-    found = _Rows(np.empty(size, dtype=np.int64), np.empty((2, size), dtype=bool))
-    for part, (places, rows) in enumerate(quarter):
-        found.component[rows] = _components(part)
-        for axis in (1, 2):
-            found.in_mirrors[axis - 1, rows] = on_plane(places, axis)[:, None]
-    return found
 
 
 def _added_up(images: Array, signs: Array) -> Array:

@@ -42,15 +42,14 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     gathered = shell.comm.gather((places, np.array(columns)))
     if gathered is None:
         return None
-    mesh, thickness = shell.mesh, shell.thickness
+    mesh = shell.mesh
     assert mesh is not None
-    assert thickness is not None
     modes = np.zeros((shapes.shape[1], len(mesh.triangles), len(COMPONENTS)), dtype=np.float32)
     for triangles, values in gathered:
         modes[:, triangles, :] = values.transpose(2, 1, 0)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
     # The form knows the curvature; a face is half a thickness off.
-    modes[:, :, 3:] *= 0.5 * thickness[:, None].astype(np.float32)
+    modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
     return modes
 
 

@@ -16,7 +16,7 @@ from shell_model.stress.summary import WallForces
 
 if TYPE_CHECKING:
     # gmsh takes long to load, and a run of beams makes no mesh.
-    from geometry.mesh import SegmentMesh
+    from geometry.plating import PlatedMesh
 
 Modes = npt.NDArray[np.float32]
 
@@ -125,11 +125,11 @@ class ShellStress:
         )
 
     @classmethod
-    def still(cls, mesh: SegmentMesh, thickness: Array, modes: Modes) -> ShellStress:
+    def still(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
         """Of one segment in one state: (1, num_triangles, 6) ``COMPONENTS`` in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
-            thickness=thickness,
+            thickness=mesh.thickness,
             segment=np.zeros(len(mesh.triangles), dtype=np.int32),
             wall=mesh.walls,
             plates=[mesh.plates],

@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from geometry.arrays import Array
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.plating import plated
 from geometry.segment import Segment
 from shell_model.cross_section import Row
 from shell_model.reduction.products import gram
@@ -30,7 +31,7 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
     lines = [*places, *(support.x for support in segment.supports)]
     breaks |= {f"place-{k}": x for k, x in enumerate(lines, start=1)}
     mesh = mesh_segment(segment.section, breaks, size, closed=tuple(plates))
-    return assemble_segment(MPI.COMM_SELF, segment, mesh)
+    return assemble_segment(MPI.COMM_SELF, segment, plated(segment, mesh))
 
 
 def at_rest(shell: SegmentShell, forces: Array) -> Array:

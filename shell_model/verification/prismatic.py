@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Array, Indices
-from geometry.mesh import mesh_segment, plain_thickness
+from geometry.mesh import mesh_segment
+from geometry.plating import plain_thickness
 from geometry.section import Section
 from shell_model.cross_section import Outline
 from shell_model.forms import DRILLING

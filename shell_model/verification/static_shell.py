@@ -65,7 +65,7 @@ class StaticShell:
             domain, np.broadcast_to(np.asarray(thickness, dtype=float), len(triangles))
         )
         forms = ShellForms(space, walls, material, drilling, shear_correction=shear_correction)
-        self._plates = Plates(space, walls, forms, [])
+        self._plates = Plates(space, forms, [])
         self.stiffness = compat.assemble_matrix(forms.stiffness, [], diagonal=1.0)
         self.nodes, self.node_dofs = owned_nodes(space, 0)
         self.rotation_nodes, self.rotation_dofs = owned_nodes(space, 1)

@@ -11,6 +11,7 @@ import pytest
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize
+from geometry.contact_places import pads
 from geometry.grading import Spot, graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.section import BoxSection
@@ -106,18 +107,19 @@ def test_spots_are_what_acts_on_a_segment(paper_boom: Boom) -> None:
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar(8.0, 8.5, 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
     boom = replace(paper_boom, segments=(stiff, inner))
-    found = spots(boom, 0, 0.01, "near webs")
+    found = spots(boom, 0, 0.01, "near webs", [], pads(boom))
     assert [spot.low[0] for spot in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]
     assert all(spot.low[1:] == (0.0, 0.0) and spot.high[1:] == (b, h) for spot in found[:-2])
     for spot, start in zip(found[-2:], (8.95, 9.9), strict=True):
         assert spot.low == pytest.approx((start, b, h))
         assert spot.high == pytest.approx((start + 0.1, b, h))
         assert spot.size == pytest.approx(0.02)
-    loose = spots(boom, 0, 0.04, "near webs")
+    loose = spots(boom, 0, 0.04, "near webs", [], pads(boom))
     assert [spot.size for spot in loose] == pytest.approx([2.0 * spot.size for spot in found])
     (joint,) = boom.joints
     padded = replace(boom, joints=(replace(joint, pad=PadSize(0.1, 0.06)),))
     near = 0.5 * inner.section.width
-    for spot, start in zip(spots(padded, 0, 0.01, "near webs")[-2:], (9.0, 9.9), strict=True):
+    of_pads = spots(padded, 0, 0.01, "near webs", [], pads(padded))[-2:]
+    for spot, start in zip(of_pads, (9.0, 9.9), strict=True):
         assert spot.low == pytest.approx((start, near - 0.06, h))
         assert spot.high == pytest.approx((start + 0.1, near, h))

@@ -11,7 +11,8 @@ from scipy.spatial import cKDTree
 
 from geometry.arrays import Array
 from geometry.grading import Spot, graded_mesh
-from geometry.mesh import SegmentMesh, mesh_segment, plain_thickness
+from geometry.mesh import SegmentMesh, mesh_segment
+from geometry.plating import plain_thickness
 from geometry.section import COMPONENT, Section
 from tests.geometry.test_polygon import ALL, regular
 

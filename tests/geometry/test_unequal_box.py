@@ -12,7 +12,8 @@ from scipy.integrate import dblquad
 from scipy.spatial import cKDTree
 
 from geometry.boom import Boom, BoomError
-from geometry.mesh import mesh_segment, plain_thickness
+from geometry.mesh import mesh_segment
+from geometry.plating import plain_thickness
 from geometry.section import BoxSection
 from geometry.unequal_box import UnequalBox
 from geometry.walls import free_room

@@ -12,12 +12,8 @@ from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from geometry.boom import Collar, Diaphragm, PointMass, Support
-from geometry.mesh import (
-    SegmentMesh,
-    collar_breaks,
-    diaphragm_breaks,
-    mesh_segment,
-)
+from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.plating import plated
 from geometry.section import Section
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
@@ -41,7 +37,7 @@ def _laden(section: Section) -> SegmentShell:
     breaks = {"start": 0.0, "support": 2.0, "end": 10.0}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     mesh = mesh_segment(section, breaks, 0.5, closed=tuple(diaphragm_breaks(segment)))
-    return assemble_segment(MPI.COMM_WORLD, segment, mesh)
+    return assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
 
 
 def _everything(shell: SegmentShell) -> tuple[Folding, list[Job]]:
@@ -162,7 +158,8 @@ def test_refuses_a_mesh_that_is_no_mirror_image(
     spoil: Callable[[SegmentMesh], SegmentMesh], what: str
 ) -> None:
     mesh = spoil(mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5))
-    shell = assemble_segment(MPI.COMM_WORLD, box_segment("box", 0.0, 10.0, BOX), mesh)
+    segment = box_segment("box", 0.0, 10.0, BOX)
+    shell = assemble_segment(MPI.COMM_WORLD, segment, plated(segment, mesh))
     message = f"^a segment's {what} is not its own mirror image in y$"
     with pytest.raises(NumericsError, match=message):
         Folding(shell)

@@ -19,7 +19,8 @@ from mpi4py import MPI
 
 from dynamics.excitation import Step
 from geometry.boom import Collar, Diaphragm, Load, Segment, Support
-from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.plating import PlatedMesh, plated
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.pictures.deformation import MovingShell
@@ -36,7 +37,7 @@ PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
 COLLARS = (Collar(9.0, 10.0, 0.01), Collar(4.5, 5.5, 0.004))
 
 
-def meshed(segment: Segment, size: float) -> SegmentMesh:
+def meshed(segment: Segment, size: float) -> PlatedMesh:
     """The mesh of a segment with all the lines that it needs."""
     assert segment.section is not None
     plates = diaphragm_breaks(segment)
@@ -44,7 +45,7 @@ def meshed(segment: Segment, size: float) -> SegmentMesh:
     breaks |= {f"support-{one.x:g}": one.x for one in segment.supports}
     # Where there is none, the mesh is that of the stiffened box all the same.
     breaks |= {f"place-{one.x:g}": one.x for one in PLATES if one.x <= segment.end}
-    return mesh_segment(segment.section, breaks, size, closed=tuple(plates))
+    return plated(segment, mesh_segment(segment.section, breaks, size, closed=tuple(plates)))
 
 
 @cache

@@ -13,7 +13,8 @@ from mpi4py import MPI
 
 from geometry.arrays import Array
 from geometry.boom import Boom, Diaphragm, PadSize, Support
-from geometry.mesh import SegmentMesh, diaphragm_breaks, mesh_segment
+from geometry.mesh import diaphragm_breaks, mesh_segment
+from geometry.plating import PlatedMesh, plated
 from geometry.profiles import octagon
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
@@ -27,11 +28,12 @@ E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
 Field = Callable[[Array], Array]
 
 
-def plates() -> tuple[SegmentShell, SegmentMesh]:
+def plates() -> tuple[SegmentShell, PlatedMesh]:
     """A short box that a plate closes at its middle."""
     segment = CLOSED
     breaks = {"start": 0.0, "end": 1.0} | diaphragm_breaks(segment)
-    mesh = mesh_segment(BOX, breaks, 0.25, closed=tuple(diaphragm_breaks(segment)))
+    closed = tuple(diaphragm_breaks(segment))
+    mesh = plated(segment, mesh_segment(BOX, breaks, 0.25, closed=closed))
     first = MPI.COMM_WORLD.rank == 0
     return assemble_segment(MPI.COMM_WORLD, segment, mesh if first else None), mesh
 
@@ -39,7 +41,7 @@ def plates() -> tuple[SegmentShell, SegmentMesh]:
 CLOSED = replace(box_segment("box", 0.0, 1.0, BOX), diaphragms=(Diaphragm(0.5, 0.01),))
 
 
-def stresses(u: Field, theta: Field) -> tuple[Modes, SegmentMesh]:
+def stresses(u: Field, theta: Field) -> tuple[Modes, PlatedMesh]:
     """(num_triangles, 6) of displacement and rotation fields (num_places, 3)."""
     shell, mesh = plates()
     first, _ = shell.owned

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from geometry.mesh import mesh_segment
+from geometry.plating import plated
 from geometry.section import BoxSection
 from shell_model.stress.history import near_places, sum_up
 from shell_model.stress.stresses import ShellStress
+from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4, width=0.3, flange=0.005, web=0.005)
 TIME = np.linspace(0.0, 1.0, 1001)
@@ -23,6 +25,7 @@ def shell() -> ShellStress:
     between those at which every triangle is looked at.
     """
     mesh = mesh_segment(BOX, {"start": 0.0, "end": 4.0}, 0.1)
+    mesh = plated(box_segment("box", 0.0, 4.0, BOX), mesh)
     centroids = mesh.points[mesh.triangles].mean(axis=1)
     modes = np.zeros((2, len(mesh.triangles), 6), dtype=np.float32)
     modes[0, :, 0] = 5.0e6 * centroids[:, 2]
@@ -30,7 +33,7 @@ def shell() -> ShellStress:
     spot[mesh.walls != mesh.plates.index("top")] = np.inf
     modes[1, spot.argmin(), 3] = 8.0e6
     states = np.stack([np.sin(np.pi * TIME) ** 2, TIME[701] == TIME], axis=1).astype(np.float32)
-    still = ShellStress.still(mesh, np.full(len(mesh.triangles), 0.005), modes[:1])
+    still = ShellStress.still(mesh, modes[:1])
     return ShellStress(
         still.centroids,
         still.areas,
