@@ -66,17 +66,15 @@ class SegmentMesh:
             self.points, [("triangle", self.triangles)], cell_data={"wall": [self.walls]}
         ).write(path)
 
-    def write_gmsh(self, path: Path, closed: Sequence[str] = ()) -> None:
-        """Write gmsh's own file with a physical group for each plate and each line.
-
-        Args:
-            path: of the file.
-            closed: names of the diaphragms, in the order of their numbers.
+    def write_gmsh(self, path: Path) -> None:
+        """Write gmsh's own file with a physical group for each plate, diaphragm and line.
 
         Raises:
             OSError: it cannot be written whole; names the file.
         """
-        groups = {name: np.array([k, 2]) for k, name in enumerate([*self.plates, *closed], start=1)}
+        count = int(self.walls.max()) + 1 - len(self.plates)
+        names = [*self.plates, *(f"diaphragm-{k}" for k in range(1, count + 1))]
+        groups = {name: np.array([k, 2]) for k, name in enumerate(names, start=1)}
         first = len(groups) + 1
         groups |= {name: np.array([k, 1]) for k, name in enumerate(self.lines, start=first)}
         of_edges = np.repeat(

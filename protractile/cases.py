@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from pydantic import ValidationError
@@ -99,8 +98,7 @@ def run_case(case: Case, models: Sequence[str] | None = None) -> Results:
         from mpi4py import MPI
 
         comm = MPI.COMM_SELF
-    with TemporaryDirectory() as meshes:
-        run = run_models(chosen, _CASE, Means(comm, Path(meshes), cache=Cache.of_user()))
+    run = run_models(chosen, _CASE, Means(comm, cache=Cache.of_user()))
     assert run is not None
     run.answer()
     return run.results

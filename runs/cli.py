@@ -110,7 +110,7 @@ def run(
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     # After the case, whose mistakes need not wait for them.
     from runs.folder.cache import Cache
-    from runs.folder.files import beside, whole_folder
+    from runs.folder.files import whole_folder
     from runs.paper import readings, then
     from runs.paper.rules import judge
     from runs.pipeline import estimates
@@ -134,15 +134,14 @@ def run(
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
             whole_folder(folder, [readings.FILE, then.FILE]) as part,
-            beside(folder) as scratch,
             progress.told([model.name for model in effective.models]) as tell,
         ):
-            finished = run_case(effective, case, Means(comm, scratch, tell, cache, cache))
+            finished = run_case(effective, case, Means(comm, tell, cache, cache))
             assert finished is not None
             finished.answer()
             verdicts = judge(finished.results)
             tell("report", "pictures and figures", 0.0)
-            output.write(finished, verdicts, part, scratch, snapshots_now=not no_pictures)
+            output.write(finished, verdicts, part, snapshots_now=not no_pictures)
             tell("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
         status = _show({case: finished.results}, {case: verdicts})
@@ -235,7 +234,6 @@ def sweep(
     points, else the cores do. Ensembles are left out.
     """
     from runs.folder.cache import Cache
-    from runs.folder.files import beside
     from runs.pipeline import estimates
     from runs.sweep import output as charts
     from runs.sweep import points
@@ -252,9 +250,9 @@ def sweep(
         with sweep_runs.workers(comm) as pool:
             if pool is None:
                 return 0
-            with beside(folder) as scratch, progress.told() as tell:
+            with progress.told() as tell:
                 cache = None if no_cache else Cache.of_user()
-                outcomes = sweep_runs.run_points(plan, folder, pool, scratch, tell, cache)
+                outcomes = sweep_runs.run_points(plan, folder, pool, tell, cache)
         data = charts.write(plan, outcomes, folder)
         print(printable(str(folder / charts.CSV)))
         charts.show(data, against, Terminal())
@@ -272,7 +270,6 @@ def frequencies(
 ) -> int:
     """Chart the first frequencies over values of a case's numbers, joints pressed and tied."""
     from runs.folder.cache import Cache
-    from runs.folder.files import beside
     from runs.sweep import frequencies as charts
     from runs.sweep import points
     from runs.sweep import run as sweep_runs
@@ -284,12 +281,12 @@ def frequencies(
     with _all_ranks_end_together(comm):
         if (ranks.launched_rank() if comm is None else comm.rank) != 0:
             if comm is not None:
-                charts.measure(cases, comm, Path(), progress.silence, cache)
+                charts.measure(cases, comm, progress.silence, cache)
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
-        with beside(folder) as scratch, progress.told() as tell:
-            data = charts.gather(plan, charts.measure(cases, comm, scratch, tell, cache))
+        with progress.told() as tell:
+            data = charts.gather(plan, charts.measure(cases, comm, tell, cache))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
         charts.table(data).text.show(Terminal())

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -47,7 +46,6 @@ class ShellOptions:
         krylov: the reduction.
         contact_tolerance: relative error of what gives way where something presses, which grades
             the mesh (:mod:`geometry.spots`); uniform unless given, and at a surface.
-        mesh_folder: where gmsh's files ``SEGMENT.msh`` go, if anywhere.
     """
 
     mesh_size: float = 0.1
@@ -55,7 +53,6 @@ class ShellOptions:
     surface: SurfaceOptions = field(default_factory=SurfaceOptions)
     krylov: KrylovOptions = field(default_factory=KrylovOptions)
     contact_tolerance: float | None = None
-    mesh_folder: Path | None = None
 
     @property
     def order(self) -> float:
@@ -70,7 +67,6 @@ class ShellOptions:
             self,
             mesh_size=2.0 * self.mesh_size,
             contact_tolerance=None if tolerance is None else 4.0 * tolerance,
-            mesh_folder=None,
         )
 
 
@@ -236,8 +232,4 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         fine = spots(boom, number, tolerance, line, rests(boom), pads(boom))
         mesh = graded_mesh(*box, fine, closed=closed)
     built = plated(segment, mesh)
-    if segment.head_section is not None:
-        built = tapered_mesh(segment, built)
-    if options.mesh_folder is not None:
-        built.write_gmsh(options.mesh_folder / f"{segment.name}.msh", closed)
-    return built
+    return built if segment.head_section is None else tapered_mesh(segment, built)

@@ -6,13 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from runs.folder import records
 from runs.folder.cache import Cache, Files, key
-from runs.folder.files import whole
 from runs.folder.versions import program
 
 if TYPE_CHECKING:
@@ -20,14 +18,11 @@ if TYPE_CHECKING:
 
     from shell_model.reduced_shell import ReducedShell
 
-_MESH = ".msh"
-
 
 def remembered(
     cache: Cache,
     content: Sequence[Any],
     comm: MPI.Comm,
-    mesh_folder: Path,
     compute: Callable[[], ReducedShell],
 ) -> ReducedShell:
     """A shell as ``compute`` gives it, from the cache if it is there. Collective.
@@ -39,37 +34,23 @@ def remembered(
         cache: of the user.
         content: all that the shell depends on.
         comm: the ranks that share the work; the first one reads and writes.
-        mesh_folder: where ``compute`` leaves gmsh's files ``SEGMENT.msh``.
         compute: the shell. Collective.
     """
     start = perf_counter()
     name = key(list(content), program())
     with cache.making(name) if comm.rank == 0 else nullcontext():
-        found = _load(cache, name, mesh_folder) if comm.rank == 0 else None
+        found = cache.load(name, _read) if comm.rank == 0 else None
         # Fields and meshes are the first rank's alone.
         shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
         if shared is not None:
             return replace(found or shared, seconds={"cache": perf_counter() - start})
         reduced = compute()
         if comm.rank == 0:
-            meshes = {path.name: [path.read_bytes()] for path in mesh_folder.glob(f"*{_MESH}")}
-            cache.remember(name, records.pack(reduced) | meshes)
+            cache.remember(name, records.pack(reduced))
     return reduced
 
 
-def _load(cache: Cache, name: str, mesh_folder: Path) -> ReducedShell | None:
-    found = cache.load(name, _read)
-    if found is None:
-        return None
-    reduced, meshes = found
-    for file_name, content in meshes.items():
-        with whole(mesh_folder / file_name) as path:
-            path.write_bytes(content)
-    return reduced
-
-
-def _read(files: Files) -> tuple[ReducedShell, Files]:
+def _read(files: Files) -> ReducedShell:
     from shell_model.reduced_shell import ReducedShell
 
-    meshes = {name: content for name, content in files.items() if name.endswith(_MESH)}
-    return records.unpack(files, ReducedShell), meshes
+    return records.unpack(files, ReducedShell)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runs.folder.cache import Cache
@@ -29,14 +28,12 @@ class Means:
     Args:
         comm: the ranks that share the shells and the ensembles; a case without shells can do
             without.
-        mesh_folder: where gmsh's files go, ``MODEL/SEGMENT.msh``.
         progress: told about every stage.
         cache: of reduced shells.
         kept: where motions are that have ended before, and those that end now are kept.
     """
 
     comm: MPI.Intracomm | None = None
-    mesh_folder: Path = Path()
     progress: Progress = silent
     cache: Cache | None = None
     kept: Keeper | None = None

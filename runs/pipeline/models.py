@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -50,14 +49,13 @@ def build_on(
 
 def workshop(
     comm: MPI.Comm,
-    mesh_folder: Path,
     tell: Callable[[str, float], None] = lambda *_: None,
     cache: Cache | None = None,
 ) -> Workshop:
     """What a meshed model is made with.
 
     Args:
-        comm, mesh_folder, tell: as in :class:`runs.case.kinds.model.Workshop`.
+        comm, tell: as in :class:`runs.case.kinds.model.Workshop`.
         cache: where the same shell may be already, and is kept; computed unless given.
     """
     from runs.folder.shell_cache import remembered
@@ -65,9 +63,9 @@ def workshop(
     def remember(content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
         if cache is None:
             return compute()
-        return remembered(cache, content, comm, mesh_folder, compute)
+        return remembered(cache, content, comm, compute)
 
-    return Workshop(comm, mesh_folder, tell, remember)
+    return Workshop(comm, tell, remember)
 
 
 def damped(system: GapSystem, case: Case) -> GapSystem:

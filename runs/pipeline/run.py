@@ -250,8 +250,7 @@ def _run_model(
     """What a model leaves, on rank 0; None elsewhere."""
     comm, stages = means.comm, Stages(model.name, means.progress)
     if model.needs_shell or means.first_rank:
-        meshes = means.mesh_folder / model.name
-        tools = None if comm is None else workshop(comm, meshes, stages.tell, means.cache)
+        tools = None if comm is None else workshop(comm, stages.tell, means.cache)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -91,13 +90,12 @@ class ShellOutput:
         meshes = dict(zip(names, reduced.meshes, strict=True))
         return cls(fields, stresses, sum_up(shell, stresses), meshes)
 
-    def write_files(self, folder: Path, prefix: str, gmsh_files: Path) -> None:
+    def write_files(self, folder: Path, prefix: str) -> None:
         """Stresses, series and meshes into a run's folder; the fields stand in a file before.
 
         Args:
             folder: of the run.
             prefix: of the files' names.
-            gmsh_files: where gmsh's are, ``SEGMENT.msh``.
         """
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"
@@ -112,7 +110,7 @@ class ShellOutput:
             write_field_series(of_modes, series, modes["time"].values.tolist())
         for segment, mesh in self.meshes.items():
             mesh.write(meshes / f"{segment}.vtu")
-            shutil.copyfile(gmsh_files / f"{segment}.msh", meshes / f"{segment}.msh")
+            mesh.write_gmsh(meshes / f"{segment}.msh")
 
 
 def _places(boom: Boom) -> list[float]:

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -338,9 +337,7 @@ def write(
     calibration = None
     if model.needs_shell:
         assert comm is not None
-        with TemporaryDirectory(prefix="protractile-") as meshes:
-            tools = workshop(comm, Path(meshes) / model.name, cache=cache)
-            calibration = build(case, boom, model, tools).calibration
+        calibration = build(case, boom, model, workshop(comm, cache=cache)).calibration
     try:
         text = script(case, joined_as_seen_by(case, boom, model), model, calibration)
     except BoomError as error:

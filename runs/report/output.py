@@ -68,7 +68,6 @@ def write(
     run: Run,
     verdicts: Sequence[Verdict],
     folder: Path,
-    mesh_folder: Path,
     snapshots_now: bool = True,
 ) -> None:
     """Write everything that a run leaves.
@@ -77,7 +76,6 @@ def write(
         run: a finished one.
         verdicts: those that its case asks for.
         folder: an empty one.
-        mesh_folder: where the run has put gmsh's files, ``MODEL/SEGMENT.msh``.
         snapshots_now: whether they are drawn; else whoever wants some asks for them later.
     """
     results = run.results
@@ -94,7 +92,7 @@ def write(
             write_csv(results.trajectories, folder / "trajectories.csv")
             for name, path in files.items():
                 prefix = path.name.removesuffix(FIELDS)
-                run.shells[name].write_files(folder, prefix, mesh_folder / name)
+                run.shells[name].write_files(folder, prefix)
             if turned := viewer(run):
                 write_whole(folder / VIEWER, turned)
             figures = draw_in(results, folder)

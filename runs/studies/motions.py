@@ -82,9 +82,7 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
     from mpi4py import MPI
 
-    with TemporaryDirectory(prefix="protractile-") as scratch:
-        folder = Path(scratch) / model.name
-        return build(case, boom, model, workshop(MPI.COMM_SELF, folder)).system
+    return build(case, boom, model, workshop(MPI.COMM_SELF)).system
 
 
 def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
@@ -93,13 +91,8 @@ def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
 
     boom = build_boom(case)
     with TemporaryDirectory(prefix="protractile-") as scratch:
-        cache = Cache(Path(scratch) / "cache")
-        return {
-            name: build(
-                case, boom, model, workshop(MPI.COMM_SELF, Path(scratch) / name, cache=cache)
-            )
-            for name, model in models.items()
-        }
+        tools = workshop(MPI.COMM_SELF, cache=Cache(Path(scratch)))
+        return {name: build(case, boom, model, tools) for name, model in models.items()}
 
 
 def finer(shell: ShellTable, part: float) -> ShellTable:

@@ -9,7 +9,6 @@ from itself. All else is of the whole run.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -135,7 +134,6 @@ def comparable_until(
     model: Model,
     results: Results,
     comm: MPI.Intracomm | None,
-    meshes: Path,
     cache: Cache | None,
 ) -> float:
     """Until when motions can be compared from moment to moment, in s.
@@ -144,13 +142,13 @@ def comparable_until(
         case: a checked one.
         model: the reference, of the case.
         results: what it has left.
-        comm, meshes, cache: as of :class:`runs.pipeline.means.Means`.
+        comm, cache: as of :class:`runs.pipeline.means.Means`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
     if model.play_free or case.regular:
         return end
-    tools = None if comm is None else workshop(comm, meshes / model.name, cache=cache)
+    tools = None if comm is None else workshop(comm, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
     for _ in results.summary.models[model.name].refused_steps:
         plan = plan.finer()

@@ -41,7 +41,7 @@ JOINTS = ("pressed", "tied")
 
 
 def first_frequencies(
-    case: Case, model: Model, comm: MPI.Intracomm | None, meshes: Path, cache: Cache | None
+    case: Case, model: Model, comm: MPI.Intracomm | None, cache: Cache | None
 ) -> Array:
     """(2, MODES) in Hz with the joints pressed and tied, NaN where there is none. Collective.
 
@@ -49,7 +49,6 @@ def first_frequencies(
         case: a checked one.
         model: of the case; one that is tied has no pressed joints.
         comm: the ranks that share a shell.
-        meshes: where gmsh's files go.
         cache: of reduced shells.
     """
     boom = build_boom(case)
@@ -59,7 +58,7 @@ def first_frequencies(
     for row, booms in enumerate((with_play, replace(with_play, boom=tied))):
         if row == 0 and model.play_free:
             continue
-        tools = None if comm is None else workshop(comm, meshes / JOINTS[row], cache=cache)
+        tools = None if comm is None else workshop(comm, cache=cache)
         try:
             with np.errstate(all="ignore"):
                 system, _, _ = actions.start(model.build(booms, tools).system, case)
@@ -73,7 +72,6 @@ def first_frequencies(
 def measure(
     cases: Sequence[Case],
     comm: MPI.Intracomm | None,
-    scratch: Path,
     tell: Callable[[str, str, float], None],
     cache: Cache | None,
 ) -> Array:
@@ -82,15 +80,11 @@ def measure(
     Args:
         cases: checked ones, of the same models.
         comm, cache: as of :func:`first_frequencies`.
-        scratch: where gmsh's files go.
         tell: told how far it is.
     """
     found = []
     for number, case in enumerate(cases, start=1):
-        folder = scratch / f"{number}"
-        found.append(
-            [first_frequencies(case, m, comm, folder / m.name, cache) for m in case.models]
-        )
+        found.append([first_frequencies(case, m, comm, cache) for m in case.models])
         tell(NAME, f"{len(cases)} points", number / len(cases))
     return np.array(found)
 

@@ -16,7 +16,6 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
@@ -123,7 +122,6 @@ def run_points(
     plan: Plan,
     folder: Path,
     pool: Executor,
-    scratch: Path,
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
@@ -133,7 +131,6 @@ def run_points(
         plan: of the sweep.
         folder: made by :func:`prepare`.
         pool: of :func:`workers`.
-        scratch: for what is in the making, on the disk of the folder.
         progress: told about every finished point.
         cache: of reduced shells.
 
@@ -151,14 +148,14 @@ def run_points(
     ]
     stage = f"{len(points)} points"
     futures = {
-        pool.submit(run_point, point.case, scratch, cache, reference): i
+        pool.submit(run_point, point.case, cache, reference): i
         for i, point in enumerate(points)
         if outcomes[i] is None
     }
     done = len(points) - len(futures)
     progress("sweep", stage, done / len(points))
     try:
-        # They end before the folder goes in which they write.
+        # Nobody waits for what they compute.
         with undone(processes.end):
             for future in as_completed(futures):
                 i = futures[future]
@@ -174,9 +171,7 @@ def run_points(
     return [outcome for outcome in outcomes if outcome is not None]
 
 
-def run_point(
-    case: Case, scratch: Path, cache: Cache | None = None, reference: str | None = None
-) -> Outcome:
+def run_point(case: Case, cache: Cache | None = None, reference: str | None = None) -> Outcome:
     """Run the models of a case one by one, since one may fail alone; shells on this process."""
     models: dict[str, Measured] = {}
     failures: dict[str, str] = {}
@@ -188,13 +183,12 @@ def run_point(
         comm = MPI.COMM_SELF
     for model in case.models:
         alone = case.model_copy(update={"models": (model,)})
-        with TemporaryDirectory(dir=scratch) as meshes:
-            try:
-                finished = run_case(alone, "", Means(comm, Path(meshes), cache=cache))
-            except NumericsError as error:
-                # The file, the point and the model's name stand before it where it is shown.
-                failures[model.name] = str(error).removeprefix(": model[1]: ")
-                continue
+        try:
+            finished = run_case(alone, "", Means(comm, cache=cache))
+        except NumericsError as error:
+            # The file, the point and the model's name stand before it where it is shown.
+            failures[model.name] = str(error).removeprefix(": model[1]: ")
+            continue
         assert finished is not None
         finished.answer()
         # Of what has moved and cannot be answered for.
@@ -205,8 +199,7 @@ def run_point(
     if reference not in runs:
         return Outcome(models, failures)
     (against,) = (model for model in case.models if model.name == reference)
-    with TemporaryDirectory(dir=scratch) as meshes:
-        until = comparable_until(case, against, runs[reference], comm, Path(meshes), cache)
+    until = comparable_until(case, against, runs[reference], comm, cache)
     seen = {
         name: Seen.of(results, name, models[name]["stress"], until)
         for name, results in runs.items()

@@ -230,9 +230,9 @@ def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
     """Reference: other code, meshio's reader of gmsh's own file."""
     breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "head": 3.5}
     mesh = mesh_segment(BOX, breaks, 0.25, closed=("station-3",))
-    mesh.write_gmsh(tmp_path / "outer.msh", closed=("station-3",))
+    mesh.write_gmsh(tmp_path / "outer.msh")
     read = meshio.read(tmp_path / "outer.msh")
-    plates = (*WALLS, "station-3")
+    plates = (*WALLS, "diaphragm-1")
     expected = {plate: 2 for plate in plates}
     expected |= {f"{name}:{wall}": 1 for name in breaks for wall in WALLS}
     assert {name: int(dim) for name, (_, dim) in read.field_data.items()} == expected

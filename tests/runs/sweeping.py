@@ -8,7 +8,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from runs import CASES
-from runs.folder.files import beside
 from runs.sweep import run as sweep
 from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
@@ -22,5 +21,5 @@ Planned = Callable[..., Plan]
 def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
     """All outcomes of a sweep, run in this process."""
     sweep.prepare(folder, planned.file)
-    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
-        return sweep.run_points(planned, folder, pool, scratch, lambda *_: None)
+    with ThreadPoolExecutor(1) as pool:
+        return sweep.run_points(planned, folder, pool, lambda *_: None)

@@ -12,7 +12,6 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs import CASES
 from runs.folder.cache import Cache
-from runs.folder.files import beside
 from runs.sweep import output
 from runs.sweep import run as sweep
 from runs.sweep.points import plan
@@ -35,8 +34,8 @@ def test_better_beams_are_nearer_to_the_shell(
     sweeping = plan("case.toml", keys, None, 0.4, "shell")
     cache, out = Cache(tmp_path / "cache"), tmp_path / "out"
     sweep.prepare(out, "case.toml")
-    with ThreadPoolExecutor(2) as pool, beside(out) as scratch:
-        outcomes = sweep.run_points(sweeping, out, pool, scratch, lambda *_: None, cache)
+    with ThreadPoolExecutor(2) as pool:
+        outcomes = sweep.run_points(sweeping, out, pool, lambda *_: None, cache)
     # One shell for all points, and for the beams that it calibrates.
     assert len(list(cache.folder.iterdir())) == 1
     data = output.gather(sweeping, outcomes)

@@ -81,12 +81,7 @@ def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bu
     boom, cache = build_boom(case), Cache(tmp_path_factory.mktemp("cache"))
     wanted = ("timoshenko", "series", "shell", "sprung", "fielded", "sprung-series")
     return {
-        model.name: build(
-            case,
-            boom,
-            model,
-            workshop(MPI.COMM_SELF, tmp_path_factory.mktemp(model.name) / "mesh", cache=cache),
-        )
+        model.name: build(case, boom, model, workshop(MPI.COMM_SELF, cache=cache))
         for model in case.models
         if model.name in wanted
     }
@@ -165,16 +160,14 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
 def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     """Reference: non-regression, what the summary tells of the same calibration."""
     alone = case_file.select(case, "", ["sprung"])
-    scratch, folder = tmp_path / "meshes", tmp_path / "run"
-    folder.mkdir()
-    run = run_models(alone, "", Means(MPI.COMM_SELF, scratch))
+    run = run_models(alone, "", Means(MPI.COMM_SELF))
     assert run is not None
     run.answer()
-    write(run, [], folder, scratch, None)
-    told = json.loads((folder / "calibration.json").read_text(encoding="utf-8"))
+    write(run, [], tmp_path, None)
+    told = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration
     assert summary is not None
     assert told == {"sprung": summary.model_dump()}
-    report = (folder / "report.html").read_text(encoding="utf-8")
+    report = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "The springs of the stations, for sprung" in report
     assert "The segments as beams, for sprung" in report

@@ -230,12 +230,12 @@ def test_a_reference_must_be_one_of_several_models(
     assert str(refused.value) == f"case.toml: --against: {line.format(known)}"
 
 
-def test_chaos_is_compared_until_its_horizon(tmp_path: Path) -> None:
+def test_chaos_is_compared_until_its_horizon() -> None:
     """Reference: other code, the horizon that ensembles measure with the same change."""
     case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"])
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 3.0})})
     (model,) = case.models
-    until = comparable_until(case, model, run_case(case), None, tmp_path, None)
+    until = comparable_until(case, model, run_case(case), None, None)
     moving = Moving.of(build(case, build_boom(case), model).system, case, model)
     found = measure_horizons(
         moving.motion, [CHANGE], "load", partners=1, integrator=moving.integrator
@@ -244,7 +244,7 @@ def test_chaos_is_compared_until_its_horizon(tmp_path: Path) -> None:
     assert 0.12 < until < 3.0
     joint = case.joints[0].model_copy(update={"friction": 0.2, "normal_forces": (4500.0, 5000.0)})
     rubbing = case.model_copy(update={"joints": (joint,)})
-    assert comparable_until(rubbing, model, run_case(rubbing), None, tmp_path, None) == 3.0
+    assert comparable_until(rubbing, model, run_case(rubbing), None, None) == 3.0
 
 
 @pytest.mark.slow
@@ -253,7 +253,7 @@ def test_a_shell_is_a_reference_that_loses_itself(tmp_path: Path) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = case_file.select(case_file.load(str(COARSE)), "", ["timoshenko", "shell"], 0.5)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.3})})
-    outcome = run_point(case, tmp_path, Cache(tmp_path / "cache"), "shell")
+    outcome = run_point(case, Cache(tmp_path / "cache"), "shell")
     assert outcome.failures == {}
     off = outcome.off["timoshenko"]["tip_off"]
     assert off is not None

@@ -114,7 +114,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     cache = Cache(tmp_path / "cache")
     script = tmp_path / "boom.py"
     write(case, "", MPI.COMM_SELF, script, cache)
-    tools = workshop(MPI.COMM_SELF, tmp_path / "mesh", cache=cache)
+    tools = workshop(MPI.COMM_SELF, cache=cache)
     system = build(case, build_boom(case), model, tools).system
     rest = float(system.observers["tip"].row @ equilibrium(system, system.load))
     plain = case.model_copy(update={"models": (model_of(friction_case(), "timoshenko"),)})

@@ -32,9 +32,9 @@ def case_with(folder: Path, load: str, model: str = ELEMENTS, beam: str = CANTIL
     return case_file.load(str(path))
 
 
-def tip_at_rest(case: Case, folder: Path) -> float:
+def tip_at_rest(case: Case) -> float:
     """Deflection of the tip in m under all loads at the value 1 of their histories."""
-    tools = workshop(MPI.COMM_SELF, folder / "mesh")
+    tools = workshop(MPI.COMM_SELF)
     system = build(case, build_boom(case), case.models[0], tools).system
     load = system.load + np.sum([x.load for x in system.excitations], axis=0)
     return float(system.observers["tip"].row @ system.static_response(load))
@@ -57,7 +57,7 @@ def test_beams_rest_where_statics_put_them(
     tmp_path: Path, load: str, expected: Callable[[float], float], model: str
 ) -> None:
     """The influence line of the tip is a cubic, or with the moment its slope; both have it."""
-    found = tip_at_rest(case_with(tmp_path, load, model), tmp_path)
+    found = tip_at_rest(case_with(tmp_path, load, model))
     assert found == pytest.approx(expected(BENDING), rel=1e-9)
 
 
@@ -70,8 +70,8 @@ def test_a_shell_rests_near_a_beam_with_shear(
         "second_moment_of_area = 3.7986e-4\n", ""
     )
     elements = ELEMENTS + 'theory = "timoshenko"\n'
-    beams = tip_at_rest(case_with(tmp_path, load, elements, beam), tmp_path)
-    shell = tip_at_rest(case_with(tmp_path, load, SHELL, beam), tmp_path)
+    beams = tip_at_rest(case_with(tmp_path, load, elements, beam))
+    shell = tip_at_rest(case_with(tmp_path, load, SHELL, beam))
     assert shell == pytest.approx(beams, rel=5e-3)
 
 

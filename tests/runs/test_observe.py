@@ -129,7 +129,7 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
         from mpi4py import MPI
 
-        tools = workshop(MPI.COMM_SELF, tmp_path / "meshes")
+        tools = workshop(MPI.COMM_SELF)
     system = build(case, build_boom(case), model, tools).system
     rates = {name: float(seen.row @ system.thrown) for name, seen in system.observers.items()}
     expected = {

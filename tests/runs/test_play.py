@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -20,21 +19,21 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
 
-def run_of(names: list[str], meshes: Path, comm: MPI.Intracomm | None = None) -> Answers:
+def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Answers:
     """What some models of the paper's boom answer."""
     case = case_file.load(str(CASES / "coarse.toml"))
     models = tuple(model for model in case.models if model.name in names)
-    run = run_case(case.model_copy(update={"models": models}), "", Means(comm, meshes))
+    run = run_case(case.model_copy(update={"models": models}), "", Means(comm))
     assert run is not None
     run.answer()
     return run.results.summary.answers
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
+def answers() -> Answers:
     """Of a series and elements with play, and of elements without."""
     names = ["kantorovich-5", "beam-fe", "beam-fe-tied"]
-    return run_of(names, tmp_path_factory.mktemp("meshes"))
+    return run_of(names)
 
 
 def numbers(found: Answers, model: str) -> dict[tuple[str, str], Added]:
@@ -74,13 +73,13 @@ def test_motions_are_held_against_those_without_play(answers: Answers) -> None:
 
 
 @pytest.mark.slow
-def test_play_adds_to_a_shell_what_it_adds_to_beams(tmp_path: Path) -> None:
+def test_play_adds_to_a_shell_what_it_adds_to_beams() -> None:
     """Reference: by hand, the same lever; what the walls give way is no play. In motion another
     model, elements, whose tip goes as much farther within a fifth.
     """
     mpi = pytest.importorskip("mpi4py.MPI")
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    found = run_of(["timoshenko", "shell"], tmp_path / "meshes", mpi.COMM_SELF)
+    found = run_of(["timoshenko", "shell"], mpi.COMM_SELF)
     shell, beam = (numbers(found, name) for name in ("shell", "timoshenko"))
     assert shell["deflection at rest", "tip"].added == pytest.approx(0.133, rel=2e-3)
     farther = [one["deflection", "tip"].added for one in (shell, beam)]

@@ -46,7 +46,7 @@ def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> No
     path.write_text(RESTING, encoding="utf-8")
     case = load(str(path))
     boom = build_boom(case)
-    tools = workshop(MPI.COMM_SELF, tmp_path / "mesh")
+    tools = workshop(MPI.COMM_SELF)
     system = build(case, boom, case.models[0], tools).system.gathered()
     (gap,) = system.rows @ equilibrium(system, system.load)
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0

@@ -33,9 +33,9 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
     cases: list[Case] = []
     run_point = sweep.run_point
 
-    def count(case: Case, scratch: Path, cache: object, reference: str | None) -> Outcome:
+    def count(case: Case, cache: object, reference: str | None) -> Outcome:
         cases.append(case)
-        return run_point(case, scratch, None, reference)
+        return run_point(case, None, reference)
 
     monkeypatch.setattr(sweep, "run_point", count)
     return cases

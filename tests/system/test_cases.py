@@ -34,7 +34,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     case = case_file.select(whole, file, mesh_size=mesh_size, members=0)
     short = case.time.model_copy(update={"duration": 0.15})
     # As the command does it: a shell that calibrates beams is reduced once.
-    means = Means(MPI.COMM_SELF, tmp_path, cache=Cache(tmp_path / "cache"))
+    means = Means(MPI.COMM_SELF, cache=Cache(tmp_path / "cache"))
     run = run_case(case.model_copy(update={"time": short}), file, means)
     assert run is not None
     run.answer()

@@ -51,7 +51,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ensemble = EnsembleTable(members=3, relative=1e-6, seed=1, vary="load")
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
-    finished = run_case(case, "", Means(mesh_folder=tmp_path_factory.mktemp("mesh")))
+    finished = run_case(case, "", Means())
     assert finished is not None
     finished.answer()
     finished.results.summary.models["kantorovich-5"].horizons = {
@@ -65,7 +65,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     }
     out = output.prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
     out.mkdir()
-    output.write(finished, judge(finished.results), out, out)
+    output.write(finished, judge(finished.results), out)
     return out
 
 

@@ -12,7 +12,6 @@ import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from mpi4py import MPI
@@ -20,7 +19,6 @@ from mpi4py import MPI
 from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
-from runs.folder.files import beside
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.process.notices import NOTICES
@@ -81,8 +79,7 @@ def _shell(cache: Cache) -> bytes:
     """A shell and its motion until shortly after its first contact, both of which are kept."""
     case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
-    with TemporaryDirectory() as scratch:
-        run = run_case(short, "", Means(MPI.COMM_SELF, Path(scratch), cache=cache, kept=cache))
+    run = run_case(short, "", Means(MPI.COMM_SELF, cache=cache, kept=cache))
     assert run is not None
     left = run.results.trajectories, run.shells["shell"].fields
     return b"".join(bytes(data.to_netcdf(engine="scipy")) for data in left)
@@ -91,5 +88,5 @@ def _shell(cache: Cache) -> bytes:
 def _points(folder: Path) -> bytes:
     """Three points of the fastest model."""
     planned = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-tied"], None)
-    with ThreadPoolExecutor(1) as pool, beside(folder) as scratch:
-        return repr(sweep.run_points(planned, folder, pool, scratch, lambda *_: None)).encode()
+    with ThreadPoolExecutor(1) as pool:
+        return repr(sweep.run_points(planned, folder, pool, lambda *_: None)).encode()

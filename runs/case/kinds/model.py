@@ -7,7 +7,6 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar
 
@@ -90,13 +89,11 @@ class Workshop:
 
     Args:
         comm: the ranks that share the work.
-        mesh_folder: where gmsh's files go, ``SEGMENT.msh``.
         tell: told the stage and the part of it that is done.
         remember: gives what has been computed of the same content before, or computes it.
     """
 
     comm: MPI.Comm
-    mesh_folder: Path
     tell: Callable[[str, float], None]
     remember: Callable[[Sequence[Any], Callable[[], ReducedShell]], ReducedShell]
 

@@ -95,16 +95,12 @@ class ShellTable(ModelTable):
         from shell_model.standard import standard_boom, standard_laws, with_plays_and_loads
 
         assert workshop is not None
-        comm, folder = workshop.comm, workshop.mesh_folder
-        if comm.rank == 0:
-            folder.mkdir(parents=True)
         boom, of_joints = standard_boom(joined.boom), (joined.laws, joined.lateral_laws)
         laws, lateral = (standard_laws(boom, own) for own in of_joints)
         options = self.options()
-        there = replace(options, mesh_folder=folder)
         made = workshop.remember(
             (boom, laws, lateral, options),
-            partial(reduce_boom, boom, laws, there, comm, workshop.tell, lateral),
+            partial(reduce_boom, boom, laws, options, workshop.comm, workshop.tell, lateral),
         )
         shell = with_plays_and_loads(
             made, joined.boom, dict(zip(("z", "y"), of_joints, strict=True))

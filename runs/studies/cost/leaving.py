@@ -34,17 +34,16 @@ def leaving(models: Sequence[str]) -> Table:
         from mpi4py import MPI
 
         comm = MPI.COMM_SELF
+    run = run_case(case, str(CASE), Means(comm, cache=Cache.of_user()))
+    assert run is not None
+    run.answer()
+    rows = []
     with TemporaryDirectory() as folder:
-        meshes = Path(folder) / "meshes"
-        run = run_case(case, str(CASE), Means(comm, meshes, cache=Cache.of_user()))
-        assert run is not None
-        run.answer()
-        rows = []
         for what, drawn in (("without snapshots", False), ("with snapshots", True)):
             out = Path(folder) / what
             out.mkdir()
             begin, spent = perf_counter(), _processor_time()
-            output.write(run, [], out, meshes, drawn)
+            output.write(run, [], out, drawn)
             rows.append((what, perf_counter() - begin, _processor_time() - spent))
     return Table.of_rows(
         "leaving",
