@@ -204,7 +204,7 @@ def _nearest(nodes: Array, x: float) -> int:
 
 def _element(nodes: Array, x: float) -> tuple[int, float]:
     """The element that holds x, and its length in m."""
-    k = int(np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2))
+    k = min(max(int(nodes.searchsorted(x, side="right")) - 1, 0), nodes.size - 2)
     return k, float(nodes[k + 1] - nodes[k])
 
 

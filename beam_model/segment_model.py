@@ -61,9 +61,30 @@ def gap_system(
     """
     modes = BoomModes(boom, models)
     rows_at = partial(_rows, boom, modes, {"z": laws, "y": lateral_laws}, touch)
-    rows = rows_at({})
-    members = [_Member(modes, number) for number in range(len(models))]
-    system = rows.system(
+    system = _standing(boom, modes, rows_at({}))
+    return replace(system, travels=travels(boom, models, rows_at, modes.displacement))
+
+
+def standing_system(
+    boom: Boom,
+    modes: BoomModes,
+    laws: Sequence[ContactLaw],
+    lateral_laws: Sequence[ContactLaw] = (),
+) -> GapSystem:
+    """The same where drives have not drawn anything yet, and do not.
+
+    Args:
+        boom, laws, lateral_laws: as of :func:`gap_system`.
+        modes: of the boom's segments.
+    """
+    return _standing(
+        boom, modes, _rows(boom, modes, {"z": laws, "y": lateral_laws}, AT_STATIONS, {})
+    )
+
+
+def _standing(boom: Boom, modes: BoomModes, rows: GapBuilder[Array]) -> GapSystem:
+    members = [_Member(modes, number) for number in range(len(boom.segments))]
+    return rows.system(
         lambda row: row,
         modes.omega2,
         modes.load,
@@ -76,7 +97,6 @@ def gap_system(
         ],
         modes.damping,
     )
-    return replace(system, travels=travels(boom, models, rows_at, modes.displacement))
 
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:

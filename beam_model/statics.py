@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from beam_model.boom_modes import BoomModes
-from beam_model.component import Component
+from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import gap_system
+from beam_model.segment_model import gap_system, standing_system
 from dynamics.contact import ContactLaw
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
@@ -70,20 +70,33 @@ def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[Conta
     Raises:
         NumericsError: it has no rest.
     """
-    known = all(segment.section is not None for segment in boom.segments)
-    theory: Theory = "timoshenko" if known else "euler-bernoulli"
-    models = finite_element_segments(boom, _size(boom), theory, rotary_inertia=False)
-    system = gap_system(boom, models, laws, lateral_laws).gathered()
+    modes = BoomModes(boom, _segments(boom))
+    system = standing_system(boom, modes, laws, lateral_laws).gathered()
     now = np.zeros(1)
     load = system.load + sum(x.history(now)[0] * x.load for x in system.excitations)
     position = equilibrium(system, load)
-    modes = BoomModes(boom, models)
     holds = [
         hold
         for number in range(len(boom.segments))
-        for hold in _holds(boom, number, theory, modes, position)
+        for hold in _holds(boom, number, modes, position)
     ]
     return Rest(boom, system, position, holds)
+
+
+def drawn_out(
+    boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[ContactLaw]
+) -> GapSystem:
+    """The beams of :func:`at_rest`, and all that its drives move."""
+    return gap_system(boom, _segments(boom), laws, lateral_laws).gathered()
+
+
+def _segments(boom: Boom) -> list[SegmentModel]:
+    return finite_element_segments(boom, _size(boom), _theory(boom), rotary_inertia=False)
+
+
+def _theory(boom: Boom) -> Theory:
+    known = all(segment.section is not None for segment in boom.segments)
+    return "timoshenko" if known else "euler-bernoulli"
 
 
 def handed_on(boom: Boom, holds: Sequence[Hold]) -> list[Hold]:
@@ -113,9 +126,7 @@ def _size(boom: Boom) -> float:
     return longest / COMPRESSED_ELEMENTS if boom.compressed or tapers else longest
 
 
-def _holds(
-    boom: Boom, number: int, theory: Theory, modes: BoomModes, position: Array
-) -> list[Hold]:
+def _holds(boom: Boom, number: int, modes: BoomModes, position: Array) -> list[Hold]:
     """What is left of a segment without its supports where something may hold it."""
     segment = boom.segments[number]
     places = {support.x for support in segment.supports}
@@ -125,7 +136,11 @@ def _holds(
     places |= {x for joint in joints for x in joint.stations}
     alone = replace(segment, supports=())
     model = finite_element_segment(
-        alone, _size(boom), [*places, *boom.stations_of(number)], theory, rotary_inertia=False
+        alone,
+        _size(boom),
+        [*places, *boom.stations_of(number)],
+        _theory(boom),
+        rotary_inertia=False,
     )
     component = model.components["z"]
     nodes = component.breaks

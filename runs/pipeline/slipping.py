@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from beam_model.statics import drawn_out
 from dynamics.gap_system import GapSystem
 from dynamics.stick_slip import Pulled
 from dynamics.travel import Travel
@@ -19,7 +20,7 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import drawn_positions, positions
 from runs.pipeline.drives import fastest, least_overlap
-from runs.pipeline.statics import statics
+from runs.pipeline.statics import laws, statics
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,10 +55,9 @@ class Slipping:
 def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     """Of each drive of a given stiffness, with the pads of beam elements at rest on its way."""
     joints = pulled_by(case, boom)
-    found = statics(case, boom) if joints else None
-    if found is None:
+    if not joints or statics(case, boom) is None:
         return
-    system = with_pulled(found.played.system, case, boom)
+    system = with_pulled(drawn_out(boom, *laws(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.pulled is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from beam_model.statics import Hold, Rest, at_rest, handed_on
+from dynamics.contact import ContactLaw
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from geometry.boom import Boom
@@ -42,14 +44,20 @@ class Statics(NamedTuple):
 
 def statics(case: Case, boom: Boom) -> Statics | None:
     """None where no rest is found."""
-    with_play = next((model for model in case.models if not model.play_free), None)
-    laws = joined(case, boom, with_play or case.models[0])
+    with_play = not all(model.play_free for model in case.models)
     try:
         with np.errstate(all="ignore"):
             tied = at_rest(boom.play_free, [], [])
-            return Statics(at_rest(boom, laws.laws, laws.lateral_laws) if with_play else tied, tied)
+            return Statics(at_rest(boom, *laws(case, boom)) if with_play else tied, tied)
     except NUMERICS:
         return None
+
+
+def laws(case: Case, boom: Boom) -> tuple[Sequence[ContactLaw], Sequence[ContactLaw]]:
+    """Of the joints along z and along y, as the first model with play sees them."""
+    with_play = next((model for model in case.models if not model.play_free), case.models[0])
+    seen = joined(case, boom, with_play)
+    return seen.laws, seen.lateral_laws
 
 
 def reactions(rest: Rest) -> list[Reaction]:
