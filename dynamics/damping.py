@@ -70,14 +70,15 @@ def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
     return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
 
 
-def with_ratio(system: GapSystem, ratio: float) -> GapSystem:
+def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
     """The system with ζ = ``ratio`` in the first modes of the pressed boom, beside its own damping.
 
-    These are ``DAMPED_MODES``, or as many as its segments can bend.
+    These are ``DAMPED_MODES``, or as many as its segments can bend; pressed as at ``rest``, see
+    :func:`pressed_modes`.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
-    omega, shapes = (part[..., :count] for part in pressed_modes(system))
+    omega, shapes = (part[..., :count] for part in pressed_modes(system, rest))
     own = np.where(rigid, 0.5 * omega[0], system.omega)
     bent = np.where(rigid[:, None], 0.0, shapes)
     asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))
@@ -95,8 +96,11 @@ def with_ratio(system: GapSystem, ratio: float) -> GapSystem:
     )
 
 
-def pressed_ratios(system: GapSystem) -> tuple[Array, Array]:
-    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each."""
-    omega, shapes = pressed_modes(system)
+def pressed_ratios(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
+    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each.
+
+    It is pressed as at ``rest``, see :func:`pressed_modes`.
+    """
+    omega, shapes = pressed_modes(system, rest)
     rates = system.damping @ shapes**2 + np.square(system.dashpots @ shapes).sum(axis=0)
     return omega / (2.0 * np.pi), rates / (2.0 * omega)

@@ -249,15 +249,27 @@ def start(system: GapSystem, case: Case) -> tuple[GapSystem, Array, Array]:
         NumericsError: there is no static equilibrium to start from.
     """
     system = system.gathered()
+    held = _held(system, case)
+    # Straight, though shims may press.
+    straight = case.start.state == "rest" and not held.any()
+    position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
+    return system, position, system.thrown
+
+
+def rest_of(system: GapSystem, case: Case, position: Array) -> Array | None:
+    """The initial a, (num_modes,), if the system rests there under its constant loads alone."""
+    resting = case.start.state == "equilibrium"
+    return position if resting and (_held(system, case) == system.load).all() else None
+
+
+def _held(system: GapSystem, case: Case) -> Array:
+    """(num_modes,) in N/√kg, what has acted for ever before t = 0."""
     held = system.released.copy()
     if case.start.state == "equilibrium":
         held += system.load
         for excitation in system.excitations:
             held += excitation.load * excitation.history(np.zeros(1))[0]
-    # Straight, though shims may press.
-    straight = case.start.state == "rest" and not held.any()
-    position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
-    return system, position, system.thrown
+    return held
 
 
 def series_notes(case: Case) -> list[str]:

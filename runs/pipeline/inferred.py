@@ -176,7 +176,9 @@ def _damping_ratios(foreseen: Foreseen) -> Table:
 def _ratios(foreseen: Foreseen, model: Model, beam: ModelTable) -> list[str]:
     try:
         with np.errstate(all="ignore"):
-            found = pressed_ratios(foreseen.motion(model, beam).system)
+            motion = foreseen.motion(model, beam)
+            rest = actions.rest_of(motion.system, foreseen.declared.case, motion.position)
+            found = pressed_ratios(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]
     # What stations that nothing presses leave of a dashpot between them is round-off.

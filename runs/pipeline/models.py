@@ -11,6 +11,7 @@ import numpy as np
 
 from dynamics.damping import with_ratio
 from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
 from geometry.boom import Boom
 from runs.case.build import joined
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
@@ -68,15 +69,15 @@ def workshop(
     return Workshop(comm, tell, remember)
 
 
-def damped(system: GapSystem, case: Case) -> GapSystem:
+def damped(system: GapSystem, case: Case, rest: Array | None = None) -> GapSystem:
     """A model's system with the damping of its case besides the segments' own.
 
     Rayleigh's is α + β ω² in the modes of the segments; a damping ratio is one of the boom's modes
-    with its joints pressed (:func:`dynamics.damping.with_ratio`).
+    with its joints pressed as at ``rest`` (:func:`dynamics.damping.with_ratio`).
     """
     table = case.damping
     rates = system.damping + table.mass + table.stiffness * np.maximum(system.omega2, 0.0)
     system = replace(system, damping=rates)
     if table.modal == 0.0:
         return system
-    return with_ratio(system, table.modal)
+    return with_ratio(system, table.modal, rest)

@@ -179,7 +179,8 @@ def begun(system: GapSystem, case: Case) -> Motion:
     """
     system, position, velocity = actions.start(system, case)
     time = case.time
-    return Motion(damped(system, case), time.duration, time.output_step, position, velocity)
+    moving = damped(system, case, actions.rest_of(system, case, position))
+    return Motion(moving, time.duration, time.output_step, position, velocity)
 
 
 def step_of(motion: Motion, case: Case, model: ModelTable) -> float:
