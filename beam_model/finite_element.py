@@ -18,6 +18,7 @@ from beam_model.component import Component, Motion, SegmentModel, products
 from beam_model.elements import Element, Theory, element
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
+from geometry.segment import APART
 
 # An element and ξ to shape functions (4, num_points).
 _Shapes = Callable[[Element, Array], Array]
@@ -51,8 +52,8 @@ def finite_element_segment(
     """Assemble one segment.
 
     Args:
-        segment: a beam; its supports and masses get nodes, and so do the ends of the pieces of its
-            axial force. With lateral numbers it deflects
+        segment: a beam; its supports and masses get nodes, or share those nearer than ``APART``, and
+            so do the ends of the pieces of its axial force. With lateral numbers it deflects
             along y and twists as well.
         element_length: largest length of an element in m.
         breaks: further x in m that get nodes: stations.
@@ -186,14 +187,15 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Equal elements between the places that must be nodes."""
+    """Equal elements between the places that must be nodes, of which near ones share the first."""
     own = [support.x for support in segment.supports] + [mass.x for mass in segment.carried]
-    inside = [x for x in (*own, *segment.compression.places, *breaks) if segment.holds(x)]
-    places = np.unique(np.clip([segment.start, *inside, segment.end], segment.start, segment.end))
-    places = places[np.concatenate([[True], np.diff(places) > SAME_PLACE * segment.length])]
+    places: list[float] = []
+    for x in (segment.start, segment.end, *own, *segment.compression.places, *breaks):
+        if segment.holds(x) and all(abs(x - place) > APART * segment.length for place in places):
+            places.append(x)
     spans = [
         np.linspace(a, b, max(1, int(np.ceil((b - a) / element_length - SAME_PLACE))) + 1)[:-1]
-        for a, b in pairwise(places)
+        for a, b in pairwise(sorted(places))
     ]
     return np.concatenate([*spans, [segment.end]])
 

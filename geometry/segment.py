@@ -24,6 +24,10 @@ from geometry.taper import areas, between, check_alike, half_way, mean_area
 # round-off, in whatever unit.
 SAME_PLACE = 1.0e-10
 
+# Elements shorter than this part of a segment's length leave no digits of its stiffness: their own
+# is larger by its inverse cubed.
+APART = 1.0e-4
+
 
 @dataclass(frozen=True, slots=True)
 class Material:
@@ -375,9 +379,12 @@ class Segment:
         for support in self.supports:
             self._check_place(f"{where}.supports", support.x)
             check_support(f"{where}.supports", support)
-        places = sorted(support.x for support in self.supports)
-        if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
-            raise BoomError(f"{where}.supports", "a place is given twice; give each once")
+        places, near = sorted(support.x for support in self.supports), APART * self.length
+        if any(right - left <= near for left, right in pairwise(places)):
+            raise BoomError(
+                f"{where}.supports",
+                f"two are within {near:g} m of one another; give one, or move them farther apart",
+            )
         for mass in self.masses:
             self._check_place(f"{where}.masses", mass.x)
             if not 0.0 < mass.mass < float("inf"):

@@ -12,7 +12,7 @@ import pytest
 from beam_model.component import Component, natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
 from geometry.arrays import Array
-from geometry.boom import BoomError, Segment
+from geometry.boom import BoomError, PointMass, Segment
 from tests.beam_model.exact import (
     FREE_FREE,
     PINNED_FREE,
@@ -122,6 +122,20 @@ def test_statics_are_exact_at_the_nodes_of_any_mesh(
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
     for support in segment.supports:
         assert not model.at(support.x).any()
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("apart", [1.0e-4, 1.0e-5, 1.0e-7])
+def test_places_too_near_for_an_element_share_a_node(
+    beam: Beam, theory: Theory, apart: float
+) -> None:
+    """Reference: analytic, an overhanging beam under a force at the second of two near places."""
+    segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
+    exact = OverhangingBeam(segment, [(6.1 + apart, 3.0e4)], 0.0, shear_stiffness(segment, theory))
+    model = bending(segment, 0.5, (6.1, 6.1 + apart), theory, False)
+    rest = np.linalg.solve(model.stiffness, 3.0e4 * model.at(6.1 + apart))
+    for x in (6.1, 6.1 + apart, 8.0):
+        assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=2e-5, abs=0.0)
 
 
 def test_shear_matters_where_statics_are_tested(beam: Beam) -> None:

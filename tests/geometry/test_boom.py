@@ -132,7 +132,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
     ),
     "support twice": (
         "segment[1].supports",
-        "a place is given twice; give each once",
+        "two are within 0.001 m of one another; give one, or move them farther apart",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(2.0), Support(2.0))), inner),
             (joint,),
@@ -140,9 +140,17 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
     ),
     "support twice but for round-off": (
         "segment[1].supports",
-        "a place is given twice; give each once",
+        "two are within 0.001 m of one another; give one, or move them farther apart",
         lambda outer, inner, joint: (
             (replace(outer, supports=(Support(0.3), Support(0.1 + 0.2))), inner),
+            (joint,),
+        ),
+    ),
+    "supports too near to hold the rotation": (
+        "segment[1].supports",
+        "two are within 0.001 m of one another; give one, or move them farther apart",
+        lambda outer, inner, joint: (
+            (replace(outer, supports=(Support(2.0), Support(2.0 + 1e-5))), inner),
             (joint,),
         ),
     ),
