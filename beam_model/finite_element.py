@@ -52,8 +52,8 @@ def finite_element_segment(
     """Assemble one segment.
 
     Args:
-        segment: a beam; its supports and masses get nodes, or share those nearer than ``APART``, and
-            so do the ends of the pieces of its axial force. With lateral numbers it deflects
+        segment: a beam; its supports and masses get nodes, or share those nearer than ``APART``,
+            and so do the ends of the pieces of its axial force. With lateral numbers it deflects
             along y and twists as well.
         element_length: largest length of an element in m.
         breaks: further x in m that get nodes: stations.
