@@ -32,11 +32,6 @@ class Compression:
         """Whether there is any."""
         return bool(self.ends)
 
-    @property
-    def largest(self) -> float:
-        """The force in N that is farthest from 0."""
-        return max((force for ends in self.ends for force in ends), key=abs, default=0.0)
-
     def __call__(self, x: Array) -> Array:
         """(num_places,) P at x (num_places,) in m; either of both at a jump."""
         if not self:
