@@ -25,12 +25,7 @@ from geometry.boom import (
 )
 from geometry.holding import check_pressed
 from geometry.observation import Observation
-from geometry.section import (
-    Section,
-    SectionError,
-    infer_inner_section,
-    infer_outer_section,
-)
+from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
 from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable

@@ -29,17 +29,11 @@ _HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """What one of the two columns is to hold.
+    """What one of the two columns is to hold."""
 
-    Args:
-        name: in messages.
-        unit: of its numbers unless the heading says another of the same dimension.
-        factor: whether its numbers are factors unless the heading says such a unit.
-    """
-
-    name: str
-    unit: str
-    factor: bool = False
+    name: str  #: in messages
+    unit: str  #: of its numbers unless the heading says another of the same dimension
+    factor: bool = False  #: whether its numbers are factors unless the heading says such a unit
 
     def __str__(self) -> str:
         return self.name if self.factor else f"{self.name} in {self.unit}"
@@ -60,23 +54,14 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """The numbers of two columns, in their units.
+    """The numbers of two columns, in their units."""
 
-    Args:
-        values: the first number of each rises.
-        measured: whether the second one is no factor, since its heading says a unit.
-    """
-
-    values: tuple[tuple[float, float], ...]
-    measured: bool
+    values: tuple[tuple[float, float], ...]  #: the first number of each rises
+    measured: bool  #: whether the second one is no factor, since its heading says a unit
 
 
 def read_pairs(
-    path: str,
-    key: str,
-    file: str,
-    names: Sequence[str] | None,
-    columns: tuple[Column, Column],
+    path: str, key: str, file: str, names: Sequence[str] | None, columns: tuple[Column, Column]
 ) -> Pairs:
     """Read two columns of a CSV file.
 

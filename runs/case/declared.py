@@ -14,13 +14,9 @@ from runs.case.schema import Case, Model
 
 @dataclass(frozen=True)
 class Declared:
-    """A case, and what follows from it when it is asked for first.
+    """A case, and what follows from it when it is asked for first."""
 
-    Args:
-        case: whose boom can be.
-    """
-
-    case: Case
+    case: Case  #: whose boom can be
     _joined: dict[str, Joined] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property

@@ -46,10 +46,7 @@ class Table(BaseModel):
     """A table of the case file: nothing but its own keys, and not changed once read."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        use_attribute_docstrings=True,
-        json_schema_extra=_on_one_line,
+        extra="forbid", frozen=True, use_attribute_docstrings=True, json_schema_extra=_on_one_line
     )
 
     # The key that a number alone stands for, where one may stand in place of the table.

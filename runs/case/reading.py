@@ -21,13 +21,7 @@ from runs.case.declared import Declared
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import MOST_MEMBERS, described
 from runs.case.messages import BadInput, choices
-from runs.case.schema import (
-    Case,
-    EnsembleTable,
-    HistoryTable,
-    Model,
-    TimeTable,
-)
+from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
 

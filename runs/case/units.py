@@ -36,15 +36,10 @@ _PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit.
+    """A unit."""
 
-    Args:
-        factor: what one of it is in the SI unit.
-        dimension: of both.
-    """
-
-    factor: float
-    dimension: Dimension
+    factor: float  #: what one of it is in the SI unit
+    dimension: Dimension  #: of both
 
     @classmethod
     def of(cls, text: str) -> Unit:

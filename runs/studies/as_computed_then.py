@@ -23,7 +23,7 @@ from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.process import notices
 from runs.report.tables import Cell, Table, wide_console, write
 from runs.report.theme import NONE, number
-from runs.studies.study import Part, Plot, Tell, titled
+from runs.studies.study import Piece, Plot, Tell, titled
 from runs.studies.then.general_solver import METHODS
 from runs.studies.then.modal_integrators import NEWMARK, WILSON
 from runs.studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
@@ -37,7 +37,7 @@ CUT, POINTS = 150.0, 1000
 
 
 @titled("as-computed-then", TITLE)
-def study(tell: Tell) -> Iterator[Part]:
+def study(tell: Tell) -> Iterator[Piece]:
     """Both examples by every scheme, with few modes, gaps iterated or lagged, at three steps."""
     survey = Survey.of(tell)
     yield from tables(survey)
@@ -90,10 +90,7 @@ def free_table(survey: Survey) -> Table:
         **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
     }  # fmt: skip
     return Table.of_rows(
-        "then-free",
-        "Without friction: the tip by numerics of 1997",
-        columns,
-        rows,
+        "then-free", "Without friction: the tip by numerics of 1997", columns, rows
     )
 
 
@@ -123,12 +120,7 @@ def rubbed_table(survey: Survey) -> Table:
         "and later": "", "as S7 says\n(% of runs)": ".0f", "with the series\nsolved well": ".0f",
         f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
     }  # fmt: skip
-    return Table.of_rows(
-        "then-rubbed",
-        "With friction: the tip by numerics of 1997",
-        columns,
-        rows,
-    )
+    return Table.of_rows("then-rubbed", "With friction: the tip by numerics of 1997", columns, rows)
 
 
 def printed_table(survey: Survey) -> Table:
@@ -159,10 +151,7 @@ def reach_table(survey: Survey) -> Table:
         "four terms, friction": ".3g", "five terms, friction": ".3g",
     }  # fmt: skip
     return Table.of_rows(
-        "then-series",
-        f"How far {SERIES_STEPS} steps of a general solver reach (s)",
-        columns,
-        rows,
+        "then-series", f"How far {SERIES_STEPS} steps of a general solver reach (s)", columns, rows
     )
 
 

@@ -14,7 +14,7 @@ from runs.report.tables import Cell, Table
 from runs.report.theme import scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Reference, Refined, error_plot, refined_table
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 from shell_model.forms import DRILLING, DRILLING_OF_CURVED
 from shell_model.verification import benchmarks
 from shell_model.verification.benchmarks import PUBLISHED, SHEAR_RIGID
@@ -48,11 +48,11 @@ class Sizes:
     hemisphere: Sequence[int] = (8, 16, 32, 64)
     twisted: Sequence[int] = (1, 2, 4, 8, 16)
     plate: Sequence[int] = (4, 8, 16, 32, 64)
-    torsion: Sequence[int] = (2, 4, 8)  # over the width of each wall, one or more
-    slenderness: int = 20  # edges along a twisted member for each one over a wall
-    box: float = 0.2  # edge length of the boxes in m
-    frequencies: int = 10  # how many of a box or plate
-    decades: int = 4  # how far the drilling tie varies, in powers of ten
+    torsion: Sequence[int] = (2, 4, 8)  #: over the width of each wall, one or more
+    slenderness: int = 20  #: edges along a twisted member for each one over a wall
+    box: float = 0.2  #: edge length of the boxes in m
+    frequencies: int = 10  #: how many of a box or plate
+    decades: int = 4  #: how far the drilling tie varies, in powers of ten
 
 
 def refined(
@@ -166,7 +166,7 @@ def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
 
 
 @titled("benchmarks", "The shell element")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Benchmarks, patches, plates, torsion, a turned box, and the drilling tie."""
     sizes = sizes or Sizes()
     outer, inner = (segment.section for segment in build_boom(friction_case()).segments)

@@ -14,7 +14,7 @@ from runs.studies.box_pair import (
     FREQUENCY,
     PROBES,
     Blow,
-    Part,
+    Quarter,
     blow,
     pair,
     shell_parts,
@@ -32,37 +32,27 @@ ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 class Sizes:
     """What is measured."""
 
-    # Thicknesses in m, rising.
+    #: Thicknesses in m, rising.
     walls: Sequence[float] = tuple(np.geomspace(0.004, 0.04, 4).round(4).tolist())
-    # Edge lengths of the shells' meshes in m, each half the one before.
+    #: Edge lengths of the shells' meshes in m, each half the one before.
     triangles: Sequence[float] = (0.05, 0.025, 0.0125)
-    # Of the solids' edges around the section, each twice the one before; as many as ``triangles``.
+    #: Of the solids' edges around the section, each twice the one before; as many as ``triangles``.
     splits: Sequence[int] = (1, 2, 4)
-    # See :func:`mesh_quarter`.
+    #: See :func:`mesh_quarter`.
     along: tuple[float, float] = (0.0125, 0.2)
     around: float = 0.1
 
 
 class Measured(NamedTuple):
-    """A quantity of the pair.
+    """A quantity of the pair."""
 
-    Args:
-        what: it is.
-        label: in figures.
-        unit: of the values.
-        segment: 0 for the outer box, 1 for the inner one.
-        family: of the motions.
-        probe: whose compliance it is, or ``FREQUENCY``, the lowest natural one.
-        allowed: what counts as proven of the thinnest walls.
-    """
-
-    what: str
-    label: str
-    unit: str
-    segment: Literal[0, 1]
-    family: Family
-    probe: str = FREQUENCY
-    allowed: float = ALLOWED
+    what: str  #: it is
+    label: str  #: in figures
+    unit: str  #: of the values
+    segment: Literal[0, 1]  #: 0 for the outer box, 1 for the inner one
+    family: Family  #: of the motions
+    probe: str = FREQUENCY  #: whose compliance it is, or ``FREQUENCY``, the lowest natural one
+    allowed: float = ALLOWED  #: what counts as proven of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[Family, Mapping[str, float]]]) -> float:
         """Its value in one of the models."""
@@ -90,18 +80,13 @@ EVERY = FREQUENCIES + COMPLIANCES
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A pair of one wall thickness, as shells and as solids.
+    """A pair of one wall thickness, as shells and as solids."""
 
-    Args:
-        wall: in m.
-        shell, solid: of each quantity.
-        blows: of the shell and of the solid, on the finest mesh but one.
-    """
-
-    wall: float
+    wall: float  #: in m
+    #: Of each quantity.
     shell: Mapping[Measured, Refined]
     solid: Mapping[Measured, Refined]
-    blows: tuple[Blow, Blow]
+    blows: tuple[Blow, Blow]  #: of the shell and of the solid, on the finest mesh but one
 
     @property
     def walls(self) -> str:
@@ -131,10 +116,10 @@ def compare(sizes: Sizes, tell: Callable[[str], None]) -> list[Comparison]:
         boxes = pair(wall)
         tell(f"walls of {1.0e3 * wall:g} mm")
 
-        def shells(number: int, size: float) -> Mapping[Family, Part]:
+        def shells(number: int, size: float) -> Mapping[Family, Quarter]:
             return shell_parts(boxes[number], PROBES[number], size)
 
-        def solids(number: int, splits: int) -> Mapping[Family, Part]:
+        def solids(number: int, splits: int) -> Mapping[Family, Quarter]:
             return solid_parts(boxes[number], PROBES[number], sizes.along, sizes.around, splits)
 
         shell, of_shell = _refined(wall, "shell", sizes.triangles, shells)
@@ -151,7 +136,7 @@ def _refined(
     wall: float,
     model: str,
     sizes: Sequence[_Size],
-    parts_of: Callable[[int, _Size], Mapping[Family, Part]],
+    parts_of: Callable[[int, _Size], Mapping[Family, Quarter]],
 ) -> tuple[dict[Measured, Refined], Blow]:
     """Every quantity on every mesh, and the blow on the finest but one."""
     answers = []
@@ -168,7 +153,7 @@ def _refined(
     }, struck
 
 
-def measure(parts: Sequence[Mapping[Family, Part]]) -> list[dict[Family, dict[str, float]]]:
+def measure(parts: Sequence[Mapping[Family, Quarter]]) -> list[dict[Family, dict[str, float]]]:
     """Of both segments."""
     return [{family: part.measure() for family, part in of.items()} for of in parts]
 

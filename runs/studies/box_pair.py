@@ -61,19 +61,12 @@ KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
 
 
 class Probe(NamedTuple):
-    """What is read of a segment, and pushed.
+    """What is read of a segment, and pushed."""
 
-    Args:
-        what: its name.
-        family: of the motions that it belongs to.
-        places: x in m → weight of what is read there.
-        read: of the section.
-    """
-
-    what: str
-    family: Family
-    places: Mapping[float, float]
-    read: Callable[[Outline], Row]
+    what: str  #: its name
+    family: Family  #: of the motions that it belongs to
+    places: Mapping[float, float]  #: x in m → weight of what is read there
+    read: Callable[[Outline], Row]  #: of the section
 
     def row(self, outline: Callable[[float], Outline]) -> Row:
         """Over all places; ``outline`` gives the section at x."""
@@ -107,16 +100,11 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """A family of a segment's motions.
+class Quarter:
+    """A family of a segment's motions."""
 
-    Args:
-        model: a quarter of a shell or of a solid, with the energies of the whole segment.
-        rows: name of a probe → (num_dofs,).
-    """
-
-    model: Shell
-    rows: Mapping[str, Array]
+    model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
+    rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
 
     def measure(self) -> dict[str, float]:
         """``FREQUENCY`` → the lowest of its elastic modes, in Hz; name of a probe → what a unit
@@ -148,19 +136,12 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Blow:
-    """How the inner box hits the outer one.
+    """How the inner box hits the outer one."""
 
-    Args:
-        time: (num_times,) in s.
-        force: (num_times,) at the contact in N.
-        tip: (num_times,) rise of the inner box's tip in m.
-        reduction_error: of what the force moves at the contact and at the tip, the worst of both
-            boxes.
-    """
-
-    time: Array
-    force: Array
-    tip: Array
+    time: Array  #: (num_times,) in s
+    force: Array  #: (num_times,) at the contact in N
+    tip: Array  #: (num_times,) rise of the inner box's tip in m
+    #: Of what the force moves at the contact and at the tip, the worst of both boxes.
     reduction_error: float
 
     @property
@@ -184,13 +165,13 @@ def pair(wall: float) -> tuple[Segment, Segment]:
     return box("outer", 0.0, HEAD, OUTER, wall, held), box("inner", TAIL, TIP, INNER, wall)
 
 
-def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Part]:
+def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Quarter]:
     """A segment's families as shells, with triangles of a size in m."""
     whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
     rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
     jobs = Folding(whole).jobs(rows, np.zeros((len(rows), 0)))
     return {
-        job.family: Part(
+        job.family: Quarter(
             job.shell(),
             {
                 probe.what: force
@@ -209,7 +190,7 @@ def solid_parts(
     around: float,
     splits: int,
     layers: int = 2,
-) -> dict[Family, Part]:
+) -> dict[Family, Quarter]:
     """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
     assert isinstance(segment.section, BoxSection)
     read = (x for probe in probes for x in probe.places)
@@ -219,7 +200,7 @@ def solid_parts(
     families = dict.fromkeys(probe.family for probe in probes)
     models = {family: assemble_solid(segment, mesh, family) for family in families}
     return {
-        family: Part(
+        family: Quarter(
             model,
             {
                 probe.what: model.row(probe.row(model.outline))
@@ -231,7 +212,7 @@ def solid_parts(
     }
 
 
-def blow(outer: Part, inner: Part, wall: float) -> Blow:
+def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
     """The inner box thrown up against the head of the outer one.
 
     Args:

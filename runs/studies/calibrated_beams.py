@@ -22,15 +22,9 @@ from geometry.arrays import Array
 from runs.case.kinds.finite_element import FIELDS, FiniteElementTable
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
-from runs.studies.motions import (
-    all_built,
-    friction_case,
-    model_of,
-    shell_of,
-    side_by_side,
-)
+from runs.studies.motions import all_built, friction_case, model_of, shell_of, side_by_side
 from runs.studies.pads import with_pads
-from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Plot, Proof, Tell, titled
 from runs.studies.working_load import Moved, Point, at_point
 
 # What is allowed of the tip, as parts of its range, of first peaks, and of frequencies.
@@ -46,12 +40,12 @@ SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 class Sizes:
     """What is measured."""
 
-    mesh_size: float = 0.2  # of the shells in m
-    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  # 2Δ in m
-    loads: Sequence[float] = (1.0, 3.0, 10.0)  # over the paper's
-    pad: tuple[float, float] = (0.1, 0.06)  # length and width in m
-    coordinates: Sequence[int] = (10, 20)  # of each segment of shells in fewer of them
-    duration: float = 5.0  # in s
+    mesh_size: float = 0.2  #: of the shells in m
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
+    pad: tuple[float, float] = (0.1, 0.06)  #: length and width in m
+    coordinates: Sequence[int] = (10, 20)  #: of each segment of shells in fewer of them
+    duration: float = 5.0  #: in s
 
 
 def move_all(
@@ -78,20 +72,14 @@ def peaks_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """All models of one way to touch.
+    """All models of one way to touch."""
 
-    Args:
-        where: segments touch.
-        points: of all motions.
-        systems, moved: by the name of the model, the shell's first.
-        seconds: of its reduction, and of the calibration.
-    """
-
-    where: str
-    points: Sequence[Point]
+    where: str  #: segments touch
+    points: Sequence[Point]  #: of all motions
+    #: By the name of the model, the shell's first.
     systems: Mapping[str, GapSystem]
     moved: Mapping[str, Sequence[Moved]]
-    seconds: tuple[float, float]
+    seconds: tuple[float, float]  #: of its reduction, and of the calibration
 
     def off(self, name: str) -> Array:
         """(num_points,) of the tip."""
@@ -245,7 +233,7 @@ def plot(compared: Sequence[Compared]) -> Plot:
 
 
 @titled("calibrated-beams", "Beams that a shell calibrates")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """The paper's boom with friction, near its webs and with pads."""
     sizes = sizes or Sizes()
     case = friction_case()

@@ -22,7 +22,7 @@ from runs.report.tables import Table
 from runs.studies.motions import finer, friction_case, gap_system, move, shell_of
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 
 if TYPE_CHECKING:
     from shell_model.segment_shell import SegmentShell
@@ -42,15 +42,15 @@ BESIDE = 0.33
 class Sizes:
     """What is measured."""
 
-    # Edge lengths over the default ones, each half the one before.
+    #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (1.0, 0.5, 0.25)
-    default: float = 1.0  # of them, whose motion is taken
-    lengths: Sequence[float] = (0.05, 0.1, 0.2)  # of corners that are pressed, in m
-    # Lengths and widths in m.
+    default: float = 1.0  #: of them, whose motion is taken
+    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: of corners that are pressed, in m
+    #: Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
-    plate: Sequence[float] = (0.0125, 0.00625)  # edge lengths in m of the plate's mesh
-    peak: float = 0.9  # time in s within which the tip's first peak comes
-    loads: Sequence[float] = (1.0, 10.0)  # over the paper's
+    plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
+    peak: float = 0.9  #: time in s within which the tip's first peak comes
+    loads: Sequence[float] = (1.0, 10.0)  #: over the paper's
 
 
 class Contact(NamedTuple):
@@ -156,7 +156,7 @@ def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
 
 
 @titled("contact-size", "What walls give way where segments touch")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
     default = sizes.meshes.index(sizes.default)

@@ -22,7 +22,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.report.tables import Table
 from runs.studies.motions import gap_system, model_of, without_friction
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 
 # Booms, and their cases.
 BOOMS = {
@@ -53,21 +53,13 @@ NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class PressedBoom:
-    """A boom that its weight presses, at rest.
+    """A boom that its weight presses, at rest."""
 
-    Args:
-        system: under its weight, without damping and friction.
-        rest: (num_modes,) in √kg·m.
-        omega: (MODES,) of the first modes in rad/s.
-        shapes: (num_modes, MODES).
-        step: of the integrator in s, small for all pressed modes.
-    """
-
-    system: GapSystem
-    rest: Array
-    omega: Array
-    shapes: Array
-    step: float
+    system: GapSystem  #: under its weight, without damping and friction
+    rest: Array  #: (num_modes,) in √kg·m
+    omega: Array  #: (MODES,) of the first modes in rad/s
+    shapes: Array  #: (num_modes, MODES)
+    step: float  #: of the integrator in s, small for all pressed modes
 
     @classmethod
     def of(cls, system: GapSystem) -> PressedBoom:
@@ -101,7 +93,7 @@ class PressedBoom:
 
 
 @titled("damping", "Damping ratios asked for and measured")
-def study(tell: Tell) -> Iterator[Part]:
+def study(tell: Tell) -> Iterator[Piece]:
     """Every boom and model at every ratio."""
     rows, residuals = [], []
     held: Held = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)

@@ -24,7 +24,7 @@ from runs.pipeline.motion import Plan
 from runs.report.tables import Table
 from runs.studies.motions import friction_case, gap_system, lasting, loaded, shell_of
 from runs.studies.pads import with_pads
-from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Plot, Proof, Tell, titled
 
 # Allowed of the tip, as a part of its range.
 ALLOWED = 0.005
@@ -44,39 +44,29 @@ NOTE = (
 class Sizes:
     """What is measured."""
 
-    mesh: float = 0.2  # edge length in m
-    duration: float = 1.0  # of the motion in s
-    # Of the direct integration in s, parts of the output step, each half the one before.
+    mesh: float = 0.2  #: edge length in m
+    duration: float = 1.0  #: of the motion in s
+    #: Of the direct integration in s, parts of the output step, each half the one before.
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
-    # The same with pads under ``LOAD`` times the load.
+    #: The same with pads under ``LOAD`` times the load.
     hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
-    # Of the reduction with more coordinates.
+    #: Of the reduction with more coordinates.
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
     moments: int = 5
-    fine_step: float = 5.0e-7  # of its splitting in s
+    fine_step: float = 5.0e-7  #: of its splitting in s
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One motion.
+    """One motion."""
 
-    Args:
-        how: it was moved.
-        unknowns: degrees of freedom, or modal coordinates.
-        step: in s.
-        tip: (num_times,) in m.
-        impulse: of all contact forces in N·s, from their means over output steps.
-        energy_residual: as a part of the work done.
-        seconds: wall time of the motion.
-    """
-
-    how: str
-    unknowns: int
-    step: float
-    tip: Array
-    impulse: float
-    energy_residual: float
-    seconds: float
+    how: str  #: it was moved
+    unknowns: int  #: degrees of freedom, or modal coordinates
+    step: float  #: in s
+    tip: Array  #: (num_times,) in m
+    impulse: float  #: of all contact forces in N·s, from their means over output steps
+    energy_residual: float  #: as a part of the work done
+    seconds: float  #: wall time of the motion
 
 
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> list[Run]:
@@ -131,7 +121,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
     return found
 
 
-def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Part]:
+def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Piece]:
     """All motions of a case beside the reduced shell's and beside that with more coordinates.
 
     Args:
@@ -209,7 +199,7 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
 
 
 @titled("direct", "The reduction against the full order")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """The paper's boom with friction, all its degrees of freedom against few coordinates."""
     sizes = sizes or Sizes()
     case = friction_case()

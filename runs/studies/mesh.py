@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.pipeline.motion import Plan
 from runs.studies.motions import finer, friction_case, gap_system, lasting, shell_of
 from runs.studies.refined import Refined, error_plot, refined_table
-from runs.studies.study import Part, Tell, titled
+from runs.studies.study import Piece, Tell, titled
 
 # What is allowed of the default mesh, relative to the limit of infinitely fine ones.
 ALLOWED = 0.01
@@ -31,17 +31,17 @@ NOTE = (
 class Sizes:
     """What is measured."""
 
-    # Edge lengths over the default ones, each half the one before, three at least.
+    #: Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
-    default: float = 1.0  # of them, which is judged
-    duration: float = 3.0  # of the motion in s
-    # How many of the lowest natural frequencies, of the first tip peaks.
+    default: float = 1.0  #: of them, which is judged
+    duration: float = 3.0  #: of the motion in s
+    #: How many of the lowest natural frequencies, of the first tip peaks.
     frequencies: int = 3
     peaks: int = 3
 
 
 @titled("mesh", "Meshes of the paper's boom")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Frequencies, flexibilities and tip peaks of the paper's boom on ever finer meshes."""
     sizes = sizes or Sizes()
     case = lasting(friction_case(), sizes.duration)

@@ -16,20 +16,13 @@ _DENSITY = 7850.0
 
 @dataclass(frozen=True, slots=True)
 class Proportions:
-    """Of a boom of two boxes, the paper's unless given.
+    """Of a boom of two boxes, the paper's unless given."""
 
-    Args:
-        length: of each segment in m.
-        overlap: in m.
-        aspect: height over width of the outer box.
-        walls: thickness over the paper's.
-        pad: length and width of pads beside the webs in m; pressed near the webs without.
-    """
-
-    length: float = 10.0
-    overlap: float = 1.0
-    aspect: float = 1.634
-    walls: float = 1.0
+    length: float = 10.0  #: of each segment in m
+    overlap: float = 1.0  #: in m
+    aspect: float = 1.634  #: height over width of the outer box
+    walls: float = 1.0  #: thickness over the paper's
+    #: Length and width of pads beside the webs in m; pressed near the webs without.
     pad: tuple[float, float] | None = None
 
 

@@ -28,21 +28,13 @@ class Reference(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Refined:
-    """A quantity on ever finer meshes.
+    """A quantity on ever finer meshes."""
 
-    Args:
-        what: it is.
-        unit: of the values; empty for a pure number, or where the source names none.
-        sizes: of the meshes, falling by one ratio each.
-        values: one for each.
-        reference: what the finest should be, where it is known.
-    """
-
-    what: str
-    unit: str
-    sizes: Sequence[float]
-    values: Sequence[float]
-    reference: Reference | None = None
+    what: str  #: it is
+    unit: str  #: of the values; empty for a pure number, or where the source names none
+    sizes: Sequence[float]  #: of the meshes, falling by one ratio each
+    values: Sequence[float]  #: one for each
+    reference: Reference | None = None  #: what the finest should be, where it is known
 
     @property
     def order(self) -> float:

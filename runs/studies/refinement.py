@@ -80,12 +80,9 @@ def study(tell: Tell) -> Iterator[Table]:
         stepped = model if at is with_step else with_step(model, FINE_STEP)
         rows += refine(case, f"{name}: {what}{unit}", stepped, sizes, at)
     columns = {
-        "refined": "",
-        "size": ".3g",
-        "off the next (% of the range)": ".3g",
-        "order": ".2g",
+        "refined": "", "size": ".3g", "off the next (% of the range)": ".3g", "order": ".2g",
         "first tip peak (mm)": ".2f",
-    }
+    }  # fmt: skip
     title = "Convergence of the paper's example with friction"
     yield Table.of_rows("convergence", title, columns, rows, (NOTE,))
 

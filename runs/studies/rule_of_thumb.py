@@ -48,7 +48,7 @@ from runs.studies.proportions import (
     Proportions,
     boom_case,
 )
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 from runs.studies.working_load import Point
 
 # What a wall gives near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed length.
@@ -71,31 +71,26 @@ LOST = 0.5
 class Sizes:
     """What is measured."""
 
-    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  # by their names
-    mesh_size: float = 0.2  # of the shells in m
-    contact_tolerance: float = 0.04  # of the same
-    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  # 2Δ in m
-    # Over the weight at 1 m/s²; under less of them friction stops the boom early.
+    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: by their names
+    mesh_size: float = 0.2  #: of the shells in m
+    contact_tolerance: float = 0.04  #: of the same
+    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: 2Δ in m
+    #: Over the weight at 1 m/s²; under less of them friction stops the boom early.
     loads: Sequence[float] = (10.0,)
-    periods: float = 8.0  # of the boom without play that the motions last
+    periods: float = 8.0  #: of the boom without play that the motions last
 
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What is known of a boom before there is a shell.
+    """What is known of a boom before there is a shell."""
 
-    Args:
-        bending, shear, pressed: parts of the tip's static deflection under its weight at 1 m/s²
-            in m, the second one Timoshenko's.
-        frequency: the first one without play in Hz.
-        lever: free way of the tip over half the play.
-    """
-
+    #: Parts of the tip's static deflection under its weight at 1 m/s² in m, the second one
+    #: Timoshenko's.
     bending: float
     shear: float
     pressed: float
-    frequency: float
-    lever: float
+    frequency: float  #: the first one without play in Hz
+    lever: float  #: free way of the tip over half the play
 
     @classmethod
     def of(cls, given: Proportions, case: Case) -> Rule:
@@ -166,21 +161,15 @@ def giving_way(given: Proportions, case: Case) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A boom's beams against its shell at all points.
+    """A boom's beams against its shell at all points."""
 
-    Args:
-        rule: of it.
-        points: play and load.
-        duration: of the motions in s.
-        peaks, tips: (num_points,) errors by the name of the beam.
-        bending: first frequency of the free inner segment in Hz, by the name of the model.
-    """
-
-    rule: Rule
-    points: Sequence[Point]
-    duration: float
+    rule: Rule  #: of it
+    points: Sequence[Point]  #: play and load
+    duration: float  #: of the motions in s
+    #: (num_points,) errors by the name of the beam.
     peaks: Mapping[str, Array]
     tips: Mapping[str, Array]
+    #: First frequency of the free inner segment in Hz, by the name of the model.
     bending: Mapping[str, float]
 
 
@@ -339,7 +328,7 @@ def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
 
 
 @titled("rule-of-thumb", "A rule of thumb for beams")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Booms of other proportions than the paper's, with its friction."""
     sizes = sizes or Sizes()
     found = {}

@@ -49,17 +49,11 @@ SHARE = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A way to compute a column, with its system and the critical factor of its axial force.
+    """A way to compute a column, with its system and the critical factor of its axial force."""
 
-    Args:
-        of: a boom of one segment.
-        in_shear: whether shear bends it, too.
-        allowed: relative error.
-    """
-
-    of: Callable[[Boom], tuple[GapSystem, float | None]]
-    in_shear: bool
-    allowed: float
+    of: Callable[[Boom], tuple[GapSystem, float | None]]  #: a boom of one segment
+    in_shear: bool  #: whether shear bends it, too
+    allowed: float  #: relative error
 
     def factor(self, boom: Boom) -> float:
         """The critical one of its axial force."""

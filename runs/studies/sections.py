@@ -25,7 +25,7 @@ from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
 from geometry.shear_flow import shear_centre
 from runs.report.tables import Table
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.reduced_shell import reduce_boom
@@ -191,7 +191,7 @@ def gives_way(shell: SegmentShell, force: Array) -> float:
 
 
 @titled("sections", "Polygons of flat plates")
-def study(tell: Tell) -> Iterator[Part]:
+def study(tell: Tell) -> Iterator[Piece]:
     """Numbers of sections, rings, and first peaks of booms."""
     yield from _numbers()
     rows: list[tuple[str | float, ...]] = []
@@ -211,13 +211,9 @@ def study(tell: Tell) -> Iterator[Part]:
     tell("turned sections")
     yield from _turned()
     columns = {
-        "sections": "",
-        "beam\nmm": ".4g",
-        "shell\nmm": ".4g",
-        "off the\nbeam (%)": ".2f",
-        "with collars\nmm": ".4g",
-        "so off the\nbeam (%)": ".2f",
-    }
+        "sections": "", "beam\nmm": ".4g", "shell\nmm": ".4g", "off the\nbeam (%)": ".2f",
+        "with collars\nmm": ".4g", "so off the\nbeam (%)": ".2f",
+    }  # fmt: skip
     yield Table.of_rows("sections", "Folded booms and their beams", columns, rows, (NOTE,))
 
 

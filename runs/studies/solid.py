@@ -26,7 +26,7 @@ from runs.studies.box_errors import (
 from runs.studies.box_pair import PROBES, SPEED, pair, solid_parts
 from runs.studies.refined import refined_table
 from runs.studies.solid_itself import solid_proofs
-from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Plot, Proof, Tell, titled
 
 # Errors of which the table says how thick a wall they take.
 LIMITS = (0.01, 0.02, 0.05)
@@ -135,7 +135,7 @@ def shell_proofs(thinnest: Comparison) -> Iterator[Proof]:
 
 
 @titled("solid", "Shells against solids")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """The shell against a solid, and the solid against formulas."""
     sizes = sizes or Sizes()
     tell("the solid against formulas")

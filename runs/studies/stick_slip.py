@@ -27,7 +27,7 @@ from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.report.tables import Table
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 
 # m in kg, k in N/m, R in N; static friction is so many times that.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
@@ -43,7 +43,7 @@ CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 
 @titled("stick_slip", "Drives of a given stiffness, on which segments stick and slip")
-def study(tell: Tell) -> Iterator[Part]:
+def study(tell: Tell) -> Iterator[Piece]:
     """Cycles, critical speeds, the stiff limit; and the boom along the way that it has gone."""
     tell("a mass on a spring")
     yield from _cycle()

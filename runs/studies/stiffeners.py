@@ -20,7 +20,7 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from runs.studies.motions import friction_case
-from runs.studies.study import Held, Part, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Proof, Tell, titled
 from shell_model.cross_section import Outline, Row
 from shell_model.reduction.products import quadratic_form
 from shell_model.segment_shell import SegmentShell
@@ -35,37 +35,30 @@ ALLOWED = 0.01
 class Sizes:
     """What is measured."""
 
-    mesh: float = 0.05  # edge length in m on the boom
-    collar: float = 0.3  # length of a collar in m
-    # Thicknesses of both in m, rising.
+    mesh: float = 0.05  #: edge length in m on the boom
+    collar: float = 0.3  #: length of a collar in m
+    #: Thicknesses of both in m, rising.
     collars: Sequence[float] = (0.005, 0.010, 0.020)
     diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
-    # x in m at which the inner segment is held for its static flexibility.
+    #: x in m at which the inner segment is held for its static flexibility.
     pins: tuple[float, float] = (14.0, 19.0)
-    frequencies: int = 3  # how many of the lowest ones
-    # Edge lengths in m where an analytic value is the reference.
+    frequencies: int = 3  #: how many of the lowest ones
+    #: Edge lengths in m where an analytic value is the reference.
     plate_mesh: float = 0.04
     ring_mesh: float = 0.0125
 
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One segment with its stiffeners.
+    """One segment with its stiffeners."""
 
-    Args:
-        what: it is, and has.
-        mass: of all its plates in kg.
-        together: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange,
-            above and below its webs.
-        one_more: (num_stations,) what one flange with all of the force gives way beyond that.
-        frequencies: the lowest ones in Hz, rigid motions left out.
-    """
-
-    what: str
-    mass: float
+    what: str  #: it is, and has
+    mass: float  #: of all its plates in kg
+    #: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange, above and
+    #: below its webs.
     together: Array
-    one_more: Array
-    frequencies: Array
+    one_more: Array  #: (num_stations,) what one flange with all of the force gives way beyond that
+    frequencies: Array  #: the lowest ones in Hz, rigid motions left out
 
     @property
     def row(self) -> list[Cell]:
@@ -275,7 +268,7 @@ def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
 
 
 @titled("stiffeners", "Collars and diaphragms")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Collars and diaphragms at the joint of the paper's boom."""
     sizes = sizes or Sizes()
     boom = build_boom(friction_case())

@@ -19,7 +19,7 @@ from geometry.contact_places import pads
 from runs.case.build import build_boom, contact_laws
 from runs.studies.motions import friction_case, model_of
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Held, Part, Plot, Proof, Tell, titled
+from runs.studies.study import Held, Piece, Plot, Proof, Tell, titled
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.reduced_shell import reduce_boom
@@ -45,23 +45,18 @@ NOTE = (
 class Sizes:
     """What is measured."""
 
-    # Edge lengths in m, each half the one before, three at least.
+    #: Edge lengths in m, each half the one before, three at least.
     meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
-    default: float = 0.1  # the one that a run takes unless told otherwise
-    places: Sequence[float] = (12.0, 14.0, 16.0)  # x in m away from contacts
+    default: float = 0.1  #: the one that a run takes unless told otherwise
+    places: Sequence[float] = (12.0, 14.0, 16.0)  #: x in m away from contacts
 
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """The inner segment at rest between its contacts.
+    """The inner segment at rest between its contacts."""
 
-    Args:
-        boom: the paper's.
-        stress: of the segment alone, whose number there is 0.
-    """
-
-    boom: Boom
-    stress: ShellStress
+    boom: Boom  #: the paper's
+    stress: ShellStress  #: of the segment alone, whose number there is 0
 
     @classmethod
     def on_mesh(cls, boom: Boom, size: float) -> Pressed:
@@ -189,7 +184,7 @@ def proofs(
 
 
 @titled("stress", "Stresses of the inner segment between its contacts")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Stresses of the inner segment of the paper's boom, on ever finer meshes."""
     sizes = sizes or Sizes()
     case = friction_case()

@@ -22,27 +22,16 @@ Held = tuple[Kind, str, float]
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """A value beside its reference.
+    """A value beside its reference."""
 
-    Args:
-        what: is measured, and on what.
-        value: measured.
-        reference: what it should be, in the same unit.
-        unit: of both; empty for a pure number.
-        kind: of the reference.
-        source: formula, author and year, or the other model.
-        allowed: the largest relative error with which it counts as proven.
-        order: observed order of convergence, where something was refined.
-    """
-
-    what: str
-    value: float
-    reference: float
-    unit: str
-    kind: Kind
-    source: str
-    allowed: float
-    order: float | None = None
+    what: str  #: is measured, and on what
+    value: float  #: measured
+    reference: float  #: what it should be, in the same unit
+    unit: str  #: of both; empty for a pure number
+    kind: Kind  #: of the reference
+    source: str  #: formula, author and year, or the other model
+    allowed: float  #: the largest relative error with which it counts as proven
+    order: float | None = None  #: observed order of convergence, where something was refined
 
     @property
     def error(self) -> float:
@@ -57,43 +46,29 @@ class Proof:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """Curves of one figure.
+    """Curves of one figure."""
 
-    Args:
-        name: of its file.
-        title: a line that says what is to be seen.
-        x, y: labels with units.
-        curves: label → abscissas and ordinates.
-        caption: sentences.
-        logarithmic: whether both axes are.
-    """
-
-    name: str
-    title: str
+    name: str  #: of its file
+    title: str  #: a line that says what is to be seen
+    #: Labels with units.
     x: str
     y: str
-    curves: Mapping[str, tuple[Sequence[float], Sequence[float]]]
-    caption: str
-    logarithmic: bool = True
+    curves: Mapping[
+        str, tuple[Sequence[float], Sequence[float]]
+    ]  #: label → abscissas and ordinates
+    caption: str  #: sentences
+    logarithmic: bool = True  #: whether both axes are
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """Everything that one study leaves.
+    """Everything that one study leaves."""
 
-    Args:
-        name: of its part of the files.
-        title: heading.
-        tables: of what was measured.
-        proofs: rows of docs/verification.md.
-        plots: figures.
-    """
-
-    name: str
-    title: str
-    tables: Sequence[Table] = ()
-    proofs: Sequence[Proof] = ()
-    plots: Sequence[Plot] = ()
+    name: str  #: of its part of the files
+    title: str  #: heading
+    tables: Sequence[Table] = ()  #: of what was measured
+    proofs: Sequence[Proof] = ()  #: rows of docs/verification.md
+    plots: Sequence[Plot] = ()  #: figures
 
     @property
     def data(self) -> dict[str, list[dict[str, Plain]]]:
@@ -101,16 +76,16 @@ class Study:
         return {table.name: table.data for table in self.tables}
 
 
-Part = Table | Proof | Plot
+Piece = Table | Proof | Plot
 _Given = ParamSpec("_Given")
 
 
 def titled(
     name: str, title: str
-) -> Callable[[Callable[_Given, Iterable[Part]]], Callable[_Given, Study]]:
+) -> Callable[[Callable[_Given, Iterable[Piece]]], Callable[_Given, Study]]:
     """Make a study of what yields its tables, proofs and plots, each in the order of its kind."""
 
-    def titling(parts: Callable[_Given, Iterable[Part]]) -> Callable[_Given, Study]:
+    def titling(parts: Callable[_Given, Iterable[Piece]]) -> Callable[_Given, Study]:
         @wraps(parts)
         def study(*args: _Given.args, **kwargs: _Given.kwargs) -> Study:
             found = list(parts(*args, **kwargs))

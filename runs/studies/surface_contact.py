@@ -29,7 +29,7 @@ from runs.studies.motions import (
     without_friction,
 )
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
-from runs.studies.study import Part, Plot, Proof, Tell, titled
+from runs.studies.study import Piece, Plot, Proof, Tell, titled
 
 # Of the highest frequency of the contacts, see dynamics.step: thrice what a run would take, which
 # changes the tip with friction by less than 0.1 % of its range.
@@ -50,13 +50,13 @@ NOTES = (
 class Sizes:
     """What is measured."""
 
-    mesh: float = 0.1  # edge length in m
-    duration: float = 10.0  # of the motions with friction that are compared, in s
-    peak: float = 0.9  # time in s within which the first peak of the tip comes
-    penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  # parts of the default penalty per area
-    # Points along the overlap and across half a wall.
+    mesh: float = 0.1  #: edge length in m
+    duration: float = 10.0  #: of the motions with friction that are compared, in s
+    peak: float = 0.9  #: time in s within which the first peak of the tip comes
+    penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  #: parts of the default penalty per area
+    #: Points along the overlap and across half a wall.
     points: Sequence[tuple[int, int]] = ((4, 4), (8, 2), DEFAULT_POINTS, (8, 6), (12, 4))
-    # Lengths and widths in m.
+    #: Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
 
 
@@ -69,7 +69,7 @@ class Contact(NamedTuple):
 
 
 @titled("surface-contact", "Contact over the whole overlap")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """Surface against stations, its penalty, its quadrature, and pads of several sizes."""
     sizes = sizes or Sizes()
     case = friction_case()

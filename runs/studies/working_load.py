@@ -26,7 +26,7 @@ from runs.studies.mesh import peak_heights
 from runs.studies.motions import finer, friction_case, gap_system, move, shell_of, side_by_side
 from runs.studies.pads import with_pads
 from runs.studies.refined import Refined, refined_table
-from runs.studies.study import Part, Proof, Tell, titled
+from runs.studies.study import Piece, Proof, Tell, titled
 
 # What is allowed of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
@@ -54,34 +54,27 @@ class Point(NamedTuple):
 class Sizes:
     """What is measured."""
 
-    # Edge lengths over the default ones, each half the one before.
+    #: Edge lengths over the default ones, each half the one before.
     meshes: Sequence[float] = (2.0, 1.0, 0.5)
-    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  # 2Δ in m
-    loads: Sequence[float] = (1.0, 3.0, 10.0)  # over the paper's
-    pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))  # lengths and widths in m
-    # Points, whose motion lasts ``spatial_duration``.
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
+    pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))  #: lengths and widths in m
+    #: Points, whose motion lasts ``spatial_duration``.
     in_space: Sequence[Point] = (Point(14.0e-3, 1.0), Point(14.0e-3, 10.0), Point(4.0e-3, 10.0))
-    # Of both motions in s.
+    #: Of both motions in s.
     duration: float = 5.0
     spatial_duration: float = 1.0
-    peaks: int = 3  # how many of the tip's first ones
+    peaks: int = 3  #: how many of the tip's first ones
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """A point's motion.
+    """A point's motion."""
 
-    Args:
-        tip: (num_times,) in m.
-        peaks: (num_peaks,) heights of its first ones in m; NaN without it.
-        forces: (num_stations,) largest of each, in N, over ``HELD`` outputs.
-        seconds: that it has taken on one core.
-    """
-
-    tip: Array
-    peaks: Array
-    forces: Array
-    seconds: float = 0.0
+    tip: Array  #: (num_times,) in m
+    peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
+    forces: Array  #: (num_stations,) largest of each, in N, over ``HELD`` outputs
+    seconds: float = 0.0  #: that it has taken on one core
 
     @classmethod
     def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:
@@ -114,32 +107,21 @@ class Moved:
 
 
 class Touch(NamedTuple):
-    """A way to touch.
+    """A way to touch."""
 
-    Args:
-        name: of its table.
-        where: segments touch, in words.
-        case: with it.
-        points: of motions that last ``duration``, in s.
-    """
-
-    name: str
-    where: str
-    case: Case
-    points: Sequence[Point]
+    name: str  #: of its table
+    where: str  #: segments touch, in words
+    case: Case  #: with it
+    points: Sequence[Point]  #: of motions that last ``duration``, in s
     duration: float
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A way to touch on every mesh.
+    """A way to touch on every mesh."""
 
-    Args:
-        touch: the way.
-        moved: point → its motions, from the coarsest mesh to the finest.
-    """
-
-    touch: Touch
+    touch: Touch  #: the way
+    #: Point → its motions, from the coarsest mesh to the finest.
     moved: Mapping[Point, Sequence[Moved]]
 
     @property
@@ -271,7 +253,7 @@ def point_table(contact: Contact) -> Table:
 
 
 @titled("working-load", "Meshes under working loads")
-def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Part]:
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     """The paper's boom with friction under working loads, on three meshes."""
     sizes = sizes or Sizes()
     contacts = []

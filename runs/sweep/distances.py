@@ -55,21 +55,13 @@ OUTSTANDING = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What is compared of a model.
+    """What is compared of a model."""
 
-    Args:
-        tip: (num_times,) in m, as long as it is compared.
-        first_peak: in m.
-        slow_period: mean time between the tip's outstanding peaks in s.
-        pad_force: the largest mean over ``HELD`` at any station in N.
-        stress: the largest of an outer fibre in Pa.
-    """
-
-    tip: Array
-    first_peak: float
-    slow_period: float
-    pad_force: float
-    stress: float
+    tip: Array  #: (num_times,) in m, as long as it is compared
+    first_peak: float  #: in m
+    slow_period: float  #: mean time between the tip's outstanding peaks in s
+    pad_force: float  #: the largest mean over ``HELD`` at any station in N
+    stress: float  #: the largest of an outer fibre in Pa
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Seen:

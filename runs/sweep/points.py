@@ -39,40 +39,24 @@ _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One case of a sweep.
+    """One case of a sweep."""
 
-    Args:
-        values: of what is varied, in the order of the variations.
-        label: the same for messages, ``joint.play=0.01 payload.mass=200``.
-        case: the effective one, checked.
-    """
-
-    values: tuple[float, ...]
-    label: str
-    case: Case
+    values: tuple[float, ...]  #: of what is varied, in the order of the variations
+    label: str  #: the same for messages, ``joint.play=0.01 payload.mass=200``
+    case: Case  #: the effective one, checked
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A sweep before it runs.
+    """A sweep before it runs."""
 
-    Args:
-        file: of the case, as the user gave it.
-        title: of the case.
-        variations: at least one.
-        units: of each variation, '' for none.
-        play_free: names of the models without play.
-        points: all combinations, the last variation changing fastest.
-        reference: the model that the others are held against, if any.
-    """
-
-    file: str
-    title: str
-    variations: Sequence[Variation]
-    units: Sequence[str]
-    play_free: Sequence[str]
-    points: Sequence[Point]
-    reference: str | None = None
+    file: str  #: of the case, as the user gave it
+    title: str  #: of the case
+    variations: Sequence[Variation]  #: at least one
+    units: Sequence[str]  #: of each variation, '' for none
+    play_free: Sequence[str]  #: names of the models without play
+    points: Sequence[Point]  #: all combinations, the last variation changing fastest
+    reference: str | None = None  #: the model that the others are held against, if any
 
     @property
     def coordinates(self) -> dict[str, Any]:

@@ -26,25 +26,15 @@ ROUND_OFF = 1.0e-12
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """One number of a model.
+    """One number of a model."""
 
-    Args:
-        name: in files.
-        unit: in files, SI.
-        title: for people, a lower-case phrase.
-        factor: from the SI unit to the shown one.
-        shown_unit: of tables and charts.
-        logarithmic: whether it spans decades.
-        charted: whether it is a curve and no noise.
-    """
-
-    name: str
-    unit: str
-    title: str
-    factor: float
-    shown_unit: str
-    logarithmic: bool = False
-    charted: bool = True
+    name: str  #: in files
+    unit: str  #: in files, SI
+    title: str  #: for people, a lower-case phrase
+    factor: float  #: from the SI unit to the shown one
+    shown_unit: str  #: of tables and charts
+    logarithmic: bool = False  #: whether it spans decades
+    charted: bool = True  #: whether it is a curve and no noise
 
 
 # Of the tip, as a part of its range, where friction makes motions regular.

@@ -48,19 +48,13 @@ _POINT = "point.json"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a point leaves, by the model's name.
+    """What a point leaves, by the model's name."""
 
-    Args:
-        models: the quantities of those that ran.
-        failures: why the others could not be computed, a sentence each.
-        off: how far they are from the reference, where there is one.
-        until: up to when tips are compared, in s; None where nothing is.
-    """
-
-    models: dict[str, Measured]
-    failures: dict[str, str]
+    models: dict[str, Measured]  #: the quantities of those that ran
+    failures: dict[str, str]  #: why the others could not be computed, a sentence each
+    #: How far they are from the reference, where there is one.
     off: dict[str, Measured] = field(default_factory=dict)
-    until: float | None = None
+    until: float | None = None  #: up to when tips are compared, in s; None where nothing is
 
 
 def prepare(folder: Path, file: str) -> None:
@@ -77,9 +71,7 @@ def prepare(folder: Path, file: str) -> None:
     key = f"--out {folder}"
     if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
         raise BadInput(
-            file,
-            key,
-            "holds files that are not a sweep's; give a new folder or an earlier sweep's",
+            file, key, "holds files that are not a sweep's; give a new folder or an earlier sweep's"
         )
     check_left(folder, file, key)
     (folder / POINTS).mkdir(parents=True, exist_ok=True)

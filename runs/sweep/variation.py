@@ -38,16 +38,11 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """One number of a case: the way to it through :data:`Tables`, and how messages call it.
-
-    Args:
-        steps, name: these.
-        size: how many of its SI unit are one of what it is set in.
-    """
+    """One number of a case: the way to it through :data:`Tables`, and how messages call it."""
 
     steps: tuple[str | int, ...]
     name: str
-    size: Fraction = Fraction(1)
+    size: Fraction = Fraction(1)  #: how many of its SI unit are one of what it is set in
 
     def put(self, tables: Tables, value: Any) -> None:
         """Set it, tables that are not given made on the way."""
@@ -73,17 +68,11 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """One ``--vary``.
+    """One ``--vary``."""
 
-    Args:
-        key: as the user gave it.
-        values: rising, in the unit of the case.
-        places: what takes them, all the same at a time.
-    """
-
-    key: str
-    values: tuple[float, ...]
-    places: tuple[Place, ...]
+    key: str  #: as the user gave it
+    values: tuple[float, ...]  #: rising, in the unit of the case
+    places: tuple[Place, ...]  #: what takes them, all the same at a time
 
     @property
     def shapes_sections(self) -> bool:

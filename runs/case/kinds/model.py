@@ -29,15 +29,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Beams:
-    """The segments of a boom as beams, and when these buckle, each found when it is first asked.
+    """The segments of a boom as beams, and when these buckle, each found when it is first asked."""
 
-    Args:
-        boom: of a case.
-        model: whose segments are beams.
-    """
-
-    boom: Boom
-    model: BeamTable
+    boom: Boom  #: of a case
+    model: BeamTable  #: whose segments are beams
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
@@ -61,17 +56,11 @@ class Beams:
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """The boom of a case, and the contact laws of its joints as one model sees them.
+    """The boom of a case, and the contact laws of its joints as one model sees them."""
 
-    Args:
-        boom: of the case.
-        laws: one for each joint, along z.
-        lateral_laws: one for each joint, along y; none for a flat boom.
-    """
-
-    boom: Boom
-    laws: Sequence[ContactLaw]
-    lateral_laws: Sequence[ContactLaw]
+    boom: Boom  #: of the case
+    laws: Sequence[ContactLaw]  #: one for each joint, along z
+    lateral_laws: Sequence[ContactLaw]  #: one for each joint, along y; none for a flat boom
     _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def beams(self, model: BeamTable) -> Beams:
@@ -85,57 +74,37 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Workshop:
-    """What a model on a mesh is made with.
+    """What a model on a mesh is made with."""
 
-    Args:
-        comm: the ranks that share the work.
-        tell: told the stage and the part of it that is done.
-        remember: gives what has been computed of the same content before, or computes it.
-    """
-
-    comm: MPI.Comm
-    tell: Callable[[str, float], None]
+    comm: MPI.Comm  #: the ranks that share the work
+    tell: Callable[[str, float], None]  #: told the stage and the part of it that is done
+    #: Gives what has been computed of the same content before, or computes it.
     remember: Callable[[Sequence[Any], Callable[[], ReducedShell]], ReducedShell]
 
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """A model before it moves.
+    """A model before it moves."""
 
-    Args:
-        system: of all segments.
-        num_dofs: before any reduction.
-        seconds: wall time of each stage.
-        critical_factor: of the axial forces with the joints pressed, see
-            :func:`dynamics.second_order.buckling_factor`; infinite without any.
-        shell: what a reduced shell has beyond its system.
-        calibration: what a calibrated beam has read from its shell, and
-        along: what is read along its segments, on the first rank.
-    """
-
-    system: GapSystem
-    num_dofs: int
-    seconds: dict[str, float] = field(default_factory=dict)
+    system: GapSystem  #: of all segments
+    num_dofs: int  #: before any reduction
+    seconds: dict[str, float] = field(default_factory=dict)  #: wall time of each stage
+    #: Of the axial forces with the joints pressed, see
+    #: :func:`dynamics.second_order.buckling_factor`; infinite without any.
     critical_factor: float | None = float("inf")
-    shell: ReducedShell | None = None
-    calibration: Calibration | None = None
-    along: Sequence[Line] = ()
+    shell: ReducedShell | None = None  #: what a reduced shell has beyond its system
+    calibration: Calibration | None = None  #: what a calibrated beam has read from its shell
+    along: Sequence[Line] = ()  #: what is read along its segments, on the first rank
 
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """The beam whose steps tell those of a model before it is built.
+    """The beam whose steps tell those of a model before it is built."""
 
-    Args:
-        beam: quickly built.
-        coordinates: of the model itself.
-        shorter: than the beam's its steps are, as a factor.
-        memory, seconds: bytes and s that it takes before it moves.
-    """
-
-    beam: ModelTable
-    coordinates: int
-    shorter: float = 1.0
+    beam: ModelTable  #: quickly built
+    coordinates: int  #: of the model itself
+    shorter: float = 1.0  #: than the beam's its steps are, as a factor
+    #: Bytes and s that it takes before it moves.
     memory: float = 0.0
     seconds: float = 0.0
 

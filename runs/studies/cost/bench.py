@@ -83,43 +83,34 @@ STEP = 1.0e-6
 class Sizes:
     """How much is measured."""
 
-    duration: float = 10.0  # of the motions in s
-    slow_duration: float = 0.5  # of those by ``SLOW`` solvers
-    # Tolerance of event-driven motion, and the solvers that it is compared with.
+    duration: float = 10.0  #: of the motions in s
+    slow_duration: float = 0.5  #: of those by ``SLOW`` solvers
+    #: Tolerance of event-driven motion, and the solvers that it is compared with.
     levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
-    most: int = 3  # repetitions of what is quick
-    # Wall seconds of all repetitions of one run, beyond which there are no more.
+    most: int = 3  #: repetitions of what is quick
+    #: Wall seconds of all repetitions of one run, beyond which there are no more.
     budget: float = 6.0
-    # The tables of steps and series.
+    #: The tables of steps and series.
     modes: Sequence[int] = (5, 20, 80, 200)
     rows: Sequence[int] = (2, 4, 16)
-    updates: int = 5_000_000  # of one mode by one step, that are timed for an entry of the former
-    members: int = 256  # of the ensemble of series
-    shell_members: int = 32  # of the ensemble of shells, 0 for none
-    # Models of a run whose leaving is timed.
+    updates: int = 5_000_000  #: of one mode by one step, that are timed for an entry of the former
+    members: int = 256  #: of the ensemble of series
+    shell_members: int = 32  #: of the ensemble of shells, 0 for none
+    #: Models of a run whose leaving is timed.
     left: Sequence[str] = ("series", "timoshenko", "shell")
-    drawn: Sequence[str] = MODELS  # models that are drawn out
+    drawn: Sequence[str] = MODELS  #: models that are drawn out
 
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """A way to move the series.
+    """A way to move the series."""
 
-    Args:
-        solver: what the table calls it.
-        rates: its right-hand side, where it needs one.
-        tolerance: relative tolerance, or step, as text.
-        duration: of the motion in s.
-        energy_residual: that it leaves.
-        run: moves it once.
-    """
-
-    solver: str
-    rates: str
-    tolerance: str
-    duration: float
-    energy_residual: float
-    run: Callable[[], object]
+    solver: str  #: what the table calls it
+    rates: str  #: its right-hand side, where it needs one
+    tolerance: str  #: relative tolerance, or step, as text
+    duration: float  #: of the motion in s
+    energy_residual: float  #: that it leaves
+    run: Callable[[], object]  #: moves it once
 
 
 def five_terms(case: Case) -> GapSystem:
@@ -226,9 +217,7 @@ def steps(sizes: Sizes) -> Table:
     made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
     runs = [
         partial(
-            integrate,
-            Motion(pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0),
-            STEP,
+            integrate, Motion(pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0), STEP
         )
         for n, m in kinds
     ]

@@ -57,13 +57,13 @@ STEPS = (1.0e-5, 2.5e-6)
 class Sizes:
     """How much is measured."""
 
-    # Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
+    #: Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
     meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
-    default: float = 0.1  # edge length in m of the motions
-    # Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
-    # meshes.
+    default: float = 0.1  #: edge length in m of the motions
+    #: Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
+    #: meshes.
     ranks: Sequence[int] = (1, 2)
-    duration: float = 10.0  # of the motions in s
+    duration: float = 10.0  #: of the motions in s
 
 
 def measured(sizes: Sizes) -> Iterator[Table]:

@@ -23,14 +23,10 @@ AWAY = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """What a solver has reached.
+    """What a solver has reached."""
 
-    Args:
-        time: (num_steps + 1,) in s.
-        states, velocities: (num_steps + 1, num_modes).
-    """
-
-    time: Array
+    time: Array  #: (num_steps + 1,) in s
+    #: (num_steps + 1, num_modes).
     states: Array
     velocities: Array
 

@@ -34,17 +34,11 @@ LOST = 1.0e5
 
 @dataclass(frozen=True, slots=True)
 class Scheme:
-    """One of the family.
+    """One of the family."""
 
-    Args:
-        name: its usual one.
-        beta: of the displacement within a step, after Newmark (1959); γ is ½.
-        theta: where in steps the equation of motion holds.
-    """
-
-    name: str
-    beta: float
-    theta: float = 1.0
+    name: str  #: its usual one
+    beta: float  #: of the displacement within a step, after Newmark (1959); γ is ½
+    theta: float = 1.0  #: where in steps the equation of motion holds
 
 
 NEWMARK = Scheme("Newmark", 0.25)
@@ -54,16 +48,11 @@ CENTRAL = Scheme("central differences", 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Stepped:
-    """What such a code leaves.
+    """What such a code leaves."""
 
-    Args:
-        trajectory: an output for each step, NaN after the last finite one.
-        lasted: steps until the motion is not finite.
-        unsettled: (num_steps,) where friction and gaps did not come to agree with the step's end.
-    """
-
-    trajectory: Trajectory
-    lasted: int
+    trajectory: Trajectory  #: an output for each step, NaN after the last finite one
+    lasted: int  #: steps until the motion is not finite
+    #: (num_steps,) where friction and gaps did not come to agree with the step's end.
     unsettled: Array
 
 

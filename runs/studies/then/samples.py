@@ -45,17 +45,11 @@ DURATION = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """How a code of then moves modes.
+    """How a code of then moves modes."""
 
-    Args:
-        scheme: of its steps.
-        settled: whether gaps and friction agree with the end of a step, or lag by one.
-        step: in s.
-    """
-
-    scheme: Scheme
-    settled: bool
-    step: float
+    scheme: Scheme  #: of its steps
+    settled: bool  #: whether gaps and friction agree with the end of a step, or lag by one
+    step: float  #: in s
 
     def __str__(self) -> str:
         gaps = "iterated" if self.settled else "lagged"
@@ -70,22 +64,15 @@ def all_numerics() -> list[Numerics]:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """One run of one model.
+    """One run of one model."""
 
-    Args:
-        time: (num_times,) in s.
-        tip, head: (num_times,) in m.
-        gained: (num_times,) energy from nowhere in J, lost if negative.
-        put_in: by the loads at most, where the motion is solved well, in J.
-        unsettled: part of the steps in which friction and gaps came to no agreement.
-    """
-
-    time: Array
+    time: Array  #: (num_times,) in s
+    #: (num_times,) in m.
     tip: Array
     head: Array
-    gained: Array
-    put_in: float
-    unsettled: float = 0.0
+    gained: Array  #: (num_times,) energy from nowhere in J, lost if negative
+    put_in: float  #: by the loads at most, where the motion is solved well, in J
+    unsettled: float = 0.0  #: part of the steps in which friction and gaps came to no agreement
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
@@ -121,15 +108,10 @@ class Moved:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """The paper's models with play, moved by the same numerics, and the play-free one.
+    """The paper's models with play, moved by the same numerics, and the play-free one."""
 
-    Args:
-        models: of ``SERIES`` and ``ELEMENTS``.
-        tied: the elements without play, which any numerics moves well.
-    """
-
-    models: Sequence[Moved]
-    tied: Moved
+    models: Sequence[Moved]  #: of ``SERIES`` and ``ELEMENTS``
+    tied: Moved  #: the elements without play, which any numerics moves well
 
     @property
     def elements(self) -> Moved:
@@ -171,19 +153,12 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """One of the paper's two examples.
+    """One of the paper's two examples."""
 
-    Args:
-        case: its file's.
-        systems: of its models by their names.
-        cutoff: of the slow motion in Hz.
-        well: as this program solves it; one where friction makes it regular.
-    """
-
-    case: Case
-    systems: Mapping[str, GapSystem]
-    cutoff: float
-    well: Sequence[Sample]
+    case: Case  #: its file's
+    systems: Mapping[str, GapSystem]  #: of its models by their names
+    cutoff: float  #: of the slow motion in Hz
+    well: Sequence[Sample]  #: as this program solves it; one where friction makes it regular
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:

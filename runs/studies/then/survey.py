@@ -43,33 +43,25 @@ Way = tuple[str, float, str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What numerics of then say of a statement.
+    """What numerics of then say of a statement."""
 
-    Args:
-        shown: whether with some of them most runs show it.
-        why: which, and in how many runs.
-    """
-
-    shown: bool
-    why: str
+    shown: bool  #: whether with some of them most runs show it
+    why: str  #: which, and in how many runs
 
 
 @dataclass(frozen=True)
 class Survey:
-    """Every run of both examples.
+    """Every run of both examples."""
 
-    Args:
-        without, with_friction: the examples.
-        free, rubbed: their samples by the numerics.
-        reached: by the general solver in the steps that the paper allows the series, in s.
-        printed: elements without and with friction whose contacts are as stiff as printed.
-    """
-
+    #: The examples.
     without: Example
     with_friction: Example
+    #: Their samples by the numerics.
     free: Mapping[Numerics, Sequence[Sample]]
     rubbed: Mapping[Numerics, Sequence[Sample]]
+    #: By the general solver in the steps that the paper allows the series, in s.
     reached: Mapping[Way, float]
+    #: Elements without and with friction whose contacts are as stiff as printed.
     printed: Mapping[Numerics, Sequence[Sequence[Moved]]]
 
     @classmethod

@@ -80,14 +80,9 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "drawn_column": {},
     "stick_slip": {"_one_way": lambda _: [1.0] * 6},
     "answers": {},
-    "supports": {
-        "_MODELS": dict.fromkeys(supports._MODELS, supports._elements),
-        "decrement": one,
-    },
+    "supports": {"_MODELS": dict.fromkeys(supports._MODELS, supports._elements), "decrement": one},
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
-    "taper": {
-        "MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])},
-    },
+    "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
 }
 # Studies without a proof have no section.
 PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder")]

@@ -11,12 +11,7 @@ pytestmark = pytest.mark.slow
 
 
 TINY = Sizes(
-    mesh=0.5,
-    duration=0.3,
-    peak=0.9,
-    penalties=(1.0, 10.0),
-    points=((8, 4),),
-    pads=((0.1, 0.06),),
+    mesh=0.5, duration=0.3, peak=0.9, penalties=(1.0, 10.0), points=((8, 4),), pads=((0.1, 0.06),)
 )
 
 
