@@ -83,7 +83,7 @@ class Outline:
     section: Section
 
     @classmethod
-    def of(
+    def around(
         cls, comm: MPI.Comm, nodes: Array, node_dofs: Indices, section: Section, x: float
     ) -> Outline:
         """The same on every rank. Collective.

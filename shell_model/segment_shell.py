@@ -52,7 +52,7 @@ class SegmentShell(Shell):
     def outline(self, x: float) -> Outline:
         """The nodes at x, the same on every rank. Collective."""
         section = self.segment.section_at(x)
-        return Outline.of(self.comm, self.nodes, self.node_dofs, section, x)
+        return Outline.around(self.comm, self.nodes, self.node_dofs, section, x)
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
         """(num_owned,) the segment's uniform loads that are applied at t = 0 and kept, in N."""
@@ -140,7 +140,7 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) 
     def attached(what: Iterator[tuple[float, Callable[[Outline], Row], float]]) -> Attached:
         rows, factors = [], []
         for x, row, factor in what:
-            outline = Outline.of(comm, nodes, node_dofs, segment.section_at(x), x)
+            outline = Outline.around(comm, nodes, node_dofs, segment.section_at(x), x)
             rows.append(_local_row(space.dofmap.index_map.local_range[0], free, row(outline)))
             factors.append(factor)
         return Attached.of(rows, factors, free.size)
