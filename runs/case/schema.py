@@ -371,9 +371,10 @@ class Case(Table):
     def regular(self) -> bool:
         """Whether dry friction keeps motions comparable from moment to moment.
 
-        It does under forces that are given, at each station; what contacts press does not.
+        It does under forces that are given, at each station of a boom that meets no stop; what
+        contacts press does not.
         """
-        return all(
+        return not self.stops and all(
             joint.tied or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
             for joint in self.joints
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from geometry.axial import entry
 from geometry.boom import Boom
 from geometry.typography import TO_PERCENT
 from runs.case.actions import series_notes
@@ -47,6 +48,7 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
         *lag_cautions(boom, data),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_bent(models, boom),
+        *_passed_by(models, boom),
         *_far(boom, data),
         *_poor(models),
         *_coarse(models),
@@ -59,6 +61,17 @@ def _bent(models: Mapping[str, ModelSummary], boom: Boom) -> Iterator[str]:
     for name, model in models.items():
         yield from of_buckling(name, model.critical_factor)
         yield from of_tip(f"in {name}", model.static_tip, boom)
+
+
+def _passed_by(models: Mapping[str, ModelSummary], boom: Boom) -> Iterator[str]:
+    numbers = range(len(boom.joints))
+    if any(entry(boom.segments, boom.joints, number) for number in numbers):
+        for name in (name for name, model in models.items() if model.stress is not None):
+            yield (
+                f"caution: the walls of {name} bear the axial forces of the start: their stresses, "
+                "and what part of the yield strength these are, lack what the forces add where "
+                "drives take them; those of outer fibres have it"
+            )
 
 
 def _far(boom: Boom, data: xr.Dataset) -> Iterator[str]:

@@ -113,9 +113,10 @@ class Run:
 
 
 def run_case(case: Case, file: str, means: Means) -> Run | None:
-    """Run all models of a case. Collective; None but on rank 0.
+    """Run all models of a case; answers are left to :meth:`Run.answer`. Collective.
 
-    A model that cannot be computed is in the summary's ``failures``, by its name, with the reason.
+    None but on rank 0. A model that cannot be computed is in the summary's ``failures``, by its
+    name, with the reason.
 
     Args:
         case: a checked one.
@@ -213,7 +214,12 @@ def _beams_beside_shells(
         return _one_by_one(models, run)
     with ThreadPoolExecutor(1) as thread:
         moving = {m.name: thread.submit(run, m).result for m in models if not m.needs_shell}
-        made = {model.name: _ended(run, model).result for model in shells}
+        try:
+            made = {model.name: _ended(run, model).result for model in shells}
+        except BaseException:
+            # Whoever interrupts does not wait for all beams.
+            thread.shutdown(cancel_futures=True)
+            raise
     return moving | made
 
 

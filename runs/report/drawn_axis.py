@@ -44,4 +44,4 @@ def of_start(case: Case) -> str:
 def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
     """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Drawn out as it is at {listed(times)} s." if case.driven else ""
+    return f" Drawn out as it is at {listed(times)} s." if case.driven and times else ""

@@ -9,7 +9,7 @@ import xarray as xr
 
 from runs import CASES
 from runs.case import reading as case_file
-from runs.case.schema import Case
+from runs.case.schema import Case, StopTable
 from runs.pipeline.comparisons import compare_models, reference_of
 
 COARSE = CASES / "coarse.toml"
@@ -125,6 +125,14 @@ def test_only_what_forces_press_that_are_given_is_regular(
     case = case_of(*SERIES, friction=friction, pressed=pressed)
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     assert compare_models(case, data, None, None) is None
+
+
+def test_what_meets_a_stop_is_not_regular() -> None:
+    """Reference: physics; what bounces is chaotic, whatever rubs besides."""
+    case = case_of(*SERIES, friction=0.2)
+    stop = StopTable(segment="inner", x=14.0, play=0.1, stiffness=1e7)
+    assert case.regular
+    assert not case.model_copy(update={"stops": (stop,)}).regular
 
 
 def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:

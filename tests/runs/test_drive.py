@@ -29,6 +29,7 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.answer_tables import rest_tables
 from runs.report.boom_drawing import boom_sheet
+from runs.report.drawn_axis import of_rests
 from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
@@ -205,6 +206,11 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
     path.write_text(f"{text}\n{observe.format(name)}", encoding="utf-8")
     with pytest.raises(BadInput, match=f"'{name}' is the name of another output already; give it"):
         load(str(path))
+
+
+def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
+    """Reference: by hand; no model of a boom that is drawn may have a rest."""
+    assert of_rests(load(str(CASES / "drawn-out.toml")), []) == ""
 
 
 @pytest.mark.usefixtures("unprinted")

@@ -183,3 +183,22 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
         runs["lost"]()
     asked = run._beams_beside_shells((beam, lost), move)
     assert asked["beam"]() == ("beam", True)
+
+
+def test_who_interrupts_a_shell_waits_for_no_more_than_one_beam() -> None:
+    """Reference: by hand. A beam moves already, another one waits for its turn."""
+    names = ("beam", "queued", "shell")
+    models = [SimpleNamespace(name=name, needs_shell=name == "shell") for name in names]
+    at_work, moved = Event(), []
+
+    def move(model: Any) -> None:
+        if model.needs_shell:
+            assert at_work.wait(10.0)
+            raise KeyboardInterrupt
+        moved.append(model.name)
+        at_work.set()
+        sleep(0.2)
+
+    with pytest.raises(KeyboardInterrupt):
+        run._beams_beside_shells(models, move)
+    assert moved == ["beam"]

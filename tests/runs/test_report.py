@@ -19,17 +19,18 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
+from runs.case.build import build_boom
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdict_table import print_verdicts
-from runs.pipeline.cautions import of_run
+from runs.pipeline.cautions import _passed_by, of_run
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.printed import print_models
 from runs.report.tables import TextTable
-from tests.runs.summaries import changed
+from tests.runs.summaries import changed, model_summary
 
 COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
@@ -320,6 +321,19 @@ def test_cautions_against_a_poor_mesh(results: Results) -> None:
             "segments touch; give a smaller mesh_size"
             for name in names
         ]
+
+
+@pytest.mark.parametrize(
+    ("name", "cautioned"), [("crane-telescopes", True), ("crane", False), ("drawn-out", False)]
+)
+def test_cautions_where_axial_forces_leave_what_walls_bear(name: str, cautioned: bool) -> None:
+    """Reference: by hand; of these booms one alone is both pressed along and drawn out."""
+    shell = model_summary().model_copy(update={"stress": object()})
+    boom = build_boom(case_file.load(str(CASES / f"{name}.toml")))
+    told = list(_passed_by({"beam": model_summary(), "shell": shell}, boom))
+    assert [line.partition(" bear ")[0] for line in told] == (
+        ["caution: the walls of shell"] if cautioned else []
+    )
 
 
 def test_judges_the_statements_that_the_case_asks_for_alone(
