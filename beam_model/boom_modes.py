@@ -133,7 +133,7 @@ def critical_factor(boom: Boom, models: Sequence[SegmentModel]) -> float | None:
     """Of the axial forces of the play-free boom, see :mod:`dynamics.second_order`.
 
     Infinite without such forces; None where something moves that nothing holds. Of a boom that is
-    drawn out the smallest on its way.
+    drawn out the smallest at some places of its way, its ends among them.
     """
     tied = boom.play_free
     smallest = np.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A gap system in fewer coordinates: its slow modes, and what else gives way where it is pushed.
+"""A gap system in fewer coordinates: some of its modes, and what else gives way at a push.
 
 Some of the modes stay as they are: a few as the slowest, the others as those whose inertia
 answers most to what pushes. Under a push b a mode gives way by b²/ω², its inertia by b²/ω⁴. Of the
@@ -48,32 +48,32 @@ def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
     count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
     moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
     kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
-    slow, fast = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
-    omega2, shapes = fewer(system.omega2, pushes, slow, fast, moments)
+    kept, rest = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
+    omega2, shapes = fewer(system.omega2, pushes, kept, rest, moments)
     return _projected(system, omega2, shapes), shapes
 
 
 def fewer(
-    omega2: Array, pushes: Array, slow: Indices, fast: Indices, moments: int
+    omega2: Array, pushes: Array, kept: Indices, rest: Indices, moments: int
 ) -> tuple[Array, Array]:
-    """(num_shapes,) ω² and (num_modes, num_shapes) of slow modes, and of what else is pushed.
+    """(num_shapes,) ω² and (num_modes, num_shapes) of modes kept, and of what else is pushed.
 
     Args:
-        omega2: (num_modes,) in rad²/s², positive of the fast ones.
-        pushes: (num_pushes, num_modes) that the fast modes answer by few of their motions.
-        slow, fast: positions of modes.
-        moments: of the fast ones' answer at rest that are kept.
+        omega2: (num_modes,) in rad²/s², positive of the rest.
+        pushes: (num_pushes, num_modes) that the rest answers by few of its motions.
+        kept, rest: positions of modes.
+        moments: of what the rest answers, in statics, that are taken along.
     """
-    elastic = omega2[fast, None]
-    blocks = [_independent(pushes[:, fast].T)]
+    elastic = omega2[rest, None]
+    blocks = [_independent(pushes[:, rest].T)]
     for _ in range(moments):
         blocks.append(_independent(blocks[-1] / elastic))
     basis = _independent(np.hstack(blocks[1:]))
     stiffness, turn = eigh(basis.T @ (elastic * basis))
-    shapes = np.zeros((omega2.size, slow.size + stiffness.size))
-    shapes[slow, np.arange(slow.size)] = 1.0
-    shapes[fast, slow.size :] = basis @ turn
-    return np.concatenate([omega2[slow], stiffness]), shapes
+    shapes = np.zeros((omega2.size, kept.size + stiffness.size))
+    shapes[kept, np.arange(kept.size)] = 1.0
+    shapes[rest, kept.size :] = basis @ turn
+    return np.concatenate([omega2[kept], stiffness]), shapes
 
 
 def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.arrays import Array
+from dynamics.arrays import Array, Indices
 from dynamics.contact import contact_limits, contact_terms
 from dynamics.energy import DRAWN_ENERGIES
 from dynamics.excitation import Excitation
@@ -51,19 +51,21 @@ def integrate_drawn(
     Returns:
         With what it is drawn out and what the drive does beside what every trajectory has:
         ``drawn_out`` in m, ``drive_friction`` in N and ``drive_power`` in W of each travel that
-        has a suffix, ``drive_work`` in J.
+        has a suffix, ``drive_work`` in J, all of a stiff drive. Of one of a given stiffness what
+        ``FOLLOWED`` lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
 
     Raises:
         NumericsError: the state is not finite, or the energy residual passes its bound.
     """
-    system, still, rows = motion.system, _still(motion.system), _rows(motion.system)
+    system, still, thrusts = motion.system, _still(motion.system), thrust_arrays(motion.system)
+    rows = _rows(system, len(thrusts[0]))
     record = Record.begin(motion, step, len(DRAWN_ENERGIES), rows[3].shape[1])
     state, h, substeps = record.state, record.step, record.substeps
-    tables, strides, thrusts = row_tables(system), strides_for(system, h), thrust_arrays(system)
+    tables, strides = row_tables(system), strides_for(system, h)
     pushed, space = pushed_by(thrusts, state[1]), space_for(system)
     done = 0
     while done < motion.outputs:
-        first, done = done, motion.until(done)
+        first, done = done, motion.until(done, substeps)
         times = h * np.arange(first * substeps, done * substeps + 1)
         excitations, ways = _followed(system, times, h)
         straight = excitation_arrays(replace(system, travels=()), times, h)[4]
@@ -73,7 +75,7 @@ def integrate_drawn(
             substeps, record.rows(first, done),
         )  # fmt: skip
         record.check(first, done, energy_bound, progress)
-    return _with_drives(record)
+    return _with_drives(record, tables[3], thrusts[1][:, 0])
 
 
 def _still(system: GapSystem) -> Still:
@@ -85,9 +87,8 @@ def _still(system: GapSystem) -> Still:
     return omega2, load, terms, limits, rates, given, pressing
 
 
-def _rows(system: GapSystem) -> Rows:
+def _rows(system: GapSystem, thrusts: int) -> Rows:
     now = stacked_rows(system)
-    thrusts = len(thrust_arrays(system)[0])
     return now, now.copy(), now.copy(), np.zeros((3, len(now) + thrusts))
 
 
@@ -102,12 +103,19 @@ def _followed(system: GapSystem, times: Array, step: float) -> tuple[Excitations
     return (loads[:count].copy(), own, spans, parts, straight, pushes), ways
 
 
-def _with_drives(record: Record) -> Trajectory:
-    """The trajectory, with what drives do."""
+def _with_drives(record: Record, moving: Indices, of_thrust: Indices) -> Trajectory:
+    """The trajectory, with what drives do at rows that move and at thrusts, whose travels these
+    are."""
     system, found, (*_, drives) = record.motion.system, record.trajectory(), record.arrays
     forces = record.arrays[4]
+    at_rows, at_thrusts = np.split(drives, [drives.shape[1] - len(of_thrust)], axis=1)
+    works = [
+        at_rows[:, np.unique(moving[moving[:, 1] == number, 0])].sum(axis=1)
+        + at_thrusts[:, of_thrust == number].sum(axis=1)
+        for number in range(len(system.travels))
+    ]
     added, told = {}, {}
-    for travel, work in zip(system.travels, _work_of(system, drives), strict=True):
+    for travel, work in zip(system.travels, works, strict=True):
         if travel.suffix is None:
             continue
         way, friction = travel.history(found.time), rubbing(system, travel, forces)
@@ -124,17 +132,6 @@ def _with_drives(record: Record) -> Trajectory:
                 added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
     data = found.data.assign(added).assign_attrs({"stick_slip": told} if told else {})
     return Trajectory(data, found.states)
-
-
-def _work_of(system: GapSystem, drives: Array) -> list[Array]:
-    """(num_times,) in J of each travel."""
-    moving, of_thrust = row_tables(system)[3], thrust_arrays(system)[1][:, 0]
-    at_rows, at_thrusts = np.split(drives, [drives.shape[1] - len(of_thrust)], axis=1)
-    return [
-        at_rows[:, np.unique(moving[moving[:, 1] == number, 0])].sum(axis=1)
-        + at_thrusts[:, of_thrust == number].sum(axis=1)
-        for number in range(len(system.travels))
-    ]
 
 
 def rubbing(system: GapSystem, travel: Travel, forces: Array) -> Array:

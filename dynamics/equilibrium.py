@@ -56,7 +56,9 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     try:
         factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
     except LinAlgError:
-        raise NumericsError("nothing holds the boom: it has no static equilibrium") from None
+        raise NumericsError(
+            "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
+        ) from None
     if not (system.laws or system.softening.size):
         return np.asarray(load / system.omega2)
     scaled_load = solve_triangular(factor, load, lower=True)

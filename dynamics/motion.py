@@ -10,8 +10,11 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 
-# Output intervals that are made at once, and the part of those made that may be.
+# Output intervals that are made at once; later a hundredth of those that have been made.
 _AT_ONCE = 100
+
+# Arrays of them take some MB, and between them a run can be stopped.
+_STEPS_AT_ONCE = 2**17
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +64,14 @@ class Motion:
         """How many output steps are made."""
         return max(1, round(self.duration / self.output_step))
 
-    def until(self, done: int) -> int:
+    def until(self, done: int, substeps: int) -> int:
         """How many output steps are made before a motion that has ``done`` of them is looked at.
 
         Whatever its duration, so that a short motion is the beginning of a longer one.
+        ``substeps`` make an output step.
         """
-        return min(self.outputs, done + max(_AT_ONCE, done // _AT_ONCE))
+        most = min(max(_AT_ONCE, done // _AT_ONCE), max(1, _STEPS_AT_ONCE // substeps))
+        return min(self.outputs, done + most)
 
     def checks(self, first: int, done: int) -> list[int]:
         """Up to which output steps its energy is held against that put in, from ``first`` on.

@@ -354,7 +354,7 @@ def integrate(
         closed = linear & pressing(system, y)
         if closed.tobytes() not in known:
             known[closed.tobytes()] = _Steps.of(ClosedContacts.of(system, closed), record.step)
-        out = record.rows(done, motion.until(done))
+        out = record.rows(done, motion.until(done, record.substeps))
         steps, first = known[closed.tobytes()], done
         steady = bool(linear.any())
         done += steps.march(state, first * record.substeps, record.substeps, steady, out)

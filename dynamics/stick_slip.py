@@ -6,7 +6,8 @@ What it is drawn out by, s(t), lags behind what the drive asks, s_c(t):
     m s̈ + c (ṡ − ṡ_c) + k (s − s_c) = p − R sign(ṡ),   |k (s_c − s) + c ṡ_c + p| ≤ R_s where ṡ = 0
 
 with R = μ Σ|N| of the pads as the boom moves that is drawn out as far as asked, R_s that of static
-friction, and p what other drives do as they speed up. The boom does not feel how far it lags.
+friction, and p what other drives do as they speed up. The boom does not feel how far it lags. R is
+that of the mean N of each output interval: where pads chatter faster, fewer sticks are told.
 """
 
 from __future__ import annotations

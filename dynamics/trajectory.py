@@ -47,7 +47,7 @@ OF_DRIVES: Mapping[str, Mapping[str, str]] = {
     "drawn_out": {"units": "m", "long_name": "length drawn out since the start"},
     "drive_friction": {
         "units": "N",
-        "long_name": "force of the drive against friction along the boom",
+        "long_name": "force of the drive against friction along the boom, output means",
     },
     "drive_power": {
         "units": "W",

@@ -176,7 +176,7 @@ class Boom:
         ]
 
     def drawn_over(self, segment: int) -> tuple[float, ...]:
-        """x on a segment to which stations come that move along it, or leave as they do, rising."""
+        """x on a segment, rising, to and from which stations or axial forces move along it."""
         found = {
             place[joint.inner == segment]
             for joint in self.joints

@@ -67,7 +67,9 @@ def stick_slip_table(results: Results) -> Table | None:
     notes = (
         "Force: against friction, with what weighs along and what is sped up. Sticks: how often it "
         "comes to stand while it is drawn. Slips: how far it catches up with its drive in one "
-        "slip. Then its own speed and acceleration. The boom moves as it is drawn by a stiff one.",
+        "slip. Then its own speed and acceleration. The boom moves as it is drawn by a stiff one. "
+        "Friction is that of the mean force of each output step: where pads chatter faster than "
+        "that, it sticks at other times, and a smaller output_step tells.",
     )
     return Table("Drives that give way", columns, notes, "stick-slip")
 
