@@ -65,6 +65,15 @@ def test_what_nothing_holds_has_no_equilibrium() -> None:
         equilibrium(system, -50.0 * system.rows[0])
 
 
+def test_what_axial_forces_buckle_has_no_equilibrium() -> None:
+    """They take more than its spring gives."""
+    free = {"rows": np.zeros((0, 1)), "laws": [], "station_of_row": np.zeros(0, dtype=np.int64)}
+    buckled = replace(mass_over_stop(1.0, 900.0), **free, softening=np.array([[901.0]]))
+    message = "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
+    with pytest.raises(NumericsError, match=f"^{message}$"):
+        equilibrium(buckled, np.ones(1))
+
+
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
 def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: float) -> None:
     """Reference: analytic, the lever rule: 550.7 N at x = 14 m on stations at 9 and 10 m."""
