@@ -45,7 +45,7 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
     models = summary.models
     return [
         *of_case(case, boom),
-        *lag_cautions(boom, data),
+        *lag_cautions(boom, data, case.system),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_bent(models, boom),
         *_passed_by(models, boom),

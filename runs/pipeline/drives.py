@@ -35,13 +35,13 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         yield (
             f"A drive draws {inner.name!r} {' and '.join(ways)} of {outer.name!r} from {begin:g} "
             f"to {end:g} s, at {speed:.4g} {system.label('m/s')} at most; "
-            f"{said(least_overlap(boom, joint))} of overlap "
+            f"{said(overlap_left(boom, joint))} of overlap "
             "are left."
         )
 
 
-def least_overlap(boom: Boom, joint: Joint) -> float:
-    """What is left of it in m where a drive has drawn a joint out farthest."""
+def overlap_left(boom: Boom, joint: Joint) -> float:
+    """In m where a drive has drawn a joint out farthest."""
     outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
     farthest = 0.0 if joint.drive is None else joint.drive.reach[1]
     return min(outer.end, inner.end) - inner.start - farthest

@@ -19,7 +19,7 @@ from runs.case.pulled import pulled_by, with_pulled
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import drawn_positions, positions
-from runs.pipeline.drives import fastest, least_overlap
+from runs.pipeline.drives import fastest, overlap_left
 from runs.pipeline.statics import laws, statics
 
 if TYPE_CHECKING:
@@ -102,6 +102,10 @@ def _speed(value: float, system: System) -> str:
     return f"{system.of(value, 'm/s'):.3g} {system.label('m/s')}"
 
 
+def _length(value: float, system: System) -> str:
+    return f"{system.of(value, 'm'):.4g} {system.label('m')}"
+
+
 def slip_cautions(case: Case, boom: Boom) -> list[str]:
     """Where it would stick and slip all the way, a line each."""
     return [
@@ -119,22 +123,24 @@ def _remedy(one: Slipping, system: System) -> str:
     return f"{smooth} would be smooth; draw faster, or by what is stiffer or damped more"
 
 
-def lag_cautions(boom: Boom, data: xr.Dataset) -> list[str]:
+def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> list[str]:
     """Where what is drawn lags so far behind that pads press in other places, a line each.
 
     Args:
         boom: of a case.
         data: the trajectories of its models.
+        system: of the lines.
     """
     found = []
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"
         if name in data:
-            lag, overlap = float(np.abs(data[name]).max()), least_overlap(boom, joint)
+            lag, overlap = float(np.abs(data[name]).max()), overlap_left(boom, joint)
             if lag > FAR_BEHIND * overlap:
                 found.append(
-                    f"caution: {boom.segments[joint.inner].name!r} lags up to {lag:.2g} m behind "
-                    f"its drive, more than 1 % of the {overlap:.3g} m of overlap: the motion "
-                    "across the boom, which goes by the drive, does not feel that"
+                    f"caution: {boom.segments[joint.inner].name!r} lags up to "
+                    f"{_length(lag, system)} behind its drive, more than "
+                    f"{TO_PERCENT * FAR_BEHIND:g} % of the {_length(overlap, system)} of overlap: "
+                    "the motion across the boom, which goes by the drive, does not feel that"
                 )
     return found

@@ -18,12 +18,13 @@ from dynamics.stick_slip import Followed, Pulled, follow
 from dynamics.trajectory import Trajectory
 from dynamics.travel import SCurve, Stroke
 from geometry.arrays import Array
-from geometry.typography import TO_MILLI
+from geometry.typography import TO_MILLI, TO_PERCENT
 from protractile.cases import change
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
+from runs.pipeline.drives import overlap_left
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.report.tables import Table
@@ -132,11 +133,11 @@ def _one_way(stiffness: float) -> list[float]:
     forces, tips = (
         [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")
     )
-    lag = float(np.abs(data["drive_lag"]).max())
+    lag = float(np.abs(data["drive_lag"]).max()) / overlap_left(boom, boom.joints[0])
     return [
-        stiffness, told.sticks, TO_MILLI * told.slip, 100.0 * lag,
-        100.0 * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),
-        100.0 * float(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1])),
+        stiffness, told.sticks, TO_MILLI * told.slip, TO_PERCENT * lag,
+        TO_PERCENT * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),
+        TO_PERCENT * float(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1])),
     ]  # fmt: skip
 
 

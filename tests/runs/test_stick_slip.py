@@ -20,8 +20,10 @@ from runs.case.messages import BadInput
 from runs.case.pulled import pulled_by
 from runs.case.reading import load
 from runs.case.schema import Case
+from runs.case.units import System
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import Results
+from runs.pipeline.slipping import lag_cautions
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.answer_tables import answer_tables
@@ -268,6 +270,15 @@ def _check_shown(results: Results, folder: Path) -> None:
     assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
 
 
+def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
+    """Reference: by hand, 0.1 m of the 1 m that is left of the overlap."""
+    boom, data = build_boom(drawn_by(tmp_path, ROPE)), xr.Dataset({"drive_lag": ("time", [-0.1])})
+    (line,) = lag_cautions(boom, data, System("mm-t-s"))
+    assert line.startswith(
+        "caution: 'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
+    )
+
+
 def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
     """Reference: the lines that a user reads; by hand, 9.72 kN pull a rope of 1e5 N/m by 97 mm, and
     by up to half as much again before it slips."""
@@ -277,6 +288,6 @@ def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
     lag = float(np.abs(results.trajectories["drive_lag"]).max())
     assert 0.09 < lag < 0.15
     assert results.summary.cautions[-1] == (
-        f"caution: 'inner' lags up to {lag:.2g} m behind its drive, more than 1 % of the 1 m of "
+        f"caution: 'inner' lags up to {lag:.4g} m behind its drive, more than 1 % of the 1 m of "
         "overlap: the motion across the boom, which goes by the drive, does not feel that"
     )
