@@ -32,6 +32,11 @@ class Swings(NamedTuple):
     swing: Array
     levels: dict[str, Array]
 
+    def where_known(self, end: str) -> Swings:
+        """At the speeds at which the level of an end is known."""
+        known = np.isfinite(self.levels[end])
+        return Swings(self.speed[known], self.swing[known], {end: self.levels[end][known]})
+
 
 def swings(data: xr.Dataset) -> dict[str, Swings]:
     """Of each model whose speed a sweep over one key varies.
@@ -48,7 +53,7 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
             continue
         order = np.argsort(speed)
         ends = {end: one[end].values[known][order] for end in _ENDS}
-        levels = {end: level for end, level in ends.items() if np.isfinite(level).all()}
+        levels = {end: level for end, level in ends.items() if np.isfinite(level).any()}
         found[str(name)] = Swings(speed[order], one["swing"].values[known][order], levels)
     return found
 
@@ -61,28 +66,31 @@ def fastest_within(swings: Swings, end: str) -> float | None:
     >>> fastest_within(one, "begun"), fastest_within(one, "ended")
     (2.5, None)
     """
-    beyond = swings.swing - swings.levels[end]
-    over = np.flatnonzero(beyond > _SAME * swings.levels[end])
+    speed, swing, levels = swings.where_known(end)
+    beyond = swing - levels[end]
+    over = np.flatnonzero(beyond > _SAME * levels[end])
     if not over.size:
-        return float(swings.speed[-1])
+        return float(speed[-1])
     first = int(over[0])
     if first == 0:
         return None
     near = slice(first - 1, first + 1)
-    return float(np.interp(0.0, beyond[near], swings.speed[near]))
+    return float(np.interp(0.0, beyond[near], speed[near]))
 
 
 def said(name: str, swings: Swings) -> Iterator[str]:
     """What a designer asks, a sentence for each end of the way."""
-    for end, level in swings.levels.items():
-        fastest = fastest_within(swings, end)
+    for end in swings.levels:
+        speed, swing, levels = swings.where_known(end)
+        level, fastest = levels[end], fastest_within(swings, end)
         ends = dict.fromkeys(theme.number(TO_MILLI * of) for of in (level.min(), level.max()))
+        last = "the fastest here" if speed[-1] == swings.speed[-1] else "the fastest known"
         rest = f"at rest {_ENDS[end][0]}, {' to '.join(ends)} mm"
         if fastest is None:
-            slow, least = swings.speed[0], theme.number(TO_MILLI * float(swings.swing[0]))
+            slow, least = speed[0], theme.number(TO_MILLI * float(swing[0]))
             yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
-        elif fastest == swings.speed[-1]:
-            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, the fastest here"
+        elif fastest == speed[-1]:
+            yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, {last}"
         else:
             yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s"
 

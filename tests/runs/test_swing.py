@@ -175,6 +175,12 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     assert next(said("beam", swings(tight)["beam"])) == (
         "beam: swings more than at rest where it begins, 3 mm, at 1 m/s already: 20 mm"
     )
+    # Of a speed whose standing boom has no motion the level is not known, and the others count.
+    gap = xr.concat([swept(), swept().isel(key=[2]).assign_coords(key=[1.2])], "key")
+    gap["swing_where_ended"][-1], gap["drive_speed"][-1] = np.nan, 3.0
+    assert list(said("beam", swings(gap)["beam"]))[1] == (
+        "beam: swings no more than at rest where it ends, 60 mm, up to 2 m/s, the fastest known"
+    )
     # Booms that are drawn to different places swing about as much as each does there, or less.
     elsewhere = data.assign(swing_where_begun=data["swing"] + 0.01)
     assert next(said("beam", swings(elsewhere)["beam"])) == (

@@ -40,7 +40,6 @@ THEN = STEPS[1]
 MODES = (6, 8, 10, 12, 14)
 # Loads a little changed: each run is a sample.
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
-DURATION = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +181,7 @@ class Example:
         whole, put_in = self.systems[ELEMENTS], well[-1].put_in
         models = [*series, *((lowest(whole, few), put_in) for few in modes)]
         tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
-        runs = side_by_side(lambda one: _then(how, *one), tasks)
+        runs = side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
         four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
         tied = self.well[0].tied.at(four[0].time)
         return [
@@ -205,7 +204,7 @@ class Example:
         system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
         laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
-        return side_by_side(lambda one: _then(how, *one), tasks)
+        return side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
 
     def off(self, run: Moved) -> float:
         """Largest distance of the elements' tip from the one solved well, of its range."""
@@ -225,8 +224,8 @@ def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Traject
     return plan.integrator(changed(plan.motion, "load", factor))
 
 
-def _then(how: Numerics, system: GapSystem, put_in: float, factor: float) -> Moved:
-    motion = changed(Motion(system, DURATION, how.step), "load", factor)
+def _then(how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float) -> Moved:
+    motion = changed(Motion(system, duration, how.step), "load", factor)
     run = integrate(motion, how.scheme, how.settled)
     return Moved.of(run.trajectory, put_in, float(run.unsettled[: run.lasted].mean()))
 
