@@ -74,7 +74,7 @@ def _travel(
     alone = len(course.joints) == 1
     pressing = moving_thrusts(boom, models, reads, course.joints[0]) if alone else []
     histories = [drive.history for drive in course.drives]
-    against = borne(boom.segments, boom.joints, course.joints[0])
+    against = borne(boom.segments, boom.joints, course.joints[0]) if alone else 0.0
     return Travel.of(histories, table, moving, course.suffix, pressing, against)
 
 

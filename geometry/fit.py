@@ -67,13 +67,13 @@ def check_drawn_room(where: str, joint: Joint, outer: Segment, inner: Segment, w
 def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tuple[float, float]:
     """How far the inner segment can move along z, and then along y, where that is least, in m.
 
-    At the stations and the ends of the overlap, drawn out by ``way`` in m, of segments whose
-    sections are known.
+    At the ends of the overlap, drawn out by ``way`` in m, of segments whose sections are known:
+    what tapers does so evenly.
     """
     first, last = max(outer.start, inner.start + way), min(outer.end, inner.end + way)
     found = [
         free_room(outer.section_at(x), inner.section_at(x - way), 2.0 * joint.clearance)
-        for x in (*(min(max(x, first), last) for x in joint.stations), first, last)
+        for x in (first, last)
     ]
     heights, widths = zip(*found, strict=True)
     return min(heights), min(widths)

@@ -49,7 +49,7 @@ def _ways(full: BoomShell, found: Entry, drive: Drive, near: float) -> Array:
         around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
         # Nodes are on these but for the digits to which they are rounded.
         x = np.unique(along)
-        lines = x[np.abs(np.subtract.outer(around, x)).argmin(axis=1)]
+        lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
     ways = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
     low, high = drive.reach
     return np.asarray(ways[(ways > low - near) & (ways < high + near)])

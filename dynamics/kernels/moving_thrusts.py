@@ -108,5 +108,6 @@ def press_along(ways: Array, thrusts: Thrusts, a: Array, force: Array, slopes: A
 
 @njit(**SUMS)
 def kick(v: Array, force: Array, time: float) -> None:
+    """Let a force (num_modes,) act on the speeds over a time in s."""
     for i in range(v.size):
         v[i] += time * force[i]
