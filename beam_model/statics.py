@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -60,25 +61,53 @@ class Rest(NamedTuple):
         return float(self.system.observers["tip"].row @ self.position)
 
 
-def at_rest(boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[ContactLaw]) -> Rest:
+@dataclass(frozen=True)
+class Elements:
+    """The segments of a boom as elements that are exact in statics, with play or without.
+
+    Args:
+        boom: whose joints may be tied or not.
+    """
+
+    boom: Boom
+
+    @cached_property
+    def segments(self) -> list[SegmentModel]:
+        """As their supports hold them."""
+        return _segments(self.boom)
+
+    @cached_property
+    def unsupported(self) -> list[Component]:
+        """What bends along z without their supports."""
+        return [_unsupported(self.boom, number) for number in range(len(self.boom.segments))]
+
+
+def at_rest(
+    boom: Boom,
+    laws: Sequence[ContactLaw],
+    lateral_laws: Sequence[ContactLaw],
+    elements: Elements | None = None,
+) -> Rest:
     """A boom of beam elements at rest, of Timoshenko's where all sections are known.
 
     Args:
         boom: with its loads.
         laws, lateral_laws: of its joints along z, and in space along y.
+        elements: of its segments, if they are known from the same boom with play or without.
 
     Raises:
         NumericsError: it has no rest.
     """
-    modes = BoomModes(boom, _segments(boom))
+    elements = elements or Elements(boom)
+    modes = BoomModes(boom, elements.segments)
     system = standing_system(boom, modes, laws, lateral_laws).gathered()
     now = np.zeros(1)
     load = system.load + sum(x.history(now)[0] * x.load for x in system.excitations)
     position = equilibrium(system, load)
     holds = [
         hold
-        for number in range(len(boom.segments))
-        for hold in _holds(boom, number, modes, position)
+        for number, component in enumerate(elements.unsupported)
+        for hold in _holds(boom, number, component, modes, position)
     ]
     return Rest(boom, system, position, holds)
 
@@ -126,23 +155,27 @@ def _size(boom: Boom) -> float:
     return longest / COMPRESSED_ELEMENTS if boom.compressed or tapers else longest
 
 
-def _holds(boom: Boom, number: int, modes: BoomModes, position: Array) -> list[Hold]:
-    """What is left of a segment without its supports where something may hold it."""
-    segment = boom.segments[number]
-    places = {support.x for support in segment.supports}
+def _unsupported(boom: Boom, number: int) -> Component:
+    """A segment as it bends along z without its supports, with nodes where it may be held."""
+    alone = replace(boom.segments[number], supports=())
+    breaks = [*_held_places(boom, number), *boom.stations_of(number)]
+    model = finite_element_segment(alone, _size(boom), breaks, _theory(boom), rotary_inertia=False)
+    return model.components["z"]
+
+
+def _held_places(boom: Boom, number: int) -> set[float]:
+    """x in m on a segment where something may hold it."""
+    places = {support.x for support in boom.segments[number].supports}
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    places |= {x for joint in joints for x in joint.stations}
-    alone = replace(segment, supports=())
-    model = finite_element_segment(
-        alone,
-        _size(boom),
-        [*places, *boom.stations_of(number)],
-        _theory(boom),
-        rotary_inertia=False,
-    )
-    component = model.components["z"]
+    return places | {x for joint in joints for x in joint.stations}
+
+
+def _holds(
+    boom: Boom, number: int, component: Component, modes: BoomModes, position: Array
+) -> list[Hold]:
+    """What is left of a segment without its supports where something may hold it."""
     nodes = component.breaks
     bent = [
         row @ position
@@ -156,7 +189,10 @@ def _holds(boom: Boom, number: int, modes: BoomModes, position: Array) -> list[H
             load += given.history(np.zeros(1))[0] * given.push(_Bare(component))
     stiffness = component.stiffness - component.softening
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
-    return [Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()])) for x in sorted(places)]
+    return [
+        Hold(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
+        for x in sorted(_held_places(boom, number))
+    ]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -71,6 +72,8 @@ class RowTable:
         tolerance: float = TOLERANCE,
     ) -> RowTable:
         """Rows (num_rows, num_modes) at each s in m, smooth between rising breaks in m."""
+        # Pieces end where others begin, and halves meet rows where the whole did.
+        rows = cache(rows)
         scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
         pieces = [
             piece

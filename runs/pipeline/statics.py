@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from beam_model.statics import Hold, Rest, at_rest, handed_on
+from beam_model.statics import Elements, Hold, Rest, at_rest, handed_on
 from dynamics.contact import ContactLaw
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
@@ -47,8 +47,9 @@ def statics(case: Case, boom: Boom) -> Statics | None:
     with_play = not all(model.play_free for model in case.models)
     try:
         with np.errstate(all="ignore"):
-            tied = at_rest(boom.play_free, [], [])
-            return Statics(at_rest(boom, *laws(case, boom)) if with_play else tied, tied)
+            elements = Elements(boom)
+            tied = at_rest(boom.play_free, [], [], elements)
+            return Statics(at_rest(boom, *laws(case, boom), elements) if with_play else tied, tied)
     except NUMERICS:
         return None
 
