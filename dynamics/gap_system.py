@@ -7,7 +7,8 @@
 in mass-normalised modal coordinates a. Segments that only contact couples stand side by
 side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
 D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
-Where a boom is drawn out, its travels say how rows change from what they are at t = 0.
+Where a boom is drawn out, its travels say how rows change from what they are at t = 0. One that
+stands on its way may have K = diag(ω²) − S in place of ω², until it is taken ``in_own_modes``.
 """
 
 from __future__ import annotations
@@ -269,4 +270,6 @@ class GapSystem:
         """
         if (self.omega2 <= 0.0).any():
             raise ValueError("a system with rigid modes has no static response")
+        if self.softening.size:
+            return np.asarray(np.linalg.solve(self.stiffness, force))
         return force / self.omega2

@@ -132,7 +132,7 @@ class Segment:
         name: how messages and results call it.
         start, end: x of its ends in m.
         material: elastic constants and density.
-        mass_per_length: m̄ in kg/m.
+        mass_per_length: m̄ in kg/m, positive.
         second_moment_of_area: J in m⁴.
         rotary_inertia: I_p in kg·m.
         section: its plates; only shear-flexible beams, shells and booms in space need it.
