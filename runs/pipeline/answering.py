@@ -28,7 +28,7 @@ from runs.pipeline.answers import (
     ModesBeside,
     Moved,
 )
-from runs.pipeline.at_rest import at_rest, drawn_positions, positions
+from runs.pipeline.at_rest import at_rest, drawn_positions, instants, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.modes import matched, modes
@@ -76,7 +76,8 @@ def of_model(
     """
     shown = boom.play_free if model.play_free else boom
     played = Shown.of(shown, built.system.gathered(), model.lines(boom, built))
-    resting = _resting(played, case.time.duration)
+    times = instants(played.system, case.time.duration)
+    resting = _resting(played, times)
     drawn = _drawn(played, case.time.duration)
     moved, lives = _moving(played, resting.beside(drawn), trajectory, model, case)
     walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
@@ -92,7 +93,7 @@ def of_model(
         return answers
     try:
         tied = _tied(boom, model, played, resting)
-        tied_rests = _resting(tied, case.time.duration)
+        tied_rests = _resting(tied, times)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move, for one.
         return answers
@@ -112,8 +113,8 @@ class Shown(NamedTuple):
         return cls(boom, system, with_cylinders(boom, system, lines))
 
 
-def _resting(shown: Shown, duration: float) -> Resting:
-    found = positions(shown.system, duration)
+def _resting(shown: Shown, times: Sequence[float]) -> Resting:
+    found = positions(shown.system, times)
     if not found:
         return Resting(np.zeros((0, shown.system.num_modes)), [], [])
     return Resting(

@@ -97,17 +97,17 @@ def _distinct(times: Array, values: Array, steps: Sequence[int]) -> list[float]:
     return list(found.values())
 
 
-def positions(system: GapSystem, duration: float) -> dict[float, Array]:
+def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
     """Where it rests, (num_modes,), by the instants in s whose loads act.
 
-    Instants under whose loads it has no rest are left out; there is none without one at t = 0.
+    Instants under whose loads it has no rest are left out; there is none without the first one.
 
     Args:
         system: of a model, all that stays constant in its ``load``.
-        duration: of the motion in s.
+        times: of :func:`instants`.
     """
     found: dict[float, Array] = {}
-    for time in instants(system, duration):
+    for time in times:
         try:
             with np.errstate(all="ignore"):
                 found[time] = rest_at(system, time)

@@ -181,7 +181,7 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
     """Those of the boom with its joints pressed, the largest displacement of each 1 m."""
     assert reduced.fields is not None
     system = reduced.system.gathered()
-    rest = positions(system, 0.0)
+    rest = positions(system)
     if not rest:
         return {}
     omega, shapes = pressed_modes(system, rest[0.0])

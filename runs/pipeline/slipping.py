@@ -18,7 +18,7 @@ from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.pulled import pulled_by, with_pulled
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.at_rest import drawn_positions, positions
+from runs.pipeline.at_rest import drawn_positions, instants, positions
 from runs.pipeline.drives import fastest, overlap_left
 from runs.pipeline.statics import laws, statics
 
@@ -71,7 +71,8 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     from dynamics.drawn_out import rubbing
 
     duration, most = case.time.duration, 0.0
-    for time, position in (positions(system, duration) | drawn_positions(system, duration)).items():
+    rests = positions(system, instants(system, duration)) | drawn_positions(system, duration)
+    for time, position in rests.items():
         gaps = system.standing(time).rows @ position
         forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]
         most = max(most, float(rubbing(system, travel, np.array([forces]))[0]))

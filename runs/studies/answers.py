@@ -154,7 +154,7 @@ def _cantilever() -> Iterator[Proof]:
 def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
     """A boom of one segment that its load meets suddenly, for half a second."""
     system, along = tied_system(boom, segments), lines(boom, segments)
-    rest = positions(system, 0.0)[0.0]
+    rest = positions(system)[0.0]
     told = [at_rest(boom, system, along, 0.0, rest)]
     motion = simulate(system, duration=0.5)
     motions = Motions(boom, along, motion, rest[None], told, jumps=False)

@@ -125,7 +125,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     boom, model = build_boom(case), case.models[1]
     built = build(case, boom, model)
     system, lines = built.system.gathered(), model.lines(boom, built)
-    found = positions(system, case.time.duration)
+    found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(drawn_positions(system, case.time.duration)) == [5.0]
     rest = at_rest(boom, system, lines, 6.0, found[6.0])
@@ -141,7 +141,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
 
 def test_an_instant_without_rest_is_left_out() -> None:
     """Reference: by hand. The ball rests 9.81 µm deep, flies under 20 N, and 29.81 N press it."""
-    found = positions(ball(Sine(1.0)), 1.0)
+    found = positions(ball(Sine(1.0)), instants(ball(Sine(1.0)), 1.0))
     assert list(found) == pytest.approx([0.0, 0.75], abs=1e-3)
     np.testing.assert_allclose(np.ravel(list(found.values())), [-9.81e-6, -29.81e-6], rtol=1e-5)
-    assert positions(replace(ball(), rows=-np.ones((1, 1))), 1.0) == {}
+    assert positions(replace(ball(), rows=-np.ones((1, 1)))) == {}

@@ -208,6 +208,18 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
         load(str(path))
 
 
+def test_play_adds_at_rest_at_the_same_instants_of_a_boom_that_is_driven(tmp_path: Path) -> None:
+    """Reference: by hand; the drive begins as the load's sine is largest, between even times."""
+    load_ = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 500.0\nfrequency = 1.2\n'
+    path = Path(case_file(tmp_path, "time = 5.0", "start = 0.2083333333333, time = 0.02"))
+    text = path.read_text(encoding="utf-8").replace("duration = 7.0", "duration = 0.3")
+    path.write_text(text.replace("[[joint]]", f"{load_}\n[[joint]]"), encoding="utf-8")
+    own = run_case(load(str(path)), models=["kantorovich-5"]).summary.answers.models
+    (begun, largest), tied = own["kantorovich-5"].rests, own["kantorovich-5"].tied
+    assert largest.time == pytest.approx(0.25 / 1.2, abs=1e-9)
+    assert [rest.time for rest in tied] == [begun.time, largest.time]
+
+
 def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
     """Reference: by hand; no model of a boom that is drawn may have a rest."""
     assert of_rests(load(str(CASES / "drawn-out.toml")), []) == ""

@@ -152,7 +152,7 @@ def test_at_rest_the_pad_that_bears_most_is_told(tmp_path: Path, shim: float) ->
     case = case_with(tmp_path, several(above, *below))
     boom = build_boom(case)
     system = build(case, boom, case.models[0]).system.gathered()
-    position = positions(system, 0.0)[0.0]
+    position = positions(system)[0.0]
     tail, head = pressed(boom, system, position)
     of_rows = [
         abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)
