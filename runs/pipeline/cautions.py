@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +14,7 @@ from geometry.typography import TO_PERCENT
 from runs.case.actions import series_notes
 from runs.case.schema import Case
 from runs.pipeline.proportions import of_buckling, of_tip, slips
-from runs.pipeline.slipping import lag_cautions, slip_cautions
+from runs.pipeline.slipping import Slipping, lag_cautions, slip_cautions, slippings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,9 +28,9 @@ POOR = 0.01
 MOST = 0.1
 
 
-def of_case(case: Case, boom: Boom) -> list[str]:
-    """Before anything moves."""
-    return slips(case, boom) + slip_cautions(case, boom)
+def of_case(case: Case, boom: Boom, drives: Iterable[Slipping]) -> list[str]:
+    """Before anything moves; ``drives`` those of a given stiffness."""
+    return slips(case, boom) + slip_cautions(drives, case.system)
 
 
 def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
@@ -44,7 +44,7 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
     """
     models = summary.models
     return [
-        *of_case(case, boom),
+        *of_case(case, boom, slippings(case, boom)),
         *lag_cautions(boom, data, case.system),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_bent(models, boom),

@@ -26,7 +26,7 @@ from runs.pipeline.cautions import of_case
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.estimates import of_foreseen
 from runs.pipeline.foreseen import Foreseen
-from runs.pipeline.slipping import slip_lines
+from runs.pipeline.slipping import slip_lines, slippings
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
@@ -46,7 +46,8 @@ def print_inferred(declared: Declared, console: Console) -> None:
         console.print(stiffeners)
     if boom.joints:
         console.print(_joints(case, boom))
-    for line in (*drive_lines(boom, case.system), *slip_lines(case, boom)):
+    drives = list(slippings(case, boom))
+    for line in (*drive_lines(boom, case.system), *slip_lines(drives, case.system)):
         console.print(line, markup=False, highlight=False)
     console.print(_models(case))
     if boom.compressed:
@@ -57,7 +58,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
     print_statics(case, boom, console)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
-    for caution in of_case(case, boom):
+    for caution in of_case(case, boom, drives):
         console.print(caution, markup=False, highlight=False)
     console.print(f"A run may take {of_foreseen(foreseen)}.", highlight=False)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -79,15 +79,15 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     return most
 
 
-def slip_lines(case: Case, boom: Boom) -> Iterator[str]:
-    """A sentence for each drive of a given stiffness, in the units of the case."""
-    for one in slippings(case, boom):
-        mass = f"{case.system.of(one.pulled.mass, 'kg'):.4g} {case.system.label('kg')}"
+def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
+    """A sentence for each drive of a given stiffness."""
+    for one in found:
+        mass = f"{system.of(one.pulled.mass, 'kg'):.4g} {system.label('kg')}"
         yield (
             f"What the drive of {one.inner!r} draws, {mass}, swings at {one.pulled.frequency:.3g} "
             f"Hz, damped by {TO_PERCENT * one.pulled.damping_ratio:.3g} %, and against "
             f"{one.friction * TO_KILO:.3g} kN of friction, the most at rest, "
-            f"{_slips(one, case.system)}."
+            f"{_slips(one, system)}."
         )
 
 
@@ -107,12 +107,12 @@ def _length(value: float, system: System) -> str:
     return f"{system.of(value, 'm'):.4g} {system.label('m')}"
 
 
-def slip_cautions(case: Case, boom: Boom) -> list[str]:
+def slip_cautions(found: Iterable[Slipping], system: System) -> list[str]:
     """Where it would stick and slip all the way, a line each."""
     return [
         f"caution: the drive of {one.inner!r} lets it stick and slip all the way: it draws at "
-        f"{_speed(one.fastest, case.system)} at most, and {_remedy(one, case.system)}"
-        for one in slippings(case, boom)
+        f"{_speed(one.fastest, system)} at most, and {_remedy(one, system)}"
+        for one in found
         if one.critical > one.fastest
     ]
 
