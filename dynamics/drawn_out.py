@@ -70,10 +70,8 @@ def integrate_drawn(
         excitations, ways = _followed(system, times, h)
         straight = excitation_arrays(replace(system, travels=()), times, h)[4]
         strides = strides_over(strides, tables[3], straight, ways, h)
-        march_drawn(
-            state, still, rows, tables, thrusts, pushed, ways, excitations, space, strides, h,
-            substeps, record.rows(first, done),
-        )  # fmt: skip
+        drawn = state, still, rows, tables, thrusts, pushed, ways, excitations, space
+        march_drawn(drawn, strides, h, substeps, record.rows(first, done))
         record.check(first, done, energy_bound, progress)
     return _with_drives(record, tables[3], thrusts[1][:, 0])
 

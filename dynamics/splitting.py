@@ -52,7 +52,7 @@ from dynamics.kernels.integrator_state import (
     no_excitations,
     system_arrays,
 )
-from dynamics.kernels.lossy_steps import Space, lossy_steps, space_for
+from dynamics.kernels.lossy_steps import Lossy, Space, lossy_steps, space_for
 from dynamics.kernels.modal_flow import (
     mean_place,
     modal_energy,
@@ -109,20 +109,9 @@ def _telling(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _march(
-    state: State,
-    strides: Indices,
-    flows: Array,
-    system: System,
-    springs: tuple[Array, Array, Terms, Limits],
-    damping: Damping,
-    dry: Dry,
-    excitations: Excitations,
-    space: Space,
-    step: float,
-    substeps: int,
-    steady: bool,
-    out: tuple[Array, ...],
-) -> int:
+    lossy: Lossy, strides: Indices, flows: Array, springs: tuple[Array, Array, Terms, Limits],
+    step: float, substeps: int, steady: bool, out: tuple[Array, ...],
+) -> int:  # fmt: skip
     """Advance by up to ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces), one
@@ -134,6 +123,7 @@ def _march(
     Gives how many intervals were made: all of them, or, where that is ``steady``, those up to the
     end of one in which something pressed and nothing opened or closed.
     """
+    state, system, damping, dry, excitations, _ = lossy
     _, a, v, y, force, grip, tally, mean, peak, friction, _, before = state
     omega2, load, rows, terms, limits = system
     rates, directions, dashpot_rates = damping
@@ -155,9 +145,9 @@ def _march(
     excited = loads.shape[0] > 0
     # A prescribed normal force rubs always.
     single = (given[0] * given[1]).any() or strides.size == 1 or straight.max() < strides[1]
-    lossy = friction.size > 0 or limits["damping"].any()
+    losing = friction.size > 0 or limits["damping"].any()
     touching, closed = force.any(), stiffness.any()
-    plain = not (lossy or damped or dragging or excited or closed)
+    plain = not (losing or damped or dragging or excited or closed)
     pressed = force
     if closed:
         pressed = np.zeros(y.size)
@@ -197,12 +187,9 @@ def _march(
                 stride = safe_stride(y, limits, bounds, step, until - done, telling)
                 if dragging and stride == 0:
                     again = done + _AGAIN
-            flying = not (touching or lossy or dragging) and done + strides[stride] < until
-            if lossy and stride == 0:
-                done += -k + lossy_steps(
-                    state, system, damping, dry, excitations, space, step,
-                    k, k - done + substeps, substeps, single,
-                )  # fmt: skip
+            flying = not (touching or losing or dragging) and done + strides[stride] < until
+            if losing and stride == 0:
+                done += lossy_steps(lossy, step, k, k - done + substeps, substeps, single) - k
                 touching = force.any()
                 continue
             before[:] = y
@@ -306,11 +293,9 @@ class _Steps:
         springs = contacts.stiffness, contacts.preload, contact_terms(laws), contact_limits(laws)
         before = state[3].copy()
         contacts.enter(state)
-        made: int = _march(
-            state, self.strides, self.flows, self.system, springs, self.damping, self.dry,
-            self._excitations(first, len(out[0]) * substeps), self.space, step, substeps, steady,
-            out,
-        )  # fmt: skip
+        excitations = self._excitations(first, len(out[0]) * substeps)
+        lossy = state, self.system, self.damping, self.dry, excitations, self.space
+        made: int = _march(lossy, self.strides, self.flows, springs, step, substeps, steady, out)
         contacts.leave(state, before, tuple(array[:made] for array in out))
         return made
 

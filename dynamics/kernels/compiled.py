@@ -14,17 +14,16 @@ from numba import config, njit
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
+# What is made part of whatever calls it.
+PART: Mapping[str, Any] = MappingProxyType(
+    {"cache": True, "nogil": True, "error_model": "numpy", "forceinline": True}
+)
+
 # Loops over modes, whose sums may be taken in any order. They are made part of whatever calls them:
 # numba optimises a copy that is only called once more, in another order, so that the process which
 # compiles would differ in the last bit from those that find its work in the cache.
 SUMS: Mapping[str, Any] = MappingProxyType(
-    {
-        "cache": True,
-        "nogil": True,
-        "error_model": "numpy",
-        "fastmath": {"reassoc", "contract", "arcp", "nsz"},
-        "forceinline": True,
-    }
+    {**PART, "fastmath": {"reassoc", "contract", "arcp", "nsz"}}
 )
 
 

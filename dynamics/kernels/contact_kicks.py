@@ -71,16 +71,9 @@ def add_closed_forces(
 
 @njit(**SUMS)
 def damped_kick(
-    v: Array,
-    rows: Array,
-    carried: Array,
-    force: Array,
-    limits: Limits,
-    duration: float,
-    backward: bool,
-    push: Array,
-    driven: Array,
-) -> float:
+    v: Array, rows: Array, carried: Array, force: Array, limits: Limits, duration: float,
+    backward: bool, push: Array, driven: Array,
+) -> float:  # fmt: skip
     """Change the speeds by forces with contact damping; gives its loss in J.
 
     The speed in a force is the mean of those before and after, row by row, from the last row on

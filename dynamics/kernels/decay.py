@@ -64,11 +64,8 @@ def drag(v: Array, directions: Array, kept: Array) -> float:
 def damp(v: Array, faded: Array, directions: Array, dragged: Array) -> float:
     """All damping over a time, as a symmetric matrix; gives the loss in J.
 
-    Args:
-        v: (num_modes,) speeds.
-        faded: (num_modes,) what every mode keeps over half that time, or none (0,).
-        directions: (num_dashpots, num_modes).
-        dragged: (num_dashpots,) what is kept along each over that time.
+    A mode keeps ``faded`` (num_modes,), or none (0,), over half that time; ``dragged``
+    (num_dashpots,) is kept along each dashpot over all of it.
     """
     loss: float = fade(v, faded)
     loss += drag(v, directions, dragged)

@@ -35,7 +35,7 @@ from dynamics.kernels.integrator_state import (
 )
 from dynamics.kernels.modal_flow import drive, modal_energy, move, tabulate, travel
 from dynamics.kernels.moving_rows import Tables, arrive, average, carry, moving_drag, place_rows
-from dynamics.kernels.moving_thrusts import Pushed, Thrusts, kick, press_along
+from dynamics.kernels.moving_thrusts import Pushed, Thrusts, drag_along, kick, press_along
 
 # After so many steps apart it is worth the while to look how many more can be made at once.
 _APART = 8
@@ -55,6 +55,10 @@ Rows = tuple[Array, Array, Array, Array]
 # (num_modes,) and contact rows (3, num_rows); the problem of bounded impulses.
 Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
+# All that steps of a boom that is drawn out read and change; (num_parts + 1, num_travels) is how
+# far each travel is in m where parts of steps begin.
+Drawn = tuple[State, Still, Rows, Tables, Thrusts, Pushed, Array, Excitations, Space]
+
 
 def space_for(system: GapSystem) -> Space:
     """What the steps of a system need beside its state."""
@@ -67,14 +71,8 @@ def space_for(system: GapSystem) -> Space:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _damp(
-    v: Array,
-    faded: Array,
-    rows: Array,
-    carried: Array,
-    time: float,
-    backward: bool,
-    driven: Array,
-) -> float:
+    v: Array, faded: Array, rows: Array, carried: Array, time: float, backward: bool, driven: Array,
+) -> float:  # fmt: skip
     """All damping over a time, dashpots in their order or ``backward``; gives the loss in J."""
     loss: float = fade(v, faded)
     loss += moving_drag(v, rows, carried, time, backward, driven)
@@ -84,29 +82,13 @@ def _damp(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def drawn_steps(
-    state: State,
-    still: Still,
-    rows: Rows,
-    tables: Tables,
-    thrusts: Thrusts,
-    pushed: Pushed,
-    ways: Array,
-    excitations: Excitations,
-    space: Space,
-    step: float,
-    first: int,
-    last: int,
-    substeps: int,
-    gliding: bool,
+    drawn: Drawn, step: float, first: int, last: int, substeps: int, gliding: bool
 ) -> int:
     """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
 
-    Args:
-        ways: (num_parts + 1, num_travels) how far each travel is where parts of steps begin.
-        gliding: whether to stop after a step at whose end nothing touches.
-
-    Gives the number of the next step.
+    Gives the number of the next step, the first at which nothing touches where it is ``gliding``.
     """
+    state, still, rows, tables, thrusts, pushed, ways, excitations, space = drawn
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = borrowed(state)
     omega2, load, terms, limits, rates, given, pressing = borrowed(still)
     now, then, middles, told = borrowed(rows)
@@ -118,8 +100,7 @@ def drawn_steps(
     push, y_ahead, force_ahead = middle
     along, slope, along_then, slope_then = borrowed(pushed)
     pressing_along = borrowed(thrusts)
-    forces, of_thrust = pressing_along[0], pressing_along[1]
-    softened = forces.size > 0
+    softened = pressing_along[0].size > 0
     carried, driven, done = told
     fading, excited = rates.size > 0, loads.shape[0] > 0
     rubbing = pressing.size > 0 or (given[0] * given[1]).any()
@@ -250,11 +231,10 @@ def drawn_steps(
                 if softened:
                     press_along(place, pressing_along, a, along_then, slope_then)
                     kick(v, along_then, 0.5 * time)
-                    for t in range(forces.size):
-                        n = of_thrust[t, 0]
-                        way = (ways[p + 1, n] - ways[p, n]) * time / span
-                        both = slope[t] ** 2 + slope_then[t] ** 2
-                        driven[now.shape[0] + t] -= 0.25 * forces[t] * both * way
+                    drag_along(
+                        pressing_along, slope, slope_then, ways[p], ways[p + 1], time, span,
+                        driven[now.shape[0] :],
+                    )  # fmt: skip
                 tally[CONTACT] += loss
                 changed = False
                 if f > 0:
@@ -296,25 +276,14 @@ def drawn_steps(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def march_drawn(
-    state: State,
-    still: Still,
-    rows: Rows,
-    tables: Tables,
-    thrusts: Thrusts,
-    pushed: Pushed,
-    ways: Array,
-    excitations: Excitations,
-    space: Space,
-    strides: Strides,
-    step: float,
-    substeps: int,
-    out: tuple[Array, ...],
+    drawn: Drawn, strides: Strides, step: float, substeps: int, out: tuple[Array, ...]
 ) -> None:
     """Advance by ``len(out[0])`` output intervals and record each.
 
     ``out`` = (states, velocities, energies, gaps, mean forces, peak forces, friction forces, work
     of the drive at each row and thrust), one row an interval; velocities may have no columns.
     """
+    state, still, rows, tables, thrusts, pushed, ways, excitations, _ = drawn
     _, a, v, y, _, _, tally, mean, peak, friction, _, _ = state
     omega2, load, terms, limits, rates, given, pressing = still
     modal = omega2, load, rates
@@ -338,10 +307,7 @@ def march_drawn(
             if made > 0:
                 k += made
             else:
-                k = drawn_steps(
-                    state, still, rows, tables, thrusts, pushed, ways, excitations, space, step, k,
-                    end, substeps, gliding,
-                )  # fmt: skip
+                k = drawn_steps(drawn, step, k, end, substeps, gliding)
         tally[WORK] += np.dot(load, a - start)
         states[interval] = a
         velocities[interval] = v[: velocities.shape[1]]

@@ -39,14 +39,9 @@ def strides_for(system: GapSystem, step: float) -> Strides:
 def strides_over(
     strides: Strides, moving: Indices, straight: Indices, ways: Array, step: float
 ) -> Strides:
-    """Strides over some time.
+    """Strides over some time, by ``straight`` and ``ways`` of its steps.
 
-    Args:
-        strides: of the system.
-        moving: the rows of its tables.
-        straight: through how many steps from each one on its loads go straight.
-        ways: (num_parts + 1, num_travels) in m, in parts no longer than a step.
-        step: s.
+    ``ways`` (num_parts + 1, num_travels) are in m, in parts no longer than a step.
     """
     counts, flows, _, rates, *scratch = strides
     fastest = np.abs(np.diff(ways, axis=0)).max(axis=0, initial=0.0) / step
@@ -58,18 +53,9 @@ def strides_over(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def glide(
-    state: State,
-    now: Array,
-    modal: tuple[Array, Array, Array],
-    limits: Limits,
-    tables: Tables,
-    ways: Array,
-    excitations: Excitations,
-    strides: Strides,
-    step: float,
-    first: int,
-    last: int,
-) -> int:
+    state: State, now: Array, modal: tuple[Array, Array, Array], limits: Limits, tables: Tables,
+    ways: Array, excitations: Excitations, strides: Strides, step: float, first: int, last: int,
+) -> int:  # fmt: skip
     """Make as many steps from ``first`` on, up to ``last``, as no gap can shut within.
 
     A row that moves adds to the rate of its gap what the modes make of its change, and to its own

@@ -81,19 +81,9 @@ def round_off(row_masses: Array, a: Array, noise: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def bound_impulses(
-    ahead: Array,
-    v: Array,
-    contact_rows: Array,
-    terms: Terms,
-    limits: Limits,
-    push: Array,
-    pressing: Array,
-    given: Array,
-    time: float,
-    y: Array,
-    force: Array,
-    grip: Array,
-) -> None:
+    ahead: Array, v: Array, contact_rows: Array, terms: Terms, limits: Limits, push: Array,
+    pressing: Array, given: Array, time: float, y: Array, force: Array, grip: Array,
+) -> None:  # fmt: skip
     """h μ N of every row in N·s, by its prescribed N and the contact impulses that press it.
 
     Args:
@@ -128,16 +118,9 @@ def look_ahead(a: Array, v: Array, half: Array, ahead: Array) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rub(
-    v: Array,
-    ahead: Array,
-    rows: Array,
-    masses: Array,
-    filtered: Array,
-    matrix: Array,
-    grip: Array,
-    problem: Array,
-    time: float,
-) -> float:
+    v: Array, ahead: Array, rows: Array, masses: Array, filtered: Array, matrix: Array, grip: Array,
+    problem: Array, time: float,
+) -> float:  # fmt: skip
     """The impulses in the middle of a step of ``time``; gives the friction loss in J.
 
     Args:

@@ -35,6 +35,9 @@ from dynamics.kernels.modal_flow import drive, move, tabulate, travel
 # bounded impulses.
 Space = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
 
+# All that steps read and change.
+Lossy = tuple[State, System, Damping, Dry, Excitations, Space]
+
 
 def space_for(system: GapSystem, damping: Damping) -> Space:
     """What the steps of a system need beside its state."""
@@ -48,17 +51,7 @@ def space_for(system: GapSystem, damping: Damping) -> Space:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def lossy_steps(
-    state: State,
-    system: System,
-    damping: Damping,
-    dry: Dry,
-    excitations: Excitations,
-    space: Space,
-    step: float,
-    first: int,
-    last: int,
-    substeps: int,
-    always: bool,
+    lossy: Lossy, step: float, first: int, last: int, substeps: int, always: bool
 ) -> int:
     """Make the steps from ``first`` up to ``last``, of which ``substeps`` make an output interval.
 
@@ -69,6 +62,7 @@ def lossy_steps(
     Gives the number of the next step: ``last``, or an earlier one when nothing touches any more
     unless ``always``.
     """
+    state, system, damping, dry, excitations, space = lossy
     # All in one loop: every array that is handed on in a tuple costs as much as a small sum.
     whole, a, v, y, force, grip, tally, mean, peak, friction, kept, before = borrowed(state)
     omega2, load, rows, terms, limits = borrowed(system)

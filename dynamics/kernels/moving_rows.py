@@ -99,15 +99,9 @@ def place_rows(ways: Array, tables: Tables, rows: Array) -> None:
 
 @njit(**SUMS)
 def carry(
-    now: Array,
-    then: Array,
-    moving: Indices,
-    first: int,
-    last: int,
-    a: Array,
-    time: float,
+    now: Array, then: Array, moving: Indices, first: int, last: int, a: Array, time: float,
     rates: Array,
-) -> None:
+) -> None:  # fmt: skip
     """Fill in the convective rates ΔB a/τ in m/s of the rows from ``first`` to before ``last``."""
     for j in range(first, last):
         rates[j] = 0.0

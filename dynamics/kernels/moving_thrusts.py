@@ -8,7 +8,7 @@ from numba import njit
 
 from dynamics.arrays import Array, Indices
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import PART, SUMS
 from dynamics.kernels.moving_rows import knot_before
 
 # Of each thrust in a plane: its force in N (num_thrusts,); its travel, its first and its last knot,
@@ -111,3 +111,22 @@ def kick(v: Array, force: Array, time: float) -> None:
     """Let a force (num_modes,) act on the speeds over a time in s."""
     for i in range(v.size):
         v[i] += time * force[i]
+
+
+@njit(**PART)
+def drag_along(
+    thrusts: Thrusts, before: Array, after: Array, start: Array, end: Array, time: float,
+    span: float, driven: Array,
+) -> None:  # fmt: skip
+    """Add −½ N (w′ a)² Δs to ``driven`` (num_thrusts,) in J, what the drive does at each thrust.
+
+    Args:
+        before, after: (num_thrusts,) slopes where ``time`` in s begins and ends.
+        start, end: (num_travels,) in m where the ``span`` in s does, of which that is a part.
+    """
+    forces, where = thrusts[0], thrusts[1]
+    for t in range(forces.size):
+        n = where[t, 0]
+        way = (end[n] - start[n]) * time / span
+        both = before[t] ** 2 + after[t] ** 2
+        driven[t] -= 0.25 * forces[t] * both * way

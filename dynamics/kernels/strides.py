@@ -48,17 +48,9 @@ def dragged_speeds(v: Array, directions: Array, kept: Array, speeds: Array) -> N
 
 @njit(**SUMS)
 def closing_bounds(
-    a: Array,
-    v: Array,
-    omega2: Array,
-    load: Array,
-    now: Array,
-    then: Array,
-    rows: Array,
-    duration: float,
-    reach: Array,
-    bounds: Array,
-) -> None:
+    a: Array, v: Array, omega2: Array, load: Array, now: Array, then: Array, rows: Array,
+    duration: float, reach: Array, bounds: Array,
+) -> None:  # fmt: skip
     """What no row's |ẏ| can exceed within ``duration`` while nothing touches.
 
     Rigid modes fall; those that tip over do so by cosh κt, κ² = −ω².
