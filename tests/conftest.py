@@ -15,7 +15,6 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
-from PIL import Image
 
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
@@ -23,6 +22,7 @@ from geometry.section import infer_inner_section, infer_outer_section
 from runs.folder.cache import VARIABLE
 from runs.process import progress
 from tests.space import in_space
+from tests.unprinted import blank
 
 # The same examples every time, however slow the machine.
 settings.register_profile("protractile", deadline=None, derandomize=True)
@@ -135,9 +135,6 @@ def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are made, but what lays them out and prints them is left out, which takes longer."""
     from runs.report import theme
-
-    def blank(canvas: object, filename: str, **_: object) -> None:
-        Image.new("L", (8, 8)).save(filename, "png")
 
     monkeypatch.setattr(theme.Canvas, "print_figure", blank)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import io
 import json
-import os
-import subprocess
 import sys
+import warnings
 from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
@@ -100,24 +99,17 @@ class _Here:
         return future
 
 
-def test_what_libraries_tell_their_callers_is_not_shown(tmp_path: Path) -> None:
-    program = """
-import sys, warnings
-from runs.studies import convergence
+def test_what_libraries_tell_their_callers_is_not_shown(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def survey(*_: object) -> list[object]:
+        warnings.warn("of a library", stacklevel=1)
+        return []
 
-def survey(*_):
-    warnings.warn("of a library")
-    return []
-
-convergence.survey = survey
-convergence.main()
-"""
-    done = subprocess.run(
-        [sys.executable, "-W", "always", "-c", program],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stderr == ""
+    monkeypatch.setattr(sys, "argv", ["convergence"])
+    monkeypatch.setattr(convergence, "survey", survey)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        with pytest.raises(SystemExit, match="0"):
+            convergence.main()
+    assert "of a library" not in capsys.readouterr().err

@@ -126,7 +126,8 @@ def test_two_ranks_leave_what_the_cores_do(
 
 @pytest.mark.usefixtures("_in_this_process")
 def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
-    arguments = ["sweep", case, "--vary", "joint.play=0.004:0.014:4", *MODELS, "--out", "out"]
+    play, beams = "joint.play=0.004:0.014:3", "kantorovich-4"
+    arguments = ["sweep", case, "--vary", play, "--models", beams, "--out", "out"]
     process = subprocess.Popen(
         [sys.executable, "-c", COMMAND, *arguments],
         env=os.environ | {"PYTHONPATH": str(ROOT)},
@@ -146,5 +147,5 @@ def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
     assert not Path("out/sweep.csv").exists()
     assert protractile(*arguments) == 0
     after = stamps("out")
-    assert len(after) == 4
+    assert len(after) == 3
     assert before.items() <= after.items()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from runs import CASES
 from tests.fuzz.contract import PROGRESS
+from tests.unprinted import ONE_BLANK_FIGURE
 
 Row = tuple[str, int, int, str]
 
@@ -18,12 +19,7 @@ _ROOT = Path(__file__).parents[2]
 _COARSE = CASES / "coarse.toml"
 _SHELL = "--models", "shell", "--mesh-size", "1"
 # The command, with one figure, which is written as all of them are.
-COMMAND = """
-from runs import cli
-from runs.report import figures
-figures.FIGURES = figures.FIGURES[-1:]
-cli.main()
-"""
+COMMAND = f"{ONE_BLANK_FIGURE}\nfrom runs import cli\ncli.main()\n"
 
 
 def rows(folder: Path, tries: int = 3) -> Iterator[Row]:

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""One figure a run, blank: what lays figures out and prints them takes longer than beams move."""
+
+from __future__ import annotations
+
+from PIL import Image
+
+# For a process of its own, before it runs a command.
+ONE_BLANK_FIGURE = """
+from runs.report import figures, theme
+from tests.unprinted import blank
+figures.FIGURES = figures.FIGURES[-1:]
+theme.Canvas.print_figure = blank
+"""
+
+
+def blank(canvas: object, filename: str, **_: object) -> None:
+    """In place of :meth:`runs.report.theme.Canvas.print_figure`."""
+    Image.new("L", (8, 8)).save(filename, "png")
