@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from dynamics.integrators import Events, Splitting
-    from runs.pipeline.summary import Growth
+    from runs.pipeline.summary import Predictability
 
 Progress = Callable[[float], None]
 _Found = TypeVar("_Found")
@@ -133,13 +133,13 @@ class Plan:
         trajectory: Trajectory,
         executor: Executor | None,
         progress: Progress,
-    ) -> Growth:
+    ) -> Predictability:
         """When changes of several sizes have grown, at what rate, and whether steps are to blame.
 
         NaN stands for what does not happen within the run.
         """
         from dynamics.predictability.horizon import measure_horizons
-        from runs.pipeline.summary import Growth
+        from runs.pipeline.summary import Predictability
 
         found = measure_horizons(
             self.motion,
@@ -150,7 +150,7 @@ class Plan:
             progress=progress,
             unchanged=trajectory,
         )
-        return Growth(
+        return Predictability(
             relatives=found.relatives.tolist(),
             shares=found.shares.tolist(),
             times=found.times.tolist(),

@@ -83,7 +83,7 @@ class EnsembleSummary(Entry):
         return self.horizons[f"{share:g}"]
 
 
-class Growth(Entry):
+class Predictability(Entry):
     """When changes of several sizes have grown to parts of the tip's range.
 
     ``times`` (relatives, shares) and ``of_step`` (shares) in s; ``rate`` (shares) in 1/s;
@@ -186,7 +186,7 @@ class ModelSummary(Entry):
     wall_time: float | None = None
     step_doubling: float | None = None
     ensemble: EnsembleSummary | None = None
-    horizons: Growth | None = None
+    horizons: Predictability | None = None
     steps_for_peaks: StepsForPeaks | None = None
     refused_steps: list[str]
     static_tip: Known = None

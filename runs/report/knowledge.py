@@ -13,10 +13,10 @@ from runs.pipeline.results import Results
 from runs.pipeline.summary import (
     CommonPeaks,
     Ensembles,
-    Growth,
     Levels,
     ModelSummary,
     PeaksLevel,
+    Predictability,
     Whole,
 )
 from runs.report.model_tables import horizon_column
@@ -97,7 +97,7 @@ def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], durati
     return Table("Horizons", columns, notes, "horizons", ("S2", "S3"))
 
 
-def _growth_table(measured: Mapping[str, Growth]) -> Table:
+def _growth_table(measured: Mapping[str, Predictability]) -> Table:
     rows = [(name, found, i) for name, found in measured.items() for i in range(len(found.shares))]
     sizes = next(iter(measured.values())).relatives
     columns = (
