@@ -195,7 +195,7 @@ def _groups(boom: Boom) -> list[list[_Part]]:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A segment as single forces push it, on the components of a group, see :class:`Body`."""
+    """A segment as single forces push it, on the components of a group."""
 
     group: Sequence[_Part]
     components: Sequence[Component]

@@ -168,7 +168,8 @@ def measure_horizons(
         relatives: ε, each between 0 and 1.
         vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
-        integrator: how the runs move; by splitting at :func:`contact_step` unless given.
+        integrator: how the runs move; unless given by splitting at
+            :func:`dynamics.step.contact_step`.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
         observer: which output is watched.

@@ -38,7 +38,7 @@ class Sizes:
     triangles: Sequence[float] = (0.05, 0.025, 0.0125)
     #: Of the solids' edges around the section, each twice the one before; as many as ``triangles``.
     splits: Sequence[int] = (1, 2, 4)
-    #: See :func:`mesh_quarter`.
+    #: See :func:`shell_model.verification.solid_mesh.mesh_quarter`.
     along: tuple[float, float] = (0.0125, 0.2)
     around: float = 0.1
 

@@ -43,7 +43,7 @@ class SurfaceOptions:
         stiffness: k_A in N/mⁿ⁺² of the stiffer side of every joint. Unless given it is the law of
             all the joint's stations together over the area, so that segments that approach each
             other uniformly press as they would at the stations.
-        shifts, moments: of the reduction, see :class:`shell_model.reduction.segment.KrylovOptions`.
+        shifts, moments: of the reduction, see :class:`shell_model.reduction.krylov.KrylovOptions`.
             Each point is an input of its own; against these many a few suffice: with more, the tip
             of the paper's boom with friction moves by 0.05 % of its range.
     """
