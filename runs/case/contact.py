@@ -85,7 +85,7 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
         if table.stiffness is None:
             raise fault_at(table, "missing", "stiffness")
         return
-    others = tables if pad else []
+    others = tables if pad else tables[1:]
     keys = others + [key for key in of_power if getattr(table, key) is not None]
     if keys:
         raise left_out(table, given, *keys)

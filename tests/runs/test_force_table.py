@@ -107,6 +107,8 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
          "joint[1].lateral_exponent: force_table is given; leave one of them out"),
         ("lateral_stiffness = 1e9\nforce_table = [[1e-3, 2.0]]\nstiffness = 1e9",
          "joint[1].stiffness: force_table is given; leave one of them out"),
+        ('force_table = [[1e-3, 2.0]]\nforce_file = "back.csv"',
+         "joint[1].force_file: force_table is given; leave one of them out"),
         ("force_table = []", "joint[1].force_table: empty; give at least one"),
         ("force_table = [[0.0, 0.0], [1e-3, 2.0]]",
          "joint[1].force_table: depths must be finite and rise from above 0"),
