@@ -13,10 +13,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from beam_model.component import SegmentModel
+from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import Travel
 from dynamics.gap_builder import GapBuilder
-from dynamics.moving_thrust import MovingThrust
-from dynamics.row_table import RowTable
-from dynamics.travel import Travel
 from geometry.arrays import Array
 from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom, Direction

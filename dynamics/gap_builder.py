@@ -15,10 +15,10 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, PowerContact
+from dynamics.drive.travel import KINDS, Kind
 from dynamics.excitation import Excitation, History, Released, Thrown
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.travel import KINDS, Kind
 
 R = TypeVar("R")
 

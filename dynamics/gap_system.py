@@ -21,10 +21,10 @@ import numpy as np
 
 from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw
+from dynamics.drive.travel import KINDS, Travel
 from dynamics.excitation import Excitation
 from dynamics.friction import DryFriction
 from dynamics.second_order import softened
-from dynamics.travel import KINDS, Travel
 
 
 class Observer(NamedTuple):

@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from dynamics.contact import restitution_damping as restitution_damping
     from dynamics.contact_table import TableContact as TableContact
     from dynamics.damping import with_ratio as with_ratio
+    from dynamics.drive.moving_thrust import MovingThrust as MovingThrust
+    from dynamics.drive.row_table import RowTable as RowTable
+    from dynamics.drive.stick_slip import Pulled as Pulled
+    from dynamics.drive.travel import SCurve as SCurve
+    from dynamics.drive.travel import Stroke as Stroke
+    from dynamics.drive.travel import Travel as Travel
     from dynamics.energy import ENERGIES as ENERGIES
     from dynamics.equilibrium import equilibrium as equilibrium
     from dynamics.excitation import Excitation as Excitation
@@ -32,21 +38,15 @@ if TYPE_CHECKING:
     from dynamics.friction import DryFriction as DryFriction
     from dynamics.gap_system import GapSystem as GapSystem
     from dynamics.gap_system import Observer as Observer
-    from dynamics.integrators import Events as Events
-    from dynamics.integrators import Integrator as Integrator
-    from dynamics.integrators import Splitting as Splitting
-    from dynamics.integrators import simulate as simulate
+    from dynamics.integrators.integrator import Events as Events
+    from dynamics.integrators.integrator import Integrator as Integrator
+    from dynamics.integrators.integrator import Splitting as Splitting
+    from dynamics.integrators.integrator import simulate as simulate
     from dynamics.motion import Motion as Motion
-    from dynamics.moving_thrust import MovingThrust as MovingThrust
     from dynamics.predictability.ensemble import integrate_ensemble as integrate_ensemble
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
-    from dynamics.row_table import RowTable as RowTable
     from dynamics.sided_contact import SidedContact as SidedContact
-    from dynamics.stick_slip import Pulled as Pulled
     from dynamics.trajectory import Trajectory as Trajectory
-    from dynamics.travel import SCurve as SCurve
-    from dynamics.travel import Stroke as Stroke
-    from dynamics.travel import Travel as Travel
     from geometry.axial import Thrust as Thrust
     from geometry.axial import with_compression as with_compression
     from geometry.boom import Boom as Boom
@@ -103,15 +103,15 @@ _HOMES = {
         "dynamics.failure": "NumericsError",
         "dynamics.friction": "DryFriction",
         "dynamics.gap_system": "GapSystem Observer",
-        "dynamics.integrators": "Events Integrator Splitting simulate",
+        "dynamics.integrators.integrator": "Events Integrator Splitting simulate",
         "dynamics.motion": "Motion",
-        "dynamics.moving_thrust": "MovingThrust",
+        "dynamics.drive.moving_thrust": "MovingThrust",
         "dynamics.predictability.ensemble": "integrate_ensemble",
         "dynamics.predictability.horizon": "measure_horizons",
-        "dynamics.row_table": "RowTable",
-        "dynamics.stick_slip": "Pulled",
+        "dynamics.drive.row_table": "RowTable",
+        "dynamics.drive.stick_slip": "Pulled",
         "dynamics.trajectory": "Trajectory",
-        "dynamics.travel": "SCurve Stroke Travel",
+        "dynamics.drive.travel": "SCurve Stroke Travel",
         "geometry.axial": "Thrust with_compression",
         "geometry.boom": "Boom BoomError Cylinder Joint Load PadSize SlidePad Stop",
         "geometry.compression": "Compression",

@@ -26,10 +26,10 @@ from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
-from shell_model.cross_section import Reading
-from shell_model.observers import observers
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.observers import observers
+from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
 
 @dataclass(frozen=True, slots=True)

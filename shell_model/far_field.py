@@ -9,7 +9,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.far_field import FAR_SHIFT, Bent, FarField, far_places
 from shell_model.contact.local_compliance import shell_compliance
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 
 
 def far_field(boom: Boom, number: int, shell: SegmentShell) -> FarField:

@@ -26,7 +26,7 @@ from shell_model.contact.local_compliance import (
     local_compliance,
 )
 from shell_model.contact.surface import without_stiff_modes
-from shell_model.drawn_shell import MOMENTS, DrawnShell
+from shell_model.drive.drawn_shell import MOMENTS, DrawnShell
 from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment

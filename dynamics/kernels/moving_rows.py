@@ -15,9 +15,9 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
+from dynamics.drive.travel import KINDS
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
-from dynamics.travel import KINDS
 
 # Knots of all travels in m, where those of each begin (num_travels + 1,), coefficients of all
 # pieces (num_pieces of all rows, 4, num_modes), and for each stretch of entries in which a row

@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.integrators import Integrator, by_splitting
+from dynamics.integrators.integrator import Integrator, by_splitting
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 

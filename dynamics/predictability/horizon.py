@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.integrators import Integrator, by_splitting
+from dynamics.integrators.integrator import Integrator, by_splitting
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
@@ -169,7 +169,7 @@ def measure_horizons(
         vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
         integrator: how the runs move; unless given by splitting at
-            :func:`dynamics.step.contact_step`.
+            :func:`dynamics.integrators.step.contact_step`.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
         observer: which output is watched.

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.contact import ContactLaw
+from dynamics.drive.stick_slip import FOLLOWED
 from dynamics.energy import DRAWN_ENERGIES
-from dynamics.stick_slip import FOLLOWED
 from dynamics.trajectory import OF_DRIVES, OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (

@@ -8,9 +8,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import History
 from dynamics.excitation import Table as TimeTable
-from dynamics.travel import SCurve, Stroke
 from geometry.boom import BoomError
 from geometry.drive import Carrier, Drive
 from runs.case.limits import MOST_TIMES, In, NotNegative, Number, Positive, Table, Text, described

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
 
+from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
-from dynamics.stick_slip import Pulled
-from dynamics.travel import Travel
 from geometry.boom import Boom, BoomError
 from geometry.drawing import courses, drives_below
 from runs.case.contact import JointTable

@@ -10,12 +10,12 @@ from itertools import count
 import numpy as np
 
 from dynamics.contact import ContactLaw
+from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, followed
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
-from dynamics.travel import Travel
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.cylinder import forces

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.event_driven import TOLERANCE, integrate_events, what_hinders
 from dynamics.failure import NumericsError
-from dynamics.integrators import FEW_MODES
+from dynamics.integrators.event_driven import TOLERANCE, integrate_events, what_hinders
+from dynamics.integrators.integrator import FEW_MODES
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
 from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.pipeline.summary import StepsForPeaks, Trial
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from runs.case import actions
 from runs.case.kinds.model import ModelTable
@@ -23,7 +23,7 @@ from runs.pipeline.models import damped
 if TYPE_CHECKING:
     import xarray as xr
 
-    from dynamics.integrators import Events, Splitting
+    from dynamics.integrators.integrator import Events, Splitting
     from runs.pipeline.summary import Predictability
 
 Progress = Callable[[float], None]
@@ -54,7 +54,7 @@ class Plan:
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: Model) -> Plan:
         """Of a model of a case; raises what :func:`asked` raises."""
-        from dynamics.integrators import Splitting, suited
+        from dynamics.integrators.integrator import Splitting, suited
 
         motion, step = asked(system, case, model)
         given = model.step or case.time.step

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beam_model.statics import drawn_out
+from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
-from dynamics.stick_slip import Pulled
-from dynamics.travel import Travel
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.pulled import pulled_by, with_pulled
@@ -68,7 +68,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     """The largest R in N at rest, under the loads of t = 0 and where drives have drawn it to."""
-    from dynamics.drawn_out import rubbing
+    from dynamics.integrators.drawn_out import rubbing
 
     duration, most = case.time.duration, 0.0
     rests = positions(system, instants(system, duration)) | drawn_positions(system, duration)

@@ -15,7 +15,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
 
-from dynamics.stick_slip import StickSlip
+from dynamics.drive.stick_slip import StickSlip
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
 from shell_model.stress.summary import StressSummary

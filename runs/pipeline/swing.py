@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.drive.travel import Travel
 from dynamics.excitation import followed
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
-from dynamics.travel import Travel
 from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Swing

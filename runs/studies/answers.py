@@ -13,7 +13,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.segment_model import tied_system
-from dynamics.integrators import simulate
+from dynamics.integrators.integrator import simulate
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file

@@ -15,7 +15,7 @@ from runs.report.theme import scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Reference, Refined, error_plot, refined_table
 from runs.studies.study import Held, Piece, Proof, Tell, titled
-from shell_model.forms import DRILLING, DRILLING_OF_CURVED
+from shell_model.segment.forms import DRILLING, DRILLING_OF_CURVED
 from shell_model.verification import benchmarks
 from shell_model.verification.benchmarks import PUBLISHED, SHEAR_RIGID
 from shell_model.verification.plates import OBLIQUE, Patch, SupportedPlate, constant_strains

@@ -17,20 +17,20 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
 from geometry.section import BoxSection
 from runs.studies.motions import SLOW
 from shell_model.contact.wall_points import gauss
-from shell_model.cross_section import Outline, Row
 from shell_model.reduction.krylov import KrylovOptions, reduce_family
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
-from shell_model.shell import Shell
+from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.shell import Shell
 from shell_model.verification.lone_segment import shell_alone
 from shell_model.verification.plates import STEEL
 from shell_model.verification.solid import assemble_solid

@@ -15,9 +15,9 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.condensation import condensed
 from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
+from dynamics.reduction.condensation import condensed
 from geometry.arrays import Array
 from runs.case.kinds.finite_element import FIELDS, FiniteElementTable
 from runs.case.schema import Case, Model

@@ -25,7 +25,7 @@ from runs.studies.refined import Refined, refined_table
 from runs.studies.study import Held, Piece, Proof, Tell, titled
 
 if TYPE_CHECKING:
-    from shell_model.segment_shell import SegmentShell
+    from shell_model.segment.segment_shell import SegmentShell
 
 # Allowed of the local compliance and of a pressed wall.
 ALLOWED = 0.01

@@ -14,8 +14,8 @@ from scipy.signal import find_peaks
 from dynamics.damping import pressed_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from runs import CASES
 from runs.case import reading as case_file

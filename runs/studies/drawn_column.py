@@ -18,7 +18,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.travel import SCurve
+from dynamics.drive.travel import SCurve
 from geometry.arrays import Array
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Joint, Segment

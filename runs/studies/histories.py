@@ -9,8 +9,8 @@ import numpy as np
 
 from dynamics.excitation import Excitation, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from runs.studies.study import Held, Proof, Tell, titled
 

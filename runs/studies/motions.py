@@ -17,9 +17,9 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
@@ -36,9 +36,9 @@ from runs.pipeline.motion import Plan
 CASE = CASES / "friction-walk.toml"
 
 OUTPUT_STEP = 1.0e-3
-# Of the highest frequency of the contacts, see dynamics.step: about the step of the case itself. A
-# third of it changes the tip by 0.02 % of its range in a second at the paper's play and ten times
-# its load.
+# Of the highest frequency of the contacts, see dynamics.integrators.step: about the step of the
+# case itself. A third of it changes the tip by 0.02 % of its range in a second at the paper's play
+# and ten times its load.
 PHASE = 0.2
 
 _Task = TypeVar("_Task")

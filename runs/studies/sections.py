@@ -13,8 +13,8 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Joint, Material, Segment, Support
 from geometry.contact_places import Stretch
@@ -30,7 +30,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)

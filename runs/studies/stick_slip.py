@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.drive.stick_slip import Followed, Pulled, follow
+from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import Table as Ways
-from dynamics.stick_slip import Followed, Pulled, follow
 from dynamics.trajectory import Trajectory
-from dynamics.travel import SCurve, Stroke
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, TO_PERCENT
 from protractile.cases import change

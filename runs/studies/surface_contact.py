@@ -31,8 +31,8 @@ from runs.studies.motions import (
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
 from runs.studies.study import Piece, Plot, Proof, Tell, titled
 
-# Of the highest frequency of the contacts, see dynamics.step: thrice what a run would take, which
-# changes the tip with friction by less than 0.1 % of its range.
+# Of the highest frequency of the contacts, see dynamics.integrators.step: thrice what a run would
+# take, which changes the tip with friction by less than 0.1 % of its range.
 PHASE = 0.1
 # Beyond the play, in m: how deep the approaches of the proofs go.
 DEPTH = 1.0e-3

@@ -81,7 +81,7 @@ def measure(results: Results, model: str) -> Measured:
     feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
     own over a patch, the damage that of a life at the worst place. Swings are those of
     :class:`runs.pipeline.answers.Swing`; force and slip of drives of a given stiffness are those of
-    :class:`dynamics.stick_slip.StickSlip`.
+    :class:`dynamics.drive.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)

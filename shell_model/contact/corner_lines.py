@@ -16,8 +16,8 @@ from geometry.arrays import Array, Indices
 from geometry.contact_places import Stretch
 from geometry.section import COMPONENT, Direction
 from geometry.walls_along import WallsAlong
-from shell_model.cross_section import Row, quadratic
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Row, quadratic
+from shell_model.segment.segment_shell import SegmentShell
 
 
 class _Line(NamedTuple):

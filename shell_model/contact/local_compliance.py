@@ -17,10 +17,10 @@ import numpy as np
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from geometry.arrays import Array
-from shell_model.cross_section import Reading
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
 
 # Hz: above rigid motion, below all elastic motion.
 SLOW = 20.0

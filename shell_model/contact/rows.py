@@ -31,8 +31,8 @@ from shell_model.contact.stations import (
 )
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_points import WallPoints
-from shell_model.cross_section import Outline, Reading, Row
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Outline, Reading, Row
+from shell_model.segment.segment_shell import SegmentShell
 
 
 @dataclass(frozen=True, slots=True)

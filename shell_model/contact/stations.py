@@ -18,7 +18,7 @@ from geometry.rests import Rest
 from geometry.section import Direction, Section, Side
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
-from shell_model.cross_section import Reading, Row
+from shell_model.segment.cross_section import Reading, Row
 
 _SIDES: tuple[Side, Side] = (1, -1)
 

@@ -21,10 +21,10 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.contact_places import Pad
 from shell_model.contact.wall_points import Wall, WallPoints, gauss
-from shell_model.cross_section import Reading
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
 
 # The part of a row's flexibility that may be left out. With it the tip of the paper's boom with
 # friction moves by 0.01 % of its range.

@@ -16,8 +16,8 @@ from geometry.arrays import Array, Indices
 from geometry.section import COMPONENT, Direction
 from geometry.walls_along import WallsAlong
 from shell_model import compat
-from shell_model.cross_section import Row
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Row
+from shell_model.segment.segment_shell import SegmentShell
 
 # A point this far outside a triangle, in barycentric coordinates, lies on its edge.
 _ON_EDGE = 1.0e-8

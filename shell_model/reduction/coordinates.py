@@ -12,9 +12,9 @@ from scipy.linalg import block_diag, eigh, null_space
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.cylinder import GroundLine
-from shell_model.cross_section import Reading
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
 
 # What holds less than this part of what holds most, holds nothing.
 ROUND_OFF = 1.0e-9

@@ -23,7 +23,7 @@ from geometry.arrays import Array
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
 # and of the fastest spring.

@@ -27,7 +27,7 @@ from geometry.arrays import Array, Mask
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 
 __all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
 

@@ -8,7 +8,7 @@ from petsc4py import PETSc
 
 from geometry.arrays import Array
 from shell_model.reduction.products import dense
-from shell_model.shell import Shell
+from shell_model.segment.shell import Shell
 
 # MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as
 # little fill as those that cut it into parts, and is found in half the time. PETSc heeds it as an

@@ -25,8 +25,6 @@ from geometry.boom import Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
 from shell_model import compat
-from shell_model.contact.attachments import Attached
-from shell_model.plates import assemble_plates
 from shell_model.reduction.mirror import (
     Family,
     components,
@@ -38,8 +36,10 @@ from shell_model.reduction.mirror import (
     quarter_of,
     rows_of,
 )
-from shell_model.segment_shell import SegmentShell
-from shell_model.shell import Matrices, Shell, free_rows, hold, owned_nodes
+from shell_model.segment.attachments import Attached
+from shell_model.segment.plates import assemble_plates
+from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.shell import Matrices, Shell, free_rows, hold, owned_nodes
 
 _Found = TypeVar("_Found")
 

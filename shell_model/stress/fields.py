@@ -21,8 +21,8 @@ from geometry.plating import PlatedMesh
 from geometry.segment import Segment
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment_shell import SegmentShell
-from shell_model.shell import ON_LINE
+from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.shell import ON_LINE
 from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import COMPONENTS, Modes
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from geometry.arrays import Array, Indices
 from geometry.boom import Material
-from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
+from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from shell_model.verification.static_shell import StaticShell, hold
 
 X, Y, Z = 0, 1, 2

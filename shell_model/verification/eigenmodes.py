@@ -12,7 +12,7 @@ from slepc4py import SLEPc
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.shell import Shell
+from shell_model.segment.shell import Shell
 
 
 def natural_frequencies(shell: Shell, count: int) -> Array:

@@ -23,7 +23,7 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from shell_model.reduction.products import gram
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 
 # Relative residual of the accelerations at the start.
 _START = 1.0e-12

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from geometry.arrays import Array, Indices
 from geometry.boom import Material
-from shell_model.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
-from shell_model.shell import ON_LINE
+from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
+from shell_model.segment.shell import ON_LINE
 from shell_model.verification.benchmarks import X, Y, Z, grid
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.static_shell import StaticShell, hold

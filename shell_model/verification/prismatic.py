@@ -12,8 +12,8 @@ from geometry.arrays import Array, Indices
 from geometry.mesh import mesh_segment
 from geometry.plating import plain_thickness
 from geometry.section import Section
-from shell_model.cross_section import Outline
-from shell_model.forms import DRILLING
+from shell_model.segment.cross_section import Outline
+from shell_model.segment.forms import DRILLING
 from shell_model.verification.benchmarks import X, Y, Z, grid
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.plates import STEEL

@@ -24,10 +24,10 @@ from geometry.arrays import Array, Indices
 from geometry.boom import Material, Segment, Support
 from geometry.section import BoxSection
 from shell_model import compat
-from shell_model.contact.attachments import Attached
-from shell_model.cross_section import Outline, Row
 from shell_model.reduction.mirror import Family, on_plane
-from shell_model.shell import ON_LINE, Matrices, Shell
+from shell_model.segment.attachments import Attached
+from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.shell import ON_LINE, Matrices, Shell
 from shell_model.verification.solid_mesh import SolidMesh
 
 

@@ -24,8 +24,8 @@ from dynamics.energy import ENERGIES, ENERGY_BOUND, check_energy, energy_residua
 from geometry.arrays import Array
 from geometry.boom import BoomError
 from shell_model.boom_shell import BoomShell
-from shell_model.cross_section import Reading, Row
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading, Row
+from shell_model.segment.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha, SegmentStepper
 from shell_model.verification.resisting_rows import ResistingRows
 

@@ -17,9 +17,9 @@ from scipy.linalg import block_diag
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
+from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.travel import SCurve
 from geometry.boom import Boom, Segment
 from geometry.drive import Drive
 

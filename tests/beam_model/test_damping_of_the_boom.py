@@ -16,8 +16,8 @@ from dynamics.contact import PowerContact
 from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom
 
 LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)

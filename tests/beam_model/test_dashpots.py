@@ -18,8 +18,8 @@ from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_ratios
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Segment, Support
 

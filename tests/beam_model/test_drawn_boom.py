@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from beam_model.systems import finite_element_system, kantorovich_system
+from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Table
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Splitting
+from dynamics.integrators.integrator import Splitting
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.travel import SCurve, Stroke, Together
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive
 from tests.beam_model.drawn import DRAWN, LAW, runge_kutta, shifted, telescope, tips

@@ -18,11 +18,11 @@ from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from beam_model.systems import finite_element_system
 from dynamics.arrays import Array
+from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.travel import SCurve, Stroke
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
 from geometry.drive import Carrier, Drive

@@ -14,8 +14,8 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom
 
 # Nearly three times the default step: what is shown here does not need that.

@@ -17,8 +17,8 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom, Segment, Support
 
 Models = Callable[..., list[SegmentModel]]

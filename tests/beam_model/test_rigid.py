@@ -14,8 +14,8 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom, PointMass, Support
 
 LAW = PowerContact(stiffness=2.0e6, exponent=1.0, clearance=7.0e-3)

@@ -15,8 +15,8 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
 

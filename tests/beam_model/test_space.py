@@ -16,8 +16,8 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment, Stop, Support

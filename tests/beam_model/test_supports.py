@@ -17,8 +17,8 @@ from beam_model.kantorovich import Base, kantorovich_bending
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Step
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies

@@ -14,8 +14,8 @@ from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Ramp, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
 # Of a body of 1 kg in N, of what it lies on in N/m.

@@ -9,10 +9,10 @@ from scipy.integrate import trapezoid
 
 from dynamics.contact import PowerContact, energy_of, force_of
 from dynamics.contact_table import TableContact
-from dynamics.event_driven import what_hinders
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.event_driven import what_hinders
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
 DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)

@@ -12,17 +12,17 @@ import pytest
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, PowerContact
-from dynamics.drawn_out import integrate_drawn
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import SCurve, Stroke, Together, Travel
 from dynamics.energy import ENERGY_BOUND
-from dynamics.event_driven import integrate_events, what_hinders
 from dynamics.excitation import Excitation, History, Ramp, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import Events, Splitting, suited
+from dynamics.integrators.drawn_out import integrate_drawn
+from dynamics.integrators.event_driven import integrate_events, what_hinders
+from dynamics.integrators.integrator import Events, Splitting, suited
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.row_table import RowTable
-from dynamics.splitting import integrate
-from dynamics.travel import SCurve, Stroke, Together, Travel
 
 # A simply supported beam: length in m, E J in N·m², mass per length in kg/m.
 LENGTH, STIFFNESS, MASS = 10.0, 1.0e7, 100.0

@@ -15,10 +15,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from dynamics.event_driven import integrate_events
 from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
-from dynamics.integrators import Events, Integrator, Splitting
+from dynamics.integrators.event_driven import integrate_events
+from dynamics.integrators.integrator import Events, Integrator, Splitting
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import (
     Member,
@@ -30,7 +31,6 @@ from dynamics.predictability.ensemble import (
     run_members,
 )
 from dynamics.sided_contact import SidedContact
-from dynamics.splitting import integrate
 from tests.dynamics.test_closed_contacts import boom
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 

@@ -14,8 +14,8 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import Boom
 
 

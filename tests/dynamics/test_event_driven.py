@@ -14,14 +14,14 @@ import pytest
 from scipy.special import gamma
 
 from dynamics.contact import PowerContact
-from dynamics.event_driven import integrate_events, what_hinders
 from dynamics.excitation import Excitation, Ramp
 from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, Splitting
+from dynamics.integrators.event_driven import integrate_events, what_hinders
+from dynamics.integrators.integrator import Events, Splitting
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from tests.dynamics.one_stop import reference_states, two_modes
 

@@ -15,10 +15,10 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table, followed
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, suited
+from dynamics.integrators.integrator import Events, suited
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from runs.studies.histories import KINKED, OMEGAS, masses, response
 
 OneMass = Callable[..., GapSystem]

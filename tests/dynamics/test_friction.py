@@ -17,8 +17,8 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, Sine
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
 OneMass = Callable[..., GapSystem]

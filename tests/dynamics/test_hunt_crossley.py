@@ -12,8 +12,8 @@ import pytest
 
 from dynamics.contact import PowerContact, restitution_damping
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 
 OneMass = Callable[..., GapSystem]
 

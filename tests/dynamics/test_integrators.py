@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.event_driven import integrate_events
-from dynamics.integrators import (
+from dynamics.integrators.event_driven import integrate_events
+from dynamics.integrators.integrator import (
     FEW_MODES,
     Events,
     Integrator,
@@ -19,9 +19,9 @@ from dynamics.integrators import (
     simulate,
     suited,
 )
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from tests.dynamics.two_stops import CHAOTIC
 
 MOTION = Motion(CHAOTIC, 2.0, 1e-2, np.array([0.01, 0.0]), np.array([0.5, -1.0]))

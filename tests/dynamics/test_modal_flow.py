@@ -10,9 +10,9 @@ import pytest
 from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.kernels.modal_flow import ModalFlow, tabulate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 
 # ω² in rad²/s², c in 1/s, load in N/√kg
 MODES = {

@@ -13,15 +13,15 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
+from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Table
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.splitting import integrate
 from dynamics.kernels.moving_thrusts import press_along, thrust_arrays
 from dynamics.motion import Motion
-from dynamics.moving_thrust import MovingThrust
-from dynamics.row_table import RowTable
-from dynamics.splitting import integrate
-from dynamics.travel import SCurve, Travel
 
 # Sines of a beam of 10 m, from its middle on, in two planes that share no mode.
 WAVES = np.pi * np.arange(1, 4) / 10.0

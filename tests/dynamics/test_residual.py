@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.condensation import condensed
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.residual import elastic_compliance, residual_compliance, with_springs
+from dynamics.reduction.condensation import condensed
+from dynamics.reduction.residual import elastic_compliance, residual_compliance, with_springs
 
 MODES = 60
 

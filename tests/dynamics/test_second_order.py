@@ -14,10 +14,10 @@ from dynamics.damping import pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Ramp
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import Splitting, suited
+from dynamics.integrators.integrator import Splitting, suited
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.second_order import buckling_factor, softened
-from dynamics.splitting import integrate
 
 MASS, NEGATIVE, STIFFNESS, CLEARANCE = 3.0, -48.0, 1.0e6, 0.01
 GROWTH = np.sqrt(-NEGATIVE / MASS)

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from dynamics.contact import ContactLaw, PowerContact, contact_limits
-from dynamics.event_driven import what_hinders
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators.event_driven import what_hinders
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.sided_contact import SidedContact
-from dynamics.splitting import integrate
 
 NEAR = PowerContact(1.0e6, 1.0, clearance=4.0e-3)
 FAR = PowerContact(2.0e9, 2.0, clearance=10.0e-3)

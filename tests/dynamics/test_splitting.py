@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics import splitting
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrators import splitting
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import DRAGGED, PHASE
 from dynamics.kernels.modal_flow import ModalFlow
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import DRAGGED, PHASE
 from dynamics.trajectory import Trajectory
 from tests.dynamics.one_stop import reference_states, two_modes
 

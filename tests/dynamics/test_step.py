@@ -13,7 +13,7 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, Ramp, Sine, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.step import (
+from dynamics.integrators.step import (
     PHASE,
     closing_speeds,
     contact_frequencies,

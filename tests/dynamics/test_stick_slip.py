@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dynamics.arrays import Array
+from dynamics.drive.stick_slip import Followed, Pulled, follow
+from dynamics.drive.travel import SCurve, Stroke
 from dynamics.excitation import Table
-from dynamics.stick_slip import Followed, Pulled, follow
-from dynamics.travel import SCurve, Stroke
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0
 OMEGA = np.sqrt(STIFFNESS / MASS)

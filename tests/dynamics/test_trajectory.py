@@ -15,9 +15,9 @@ from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import Events, Splitting
+from dynamics.integrators.integrator import Events, Splitting
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=1.0e-2)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import Travel
 from dynamics.excitation import Excitation, History, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem
-from dynamics.row_table import RowTable
-from dynamics.travel import Travel
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from dynamics.event_driven import TOLERANCE, integrate_events
+from dynamics.integrators.event_driven import TOLERANCE, integrate_events
 from dynamics.motion import Motion
 from runs.case import reading as case_file
 from runs.studies.cost.bench import (

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
-from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom

@@ -11,7 +11,7 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.failure import StepTooLong
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, Splitting
+from dynamics.integrators.integrator import Events, Splitting
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from protractile.cases import change

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from dynamics.drive.travel import SCurve
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
-from dynamics.travel import SCurve
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.drive import Drive
 from geometry.section import BoxSection

@@ -12,13 +12,13 @@ import xarray as xr
 from matplotlib.figure import Figure as Sheet
 
 from dynamics.contact import PowerContact
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import SCurve, Travel
 from dynamics.excitation import Excitation, History, Ramp, Sine, Table
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import simulate
-from dynamics.row_table import RowTable
+from dynamics.integrators.integrator import simulate
 from dynamics.trajectory import Trajectory
-from dynamics.travel import SCurve, Travel
 from protractile.cases import run_case
 from runs import CASES
 from runs.case.reading import load

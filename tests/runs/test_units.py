@@ -18,10 +18,10 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.event_driven import integrate_events
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.event_driven import integrate_events
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
 from geometry.section import BoxSection

@@ -9,8 +9,8 @@ import pytest
 
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from protractile.cases import run_case
 from runs.case.build import build_boom, contact_laws
 from runs.case.contact import ContactTable

@@ -18,9 +18,9 @@ from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection, Section
 from geometry.unequal_box import UnequalBox
-from shell_model.cross_section import Row
 from shell_model.reduction.segment import ShiftedSolver
-from shell_model.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.cross_section import Row
+from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)

@@ -14,8 +14,8 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
 from shell_model.boom_shell import ShellOptions

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.boom import BoomError
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions

@@ -17,16 +17,16 @@ from scipy.linalg import eigh
 from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
 from dynamics.gap_builder import GapBuilder, Observed
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Direction, Stop
 from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.contact.rows import Touching
-from shell_model.cross_section import Reading
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
 from shell_model.verification.generalised_alpha import GeneralisedAlpha
 from shell_model.verification.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments

@@ -12,11 +12,11 @@ from scipy.linalg import eigh
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
+from dynamics.drive.travel import Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.travel import Stroke
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom
 from geometry.drive import Drive

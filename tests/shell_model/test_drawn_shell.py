@@ -12,13 +12,13 @@ from mpi4py import MPI
 
 from beam_model.systems import finite_element_system
 from dynamics.contact import PowerContact
+from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
-from dynamics.travel import SCurve
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.drive import Drive

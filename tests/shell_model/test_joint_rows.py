@@ -16,15 +16,15 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions
-from shell_model.cross_section import Reading, Row
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
+from shell_model.segment.cross_section import Reading, Row
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
 
 

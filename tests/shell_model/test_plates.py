@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.plates import SupportedPlate
 from shell_model.verification.prismatic import ANGLE, PlainBox

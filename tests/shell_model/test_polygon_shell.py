@@ -14,8 +14,8 @@ from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import (
     Boom,
@@ -35,11 +35,11 @@ from runs.studies import sections
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints
-from shell_model.cross_section import Row
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Row
+from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import UNEQUAL
 

@@ -16,7 +16,7 @@ from shell_model.reduction.segment import (
     ShiftedSolver,
     reduce_segment,
 )
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD
 

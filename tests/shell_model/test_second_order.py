@@ -22,7 +22,7 @@ from geometry.boom import Boom, Collar, Joint, Segment, Support
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions, segment_mesh
 from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.segment_shell import assemble_segment
+from shell_model.segment.segment_shell import assemble_segment
 from tests.shell_model.booms import STEEL
 
 # Walls so thick that they do not buckle by themselves.

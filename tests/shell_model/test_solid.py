@@ -20,12 +20,12 @@ from geometry.boom import Collar, PointMass, Segment, Support
 from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection
-from shell_model.cross_section import Outline
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.products import quadratic_form, times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
-from shell_model.segment_shell import assemble_segment
+from shell_model.segment.cross_section import Outline
+from shell_model.segment.segment_shell import assemble_segment
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.solid import SolidFamily, assemble_solid
 from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter

@@ -13,8 +13,8 @@ from mpi4py import MPI
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, PadSize, SlidePad
 from geometry.contact_places import ContactLine
@@ -24,10 +24,10 @@ from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.contact.wall_points import Wall, WallPoints
-from shell_model.cross_section import COMPONENT
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import COMPONENT
+from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX
 

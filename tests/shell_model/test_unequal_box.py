@@ -20,7 +20,7 @@ from geometry.unequal_box import UnequalBox
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LAW, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, UNEQUAL
 

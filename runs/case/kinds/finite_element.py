@@ -94,7 +94,7 @@ class FiniteElementTable(CalibratedTable):
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        from dynamics.condensation import condensed
+        from dynamics.reduction.condensation import condensed
 
         if not self.section_fields:
             return super().moving(built, shell, boom)

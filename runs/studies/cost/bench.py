@@ -22,12 +22,12 @@ import numpy as np
 from rich.console import Console
 
 from dynamics.contact import PowerContact
-from dynamics.event_driven import TOLERANCE
 from dynamics.gap_system import GapSystem
-from dynamics.integrators import Events, Integrator, by_splitting
+from dynamics.integrators.event_driven import TOLERANCE
+from dynamics.integrators.integrator import Events, Integrator, by_splitting
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
-from dynamics.splitting import integrate
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom

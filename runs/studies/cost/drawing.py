@@ -13,9 +13,9 @@ from importlib.util import find_spec
 from time import process_time
 from typing import Any, NamedTuple
 
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from protractile.cases import change
 from runs import CASES
 from runs.case import reading as case_file

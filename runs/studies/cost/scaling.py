@@ -23,8 +23,8 @@ from rich.console import Console
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
 from dynamics.trajectory import Trajectory
 from runs import CASES
 from runs.case import reading as case_file

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.row_table import RowTable
+from dynamics.drive.row_table import RowTable
 
 # i + j + 1 of the powers in slopes: ∫₀¹ uⁱ uʲ du is one over it.
 _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))

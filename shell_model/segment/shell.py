@@ -16,8 +16,8 @@ from scipy.linalg import block_diag, null_space, qr
 
 from geometry.arrays import Array, Indices, Mask
 from shell_model import compat
-from shell_model.contact.attachments import Attached
-from shell_model.forms import ShellForms
+from shell_model.segment.attachments import Attached
+from shell_model.segment.forms import ShellForms
 
 # Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
 ON_LINE = 1.0e-7

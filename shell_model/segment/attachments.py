@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from geometry.arrays import Array
 from geometry.boom import Direction, Segment
-from shell_model.cross_section import Outline, Row
+from shell_model.segment.cross_section import Outline, Row
 
 # What holds a turn of the section at a support, over G J_t / L or E J / L of its segment: no
 # segment can tell it from a rigid hold.

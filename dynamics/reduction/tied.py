@@ -24,7 +24,7 @@ def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, A
     """The tied system, whose stations are those of the ground, and (num_modes, num_tied_modes) what
     its coordinates are in those of the other.
 
-    >>> from dynamics.tied import tied_system
+    >>> from dynamics.reduction.tied import tied_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
     ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
     ...     released=np.zeros(2), thrown=np.zeros(2), dashpots=np.zeros((0, 2)),

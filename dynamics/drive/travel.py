@@ -16,10 +16,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from dynamics.arrays import Array
+from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.stick_slip import Pulled
 from dynamics.excitation import History
-from dynamics.moving_thrust import MovingThrust
-from dynamics.row_table import RowTable
-from dynamics.stick_slip import Pulled
 
 # The rows of a gap system that may change with time, in the order in which loops stack them.
 Kind = Literal["rows", "friction_rows", "dashpots"]

@@ -20,6 +20,7 @@ from dynamics.contact import Terms, contact_limits, contact_terms
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.step import closing_speeds
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_series import (
     Series,
@@ -33,7 +34,6 @@ from dynamics.kernels.contact_series import (
 from dynamics.kernels.flight import jump, pulls, safe_time, tabulate
 from dynamics.kernels.terms import term_force
 from dynamics.motion import Motion
-from dynamics.step import closing_speeds
 from dynamics.trajectory import Trajectory
 
 # Truncation of a series, as a part of the motion: an energy residual of about 1e-9 on the paper's

@@ -12,16 +12,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dynamics.moving_thrust import MovingThrust
-from dynamics.row_table import RowTable
+from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import RowTable
 from geometry.arrays import Array
 from geometry.axial import Entry, entry
 from geometry.boom import SAME_PLACE, Boom
 from geometry.drawing import Course
 from geometry.drive import Drive
 from shell_model.boom_shell import BoomShell
-from shell_model.cross_section import Reading
 from shell_model.reduction.coordinates import BoomCoordinates
+from shell_model.segment.cross_section import Reading
 from shell_model.stress.stresses import lines_around
 
 

@@ -10,11 +10,11 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.event_driven import TOLERANCE, integrate_events, what_hinders
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.event_driven import TOLERANCE, integrate_events, what_hinders
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
-from dynamics.splitting import integrate
-from dynamics.step import contact_step
 from dynamics.trajectory import Trajectory
 
 # Up to so many modes jumps and series take less time than steps, whatever the exponent, for an
@@ -38,7 +38,7 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Splitting:
-    """:func:`dynamics.splitting.integrate` at a step in s.
+    """:func:`dynamics.integrators.splitting.integrate` at a step in s.
 
     >>> motion = pt.Splitting(step=1e-5)(pt.Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.energy_residual < 1e-4
@@ -63,7 +63,7 @@ class Splitting:
 
 @dataclass(frozen=True, slots=True)
 class Events:
-    """:func:`dynamics.event_driven.integrate_events` at a tolerance.
+    """:func:`dynamics.integrators.event_driven.integrate_events` at a tolerance.
 
     >>> motion = pt.Events()(pt.Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.energy_residual < 1e-9
@@ -90,7 +90,7 @@ class Events:
 
 
 def by_splitting(motion: Motion) -> Splitting:
-    """At the step that :func:`dynamics.step.contact_step` finds for the initial state."""
+    """At the :func:`dynamics.integrators.step.contact_step` of the initial state."""
     return Splitting(contact_step(motion.system, motion.output_step, motion.initial_speeds))
 
 

@@ -13,9 +13,9 @@ from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT
 from geometry.segment import Segment
 from shell_model import compat
-from shell_model.cross_section import on_outline
-from shell_model.forms import ShellForms
-from shell_model.shell import Hold, Plates, hold
+from shell_model.segment.cross_section import on_outline
+from shell_model.segment.forms import ShellForms
+from shell_model.segment.shell import Hold, Plates, hold
 
 
 def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> Plates:

@@ -5,9 +5,10 @@ The splitting with the row of the time of the impulse. A gap's rate is ẏ = B �
 and contact damping act on all of it. Contact forces do −F B ȧ on the modes and store F ẏ, and the
 rest, ∫ ṡ Σ F B′ a dt, is the work of the drive, negative where a boom slides out downhill. Pads rub
 along the boom as well: the drive's force against them is μ Σ|N| sign(ṡ), which no mode feels, and
-what a drive of a given stiffness draws against it may stick and slip (:mod:`dynamics.stick_slip`).
-What an axial force softens as its place moves along is a smooth force K_G(s) a beside the
-contacts', at both ends of a step, and −½ ṡ N (w′ a)² the power of the drive at it.
+what a drive of a given stiffness draws against it may stick and slip
+(:mod:`dynamics.drive.stick_slip`). What an axial force softens as its place moves along is a smooth
+force K_G(s) a beside the contacts', at both ends of a step, and −½ ṡ N (w′ a)² the power of the
+drive at it.
 """
 
 from __future__ import annotations
@@ -19,9 +20,12 @@ import numpy as np
 
 from dynamics.arrays import Array, Indices
 from dynamics.contact import contact_limits, contact_terms
+from dynamics.drive.stick_slip import FOLLOWED, follow
+from dynamics.drive.travel import Travel
 from dynamics.energy import DRAWN_ENERGIES
 from dynamics.excitation import Excitation
 from dynamics.gap_system import GapSystem
+from dynamics.integrators.record import Record
 from dynamics.kernels.drawn_steps import Rows, Still, march_drawn, space_for
 from dynamics.kernels.drawn_strides import strides_for, strides_over
 from dynamics.kernels.integrator_state import (
@@ -32,16 +36,13 @@ from dynamics.kernels.integrator_state import (
 from dynamics.kernels.moving_rows import row_tables, stacked_rows
 from dynamics.kernels.moving_thrusts import pushed_by, thrust_arrays
 from dynamics.motion import Motion
-from dynamics.record import Record
-from dynamics.stick_slip import FOLLOWED, follow
 from dynamics.trajectory import OF_DRIVES, Trajectory
-from dynamics.travel import Travel
 
 
 def integrate_drawn(
     motion: Motion, step: float, energy_bound: float, progress: Callable[[float], None] | None
 ) -> Trajectory:
-    """Move a system whose rows move, as :func:`dynamics.splitting.integrate` does.
+    """Move a system whose rows move, as :func:`dynamics.integrators.splitting.integrate` does.
 
     Args:
         motion: its loads are gathered.

@@ -15,17 +15,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.condensation import fewer
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import KINDS, Travel
 from dynamics.gap_system import GapSystem
-from dynamics.residual import with_coordinates
-from dynamics.row_table import RowTable
-from dynamics.travel import KINDS, Travel
+from dynamics.reduction.condensation import fewer
+from dynamics.reduction.residual import with_coordinates
 from geometry.arrays import Array, Mask
 from geometry.axial import borne
 from geometry.boom import Boom
 from shell_model.boom_shell import BoomShell
-from shell_model.contact.passage import Passage, passages
-from shell_model.moving_thrusts import moving_thrusts
+from shell_model.drive.moving_thrusts import moving_thrusts
+from shell_model.drive.passage import Passage, passages
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, Answers, answers, springs, squared
 from shell_model.reduction.segment import ReducedSegment

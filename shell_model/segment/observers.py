@@ -9,8 +9,8 @@ from functools import partial
 from dynamics.gap_builder import Observed
 from geometry.boom import Boom
 from geometry.observation import Quantity, Read
-from shell_model.cross_section import Outline, Reading, Row
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Outline, Reading, Row
+from shell_model.segment.segment_shell import SegmentShell
 
 
 def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:

@@ -24,10 +24,12 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.closed_contacts import ClosedContacts, closable, pressing
 from dynamics.contact import Limits, Terms, contact_limits, contact_terms
-from dynamics.drawn_out import integrate_drawn
 from dynamics.energy import ENERGIES, ENERGY_BOUND
+from dynamics.integrators.closed_contacts import ClosedContacts, closable, pressing
+from dynamics.integrators.drawn_out import integrate_drawn
+from dynamics.integrators.record import Record
+from dynamics.integrators.step import DRAGGED, contact_step
 from dynamics.kernels.contact_kicks import (
     add_closed_forces,
     contact_energy,
@@ -64,8 +66,6 @@ from dynamics.kernels.modal_flow import (
 from dynamics.kernels.pressed_steps import pressed_steps
 from dynamics.kernels.strides import STRIDES, closing_bounds, dragged_speeds, safe_stride
 from dynamics.motion import Motion
-from dynamics.record import Record
-from dynamics.step import DRAGGED, contact_step
 from dynamics.trajectory import Trajectory
 
 # How many steps may be made at once while contacts stay closed, which dashpots and the recorded

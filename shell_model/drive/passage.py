@@ -10,15 +10,15 @@ from itertools import pairwise
 import numpy as np
 from mpi4py import MPI
 
+from dynamics.drive.travel import KINDS, Kind
 from dynamics.gap_builder import GapBuilder
-from dynamics.travel import KINDS, Kind
 from geometry.arrays import Array, Mask
 from geometry.boom import Boom
 from geometry.drawing import Course, courses
 from shell_model.boom_shell import BoomShell
-from shell_model.cross_section import Reading
 from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.segment_shell import SegmentShell
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
 
 # Places along a way, however short it is.
 _FEWEST = 4
