@@ -1,64 +1,29 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The force between two segments that touch across a play.
-
-A contact law is a sum of one-sided powers of the penetration. What these few numbers say is said
-here once, for Python and for the compiled loops; the potential stands beside the force, because
-the energy ledger of every trajectory is the first check of a contact simulation.
-"""
+"""The force between two segments that touch across a play: laws, as sums of one-sided powers."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from dynamics.arrays import Array
-
-# (num_terms,) of TERM; (num_rows,) of LIMITS.
-Terms = npt.NDArray[np.void]
-Limits = npt.NDArray[np.void]
-
-# What a term says of a gap.
-OfTerm = Callable[[np.void, float], float]
-
-# A term of the law of a row.
-TERM = np.dtype(
-    [
-        ("row", np.int64),
-        ("side", np.float64),
-        ("stiffness", np.float64),
-        ("onset", np.float64),
-        ("exponent", np.float64),
-    ]
+from dynamics.contact_term import (
+    LIMITS,
+    TERM,
+    Limits,
+    OfTerm,
+    Term,
+    Terms,
+    energy_of,
+    force_of,
+    slope_of,
 )
-# The gaps in m between which a row is open, and its damping in s/m.
-LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
 
 # In m, N and J: smaller than any that matters; and the logarithm of a penetration beyond all.
 _LEAST, _DEEPEST = 1.0e-300, 500.0
-
-
-class Term(NamedTuple):
-    """F = side · k max(side · y − onset, 0)ⁿ.
-
-    >>> pt.PowerContact(1e6, 1.0, clearance=0.01).lower().terms
-    (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)
-
-    Args:
-        side: 1 where a positive y presses, −1 where a negative one does.
-        stiffness: k in N/mⁿ; negative where a law becomes softer.
-        onset: in m from y = 0 on its side.
-        exponent: n, at least 1.
-    """
-
-    side: float
-    stiffness: float
-    onset: float
-    exponent: float
 
 
 class ContactLaw(ABC):
@@ -263,34 +228,6 @@ def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
     """Where rows touch, for the compiled loops; infinite on a side where one never does."""
 
     return np.array([(-law._onset(-1.0), law._onset(1.0), law.damping) for law in laws], LIMITS)
-
-
-def force_of(term: np.void, y: float) -> float:
-    """Force in N of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
-    power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
-    return float(term["side"] * term["stiffness"] * power)
-
-
-def energy_of(term: np.void, y: float) -> float:
-    """Potential in J of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
-    return float(term["stiffness"] * depth ** (n + 1.0) / (n + 1.0))
-
-
-def slope_of(term: np.void, y: float) -> float:
-    """dF/dy in N/m of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
-    return float(n * term["stiffness"] * depth ** (n - 1.0))
 
 
 def restitution_damping(restitution: float, speed: float) -> float:

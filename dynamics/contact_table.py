@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from dynamics.contact import ContactLaw, Term
+from dynamics.contact import ContactLaw
+from dynamics.contact_term import Term
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,14 +12,8 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from dynamics.arrays import Array
-from dynamics.contact import (
-    OfTerm,
-    Terms,
-    contact_terms,
-    energy_of,
-    force_of,
-    slope_of,
-)
+from dynamics.contact import contact_terms
+from dynamics.contact_term import OfTerm, Terms, energy_of, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 

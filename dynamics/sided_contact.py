@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from dynamics.contact import ContactLaw, Term
+from dynamics.contact import ContactLaw
+from dynamics.contact_term import Term
 
 
 @dataclass(frozen=True, slots=True)

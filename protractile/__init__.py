@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from beam_model.systems import kantorovich_system as kantorovich_system
     from dynamics.contact import ContactLaw as ContactLaw
     from dynamics.contact import PowerContact as PowerContact
-    from dynamics.contact import Term as Term
     from dynamics.contact import restitution_damping as restitution_damping
     from dynamics.contact_table import TableContact as TableContact
+    from dynamics.contact_term import Term as Term
     from dynamics.damping import with_ratio as with_ratio
     from dynamics.drive.moving_thrust import MovingThrust as MovingThrust
     from dynamics.drive.row_table import RowTable as RowTable
@@ -93,7 +93,8 @@ _HOMES = {
     for module, names in {
         "beam_model.segment_model": "tied_system",
         "beam_model.systems": "finite_element_system kantorovich_system",
-        "dynamics.contact": "ContactLaw PowerContact Term restitution_damping",
+        "dynamics.contact": "ContactLaw PowerContact restitution_damping",
+        "dynamics.contact_term": "Term",
         "dynamics.contact_table": "TableContact",
         "dynamics.sided_contact": "SidedContact",
         "dynamics.damping": "with_ratio",

@@ -22,7 +22,8 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms, contact_limits, contact_terms
+from dynamics.contact import contact_limits, contact_terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.contact_kicks import contact_forces
 from dynamics.kernels.integrator_state import WORK, State

@@ -16,7 +16,8 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Terms, contact_limits, contact_terms
+from dynamics.contact import contact_limits, contact_terms
+from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES, ENERGY_BOUND, energy_residual
 from dynamics.failure import NumericsError, StepTooLong
 from dynamics.gap_system import GapSystem

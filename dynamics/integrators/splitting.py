@@ -24,7 +24,8 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import Limits, Terms, contact_limits, contact_terms
+from dynamics.contact import contact_limits, contact_terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.energy import ENERGIES, ENERGY_BOUND
 from dynamics.integrators.closed_contacts import ClosedContacts, closable, pressing
 from dynamics.integrators.drawn_out import integrate_drawn

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import energy_of
+from dynamics.contact_term import energy_of
 from dynamics.excitation import History
 from dynamics.gap_system import GapSystem
 

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.terms import term_energy, term_force
 

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Terms
+from dynamics.contact_term import Terms
 from dynamics.kernels.flight import stay
 
 # Highest power of the time: from 16 to 24 the work is about the same at every tolerance.

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels import friction_step as coulomb
 from dynamics.kernels.bounded_impulses import problem_for

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import Limits
+from dynamics.contact_term import Limits
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.integrator_state import Excitations, State, enter, excite, read
 from dynamics.kernels.modal_flow import move, stacked_flows, travel

@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits, Terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.kernels.bounded_impulses import (
     FREE,
     HIGH,

@@ -9,7 +9,8 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import Limits, Terms, contact_limits, contact_terms
+from dynamics.contact import contact_limits, contact_terms
+from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import SUMS
 from dynamics.kernels.contact_kicks import contact_forces, first_closing

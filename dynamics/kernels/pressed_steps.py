@@ -6,7 +6,7 @@ from __future__ import annotations
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Limits
+from dynamics.contact_term import Limits
 from dynamics.kernels.compiled import borrowed
 from dynamics.kernels.contact_kicks import contact_forces, elastic_kick
 from dynamics.kernels.integrator_state import State, System, enter

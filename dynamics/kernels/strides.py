@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import Limits
+from dynamics.contact_term import Limits
 from dynamics.kernels.compiled import SUMS
 
 # Numbers of steps that are made at once.

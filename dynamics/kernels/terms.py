@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Terms of contact laws, made part of the loops that import them.
 
-Their formulas stand in :mod:`dynamics.contact`, which is read without numba: it takes longer to
-load than a case to check.
+Their formulas stand in :mod:`dynamics.contact_term`, which is read without numba: it takes longer
+to load than a case to check.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import OfTerm, Terms, energy_of, force_of, slope_of
+from dynamics.contact_term import OfTerm, Terms, energy_of, force_of, slope_of
 
 term_force, term_energy, term_slope = (
     njit(cache=True, nogil=True, error_model="numpy", inline="always")(of_term)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dynamics.contact import force_of
+from dynamics.contact_term import force_of
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Thrown
 from dynamics.failure import NumericsError

@@ -15,7 +15,8 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from dynamics.contact import ContactLaw, Terms, contact_terms
+from dynamics.contact import ContactLaw, contact_terms
+from dynamics.contact_term import Terms
 from dynamics.failure import StepTooLong
 from dynamics.friction import DryFriction
 from dynamics.kernels.contact_kicks import contact_energy

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact, energy_of, force_of
+from dynamics.contact import PowerContact
+from dynamics.contact_term import energy_of, force_of
 
 LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3, stiffness_below=4.0e12)
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from dynamics.contact import PowerContact, energy_of, force_of
+from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
+from dynamics.contact_term import energy_of, force_of
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrators.event_driven import what_hinders
 from dynamics.integrators.splitting import integrate

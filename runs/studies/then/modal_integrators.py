@@ -16,7 +16,8 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import Terms, contact_terms
+from dynamics.contact import contact_terms
+from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.contact_kicks import contact_energy, law_forces
