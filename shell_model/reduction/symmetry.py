@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -24,9 +24,9 @@ from geometry.arrays import Array, Indices
 from geometry.boom import Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Direction
-from shell_model import compat
 from shell_model.reduction.mirror import (
     Family,
+    Rows,
     components,
     families,
     folded,
@@ -39,7 +39,7 @@ from shell_model.reduction.mirror import (
 from shell_model.segment.attachments import Attached
 from shell_model.segment.plates import assemble_plates
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.shell import Matrices, Shell, free_rows, hold, owned_nodes
+from shell_model.segment.shell import Matrices, Plates, Shell, free_rows, hold, owned_nodes
 
 _Found = TypeVar("_Found")
 
@@ -65,23 +65,53 @@ class _Compact(Matrices):
         )
 
 
+@dataclass(frozen=True)
+class Quarter:
+    """The part of a segment, a quarter of it or half, whose mirror images are the rest.
+
+    Args:
+        segment: the whole one.
+        mirrors: of its section.
+        mesh: of the part.
+    """
+
+    segment: Segment
+    mirrors: Sequence[Direction]
+    mesh: PlatedMesh
+
+    @cached_property
+    def plates(self) -> Plates:
+        """The same for all families, on the rank that asks."""
+        return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
+
+    @cached_property
+    def nodes(self) -> Sequence[tuple[Array, Indices]]:
+        """Places in m and rows of the displacements, and of the rotations."""
+        return [owned_nodes(self.plates.space, part) for part in (0, 1)]
+
+    @cached_property
+    def rows(self) -> Rows:
+        """What each row moves, and in which mirrors it lies."""
+        return rows_of(self.nodes)
+
+    def __reduce__(self) -> tuple[type[Quarter], tuple[Any, ...]]:
+        """What was assembled stays where it is."""
+        return Quarter, (self.segment, self.mirrors, self.mesh)
+
+
 @dataclass(frozen=True, slots=True)
 class Job:
     """What the rank that computes a family needs.
 
     Args:
         family: of the motions.
-        segment: the whole one.
-        mirrors: of its section.
-        mesh: of its quarter, or half.
+        quarter: of the segment.
         forces, readings: (num_rows, num_columns) on that part's rows, images added up.
         springs, masses: of the segment, on these rows.
     """
 
     family: Family
-    segment: Segment
-    mirrors: Sequence[Direction]
-    mesh: PlatedMesh
+    quarter: Quarter
     forces: Array
     readings: Array
     springs: Attached
@@ -89,30 +119,37 @@ class Job:
 
     def shell(self) -> Shell:
         """The quarter, with the energies of the whole segment."""
-        quarter = assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
+        plates, mirrors = self.quarter.plates, self.quarter.mirrors
         holds = [
-            *quarter.holds,
+            *plates.holds,
             *(
-                hold(quarter.space, part, component, partial(on_plane, axis=axis))
-                for axis in (COMPONENT[mirror] for mirror in self.mirrors)
+                hold(plates.space, part, component, partial(on_plane, axis=axis))
+                for axis in (COMPONENT[mirror] for mirror in mirrors)
                 for part, component in self.family.held(axis)
             ),
         ]
-        nodes, node_dofs = owned_nodes(quarter.space, 0)
-        rotation_nodes, rotation_dofs = owned_nodes(quarter.space, 1)
+        (nodes, node_dofs), (rotation_nodes, rotation_dofs) = self.quarter.nodes
         return Shell(
             comm=MPI.COMM_SELF,
             matrices=_Compact(
-                MPI.COMM_SELF, quarter, holds, self.springs, self.masses, 2.0 ** len(self.mirrors)
+                MPI.COMM_SELF, plates, holds, self.springs, self.masses, 2.0 ** len(mirrors)
             ),
-            free=free_rows(quarter.space, holds),
+            free=free_rows(plates.space, holds),
             springs=self.springs,
             nodes=nodes,
             node_dofs=node_dofs,
             rotation_nodes=rotation_nodes,
             rotation_dofs=rotation_dofs,
-            space=quarter.space,
+            space=plates.space,
         )
+
+
+def _quarter(shell: SegmentShell) -> Quarter | None:
+    """Of a segment, on rank 0."""
+    if shell.mesh is None:
+        return None
+    mirrors = shell.section.mirrors
+    return Quarter(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
 
 
 class Folding:
@@ -127,29 +164,19 @@ class Folding:
 
     def __init__(self, shell: SegmentShell) -> None:
         self._shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
-        self._mesh = together(
-            self._comm, lambda: shell.mesh and quarter_mesh(shell.mesh, self._mirrors)
-        )
+        self._part = together(self._comm, lambda: _quarter(shell))
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
-        quarter: list[tuple[Array, Indices]] = []
-        if self._mesh is not None:
-            points, triangles = self._mesh.points, self._mesh.triangles
-            space = compat.shell_space(
-                compat.create_triangle_mesh(MPI.COMM_SELF, points, triangles)
-            )
-            quarter = [owned_nodes(space, part) for part in range(len(parts))]
-            self._quarter_rows = rows_of(quarter)
         first, _ = shell.owned
         self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int64)
-        for part, (nodes, dofs) in enumerate(parts):
+        for number, (nodes, dofs) in enumerate(parts):
             gathered = self._comm.gather(folded(nodes, self._mirrors))
             found: Sequence[Any] = []
-            if gathered is not None:
-                places, rows = quarter[part]
+            if gathered is not None and self._part is not None:
+                places, rows = self._part.nodes[number]
                 found = [rows[matches(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(found)
             self._quarter[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
-            self._component[dofs - first] = components(part)
+            self._component[dofs - first] = components(number)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
         """One for each family that an input excites, on rank 0; none elsewhere. Collective.
@@ -159,20 +186,19 @@ class Folding:
         shell = self._shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
         gathered = [self._gather(block) for block in blocks]
-        if self._mesh is None:
+        if self._part is None:
             return []
-        images = [self._images(entries) for entries in gathered if entries is not None]
+        images = [self._images(self._part, entries) for entries in gathered if entries is not None]
         jobs = []
         for family in families(self._mirrors):
-            signs = family.signs[:, self._quarter_rows.component]
+            signs = family.signs[:, self._part.rows.component]
             forces, read, springs, masses = (_added_up(image, signs) for image in images)
             if forces.any():
                 attached = (
                     Attached(springs, shell.springs.factors),
                     Attached(masses, shell.masses.factors),
                 )
-                part = shell.segment, self._mirrors, self._mesh
-                jobs.append(Job(family, *part, forces, read, *attached))
+                jobs.append(Job(family, self._part, forces, read, *attached))
         return jobs
 
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
@@ -202,10 +228,10 @@ class Folding:
         mine = _Entries(self._row[row], self._quarter[row], column, value, columns)
         return self._comm.gather(mine)
 
-    def _images(self, gathered: list[_Entries]) -> Array:
+    def _images(self, part: Quarter, gathered: list[_Entries]) -> Array:
         """(4, num_rows, num_columns) a block in each quarter; half in each of what lies between."""
-        in_mirrors = self._quarter_rows.in_mirrors
-        images = np.zeros((4, self._quarter_rows.component.size, gathered[0].columns))
+        in_mirrors = part.rows.in_mirrors
+        images = np.zeros((4, part.rows.component.size, gathered[0].columns))
         for entries in gathered:
             images[entries.quarter, entries.row, entries.column] = entries.value
         for axis in self._mirrors:
