@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
@@ -27,6 +28,7 @@ from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions
+from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.observers import observers
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
@@ -92,7 +94,7 @@ class Stages:
         self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - begin
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BoomShell:
     """All degrees of freedom of a boom.
 
@@ -119,6 +121,11 @@ class BoomShell:
     loads: Sequence[tuple[Load, Array]]
     observed: Mapping[str, Observed[Reading]]
     lines: Sequence[GroundLine] = ()
+
+    @cached_property
+    def foldings(self) -> Sequence[Folding]:
+        """Of the segments, once for all that is solved of their families. Collective."""
+        return [Folding(shell) for shell in self.shells]
 
     @property
     def num_dofs(self) -> int:

@@ -9,15 +9,15 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.far_field import FAR_SHIFT, Bent, FarField, far_places
 from shell_model.contact.local_compliance import shell_compliance
-from shell_model.segment.segment_shell import SegmentShell
+from shell_model.reduction.symmetry import Folding
 
 
-def far_field(boom: Boom, number: int, shell: SegmentShell) -> FarField:
+def far_field(boom: Boom, number: int, folding: Folding) -> FarField:
     """Probe a segment, all degrees of freedom in. Collective.
 
     Of a boom in space sideways and about its axis, too; the mesh has lines at its places.
     """
-    places = far_places(boom, number)
+    places, shell = far_places(boom, number), folding.shell
     probes: dict[Bent, list[Array]] = {
         direction: [
             *(shell.force(x, direction) for x in places),
@@ -28,7 +28,7 @@ def far_field(boom: Boom, number: int, shell: SegmentShell) -> FarField:
     if boom.spatial:
         probes["twist"] = [shell.torque(x) for x in places]
     whole = shell_compliance(
-        shell, np.array([row for rows in probes.values() for row in rows]).T, FAR_SHIFT
+        folding, np.array([row for rows in probes.values() for row in rows]).T, FAR_SHIFT
     )
     found, first = {}, 0
     for motion, rows in probes.items():

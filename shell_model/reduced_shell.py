@@ -109,7 +109,7 @@ def reduce_boom(
         )
         mesh_error = extrapolated_error(local, coarse_local, options.order)
     with stages.stage("far field"):
-        far_fields = [far_field(boom, number, shell) for number, shell in enumerate(full.shells)]
+        far_fields = [far_field(boom, number, one) for number, one in enumerate(full.foldings)]
     return ReducedShell(
         system=found.system,
         num_dofs=full.num_dofs,
@@ -181,14 +181,14 @@ def _reduced(
     full: BoomShell, number: int, options: ShellOptions, stages: Stages, *beside: Array
 ) -> ReducedSegment:
     """A segment by the motions that its forces excite, and others, and its observers read."""
-    shell, krylov, joined = full.shells[number], options.krylov, full.joined(number)
+    krylov, joined = options.krylov, full.joined(number)
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
     observed = full.columns(number, [seen.reading for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as tell:
         forces = np.hstack([full.forces(number), *beside])
-        own = reduce_segment(shell, forces, krylov, tell, readings=observed)
+        own = reduce_segment(full.foldings[number], forces, krylov, tell, readings=observed)
         if at_surface and joined.size:
             own = without_stiff_modes(full.comm, own, joined)
     return own

@@ -108,6 +108,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
     """
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import shell_compliance
+    from shell_model.reduction.symmetry import Folding
 
     boom = build_boom(case)
     outer = boom.segments[0]
@@ -125,7 +126,7 @@ def supported(case: Case, parts: Sequence[float]) -> list[float]:
         )
         share = (there[1] - x) / (there[1] - there[0])
         squeeze = at - share * before - (1.0 - share) * after
-        found.append(float(shell_compliance(shell, squeeze[:, None])[0, 0]))
+        found.append(float(shell_compliance(Folding(shell), squeeze[:, None])[0, 0]))
     return found
 
 

@@ -38,19 +38,19 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
-        found[np.ix_(touching, touching)] += shell_compliance(shell, rows)
+        found[np.ix_(touching, touching)] += shell_compliance(Folding(shell), rows)
     return found
 
 
-def shell_compliance(shell: SegmentShell, rows: Array, frequency: float = SLOW) -> Array:
+def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> Array:
     """(num_rows, num_rows) in m/N what forces on the rows of a full shell do to each other.
 
     Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
     """
-    jobs = Folding(shell).jobs(rows, rows[:, :0])
+    comm, jobs = folding.shell.comm, folding.jobs(rows, rows[:, :0])
     found = np.zeros((rows.shape[1], rows.shape[1]))
-    for root, family in shared(shell.comm, jobs, partial(_answers, frequency)):
-        found += shell.comm.bcast(family, root)
+    for root, family in shared(comm, jobs, partial(_answers, frequency)):
+        found += comm.bcast(family, root)
     return found
 
 

@@ -23,7 +23,6 @@ from geometry.arrays import Array
 from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment.segment_shell import SegmentShell
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
 # and of the fastest spring.
@@ -47,12 +46,12 @@ class Answers(NamedTuple):
     tested: Array
 
 
-def answers(shell: SegmentShell, columns: Array, test: float) -> Answers:
+def answers(folding: Folding, columns: Array, test: float) -> Answers:
     """To columns (num_owned, num_columns), at ``SLOW`` and at ``test`` in Hz. Collective."""
-    jobs = Folding(shell).jobs(columns, columns[:, :0])
+    comm, jobs = folding.shell.comm, folding.jobs(columns, columns[:, :0])
     total = np.zeros((3, columns.shape[1], columns.shape[1]))
-    for root, family in shared(shell.comm, jobs, partial(_answers, test)):
-        total += shell.comm.bcast(family, root)
+    for root, family in shared(comm, jobs, partial(_answers, test)):
+        total += comm.bcast(family, root)
     return Answers(*total)
 
 

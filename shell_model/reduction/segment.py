@@ -27,7 +27,6 @@ from geometry.arrays import Array, Mask
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
-from shell_model.segment.segment_shell import SegmentShell
 
 __all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
 
@@ -60,7 +59,7 @@ class ReducedSegment:
 
 
 def reduce_segment(
-    shell: SegmentShell,
+    folding: Folding,
     inputs: Array,
     options: KrylovOptions,
     progress: Callable[[float], None] | None = None,
@@ -69,7 +68,7 @@ def reduce_segment(
     """Reduce a segment to the space that its inputs excite. Collective.
 
     Args:
-        shell: the full model.
+        folding: of the full model.
         inputs: (num_owned, num_inputs) forces that act on it, in any order; zero and dependent
             ones cost nothing.
         options: shifts and moments, or a tolerance.
@@ -80,8 +79,7 @@ def reduce_segment(
         NumericsError: a compliance is not finite, the shell does not mirror itself, all inputs
             are zero, or the tolerance is not met.
     """
-    comm = shell.comm
-    folding = Folding(shell)
+    comm = folding.shell.comm
     jobs = folding.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
     families = comm.bcast([job.family for job in jobs])
     if not families:

@@ -163,7 +163,7 @@ class Folding:
     """
 
     def __init__(self, shell: SegmentShell) -> None:
-        self._shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
+        self.shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
         self._part = together(self._comm, lambda: _quarter(shell))
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         first, _ = shell.owned
@@ -183,7 +183,7 @@ class Folding:
 
         Inputs and readings are (num_owned, num_columns) of the whole segment.
         """
-        shell = self._shell
+        shell = self.shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
         gathered = [self._gather(block) for block in blocks]
         if self._part is None:

@@ -10,6 +10,7 @@ from beam_model.calibration import Stiffness, effective_stiffness
 from geometry.boom import Boom
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.far_field import far_field
+from shell_model.reduction.symmetry import Folding
 from tests.shell_model.booms import boom_in_space, flat_boom
 
 pytestmark = pytest.mark.slow
@@ -19,7 +20,7 @@ def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffn
     options = ShellOptions(0.25, contact_tolerance=contact_tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     return [
-        effective_stiffness(segment, far_field(boom, number, shells[number]))
+        effective_stiffness(segment, far_field(boom, number, Folding(shells[number])))
         for number, segment in enumerate(boom.segments)
     ]
 

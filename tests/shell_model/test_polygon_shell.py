@@ -38,6 +38,7 @@ from shell_model.contact.wall_points import Wall, WallPoints
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment
+from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
@@ -107,7 +108,7 @@ def _apart(shell: SegmentShell, direction: Direction = "z") -> float:
     """How far the first elastic frequency is from that of the Timoshenko beam."""
     tip = shell.row(shell.outline(10.0).wall_deflection(direction))
     inputs = np.column_stack([shell.unit_loads[direction], tip])
-    found = reduce_segment(shell, inputs, KrylovOptions())
+    found = reduce_segment(Folding(shell), inputs, KrylovOptions())
     beam = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True)
     part = beam.components[direction]
     modes = natural_modes(part.stiffness, part.mass, part.rigid_modes)
@@ -137,7 +138,7 @@ def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Sh
     found = []
     for shell, direction in ((upright, "z"), (lying, "y")):
         inputs = shell.unit_loads[direction][:, None]
-        found.append(reduce_segment(shell, inputs, KrylovOptions()).omega2)
+        found.append(reduce_segment(Folding(shell), inputs, KrylovOptions()).omega2)
     assert found[1] == pytest.approx(found[0], rel=1e-6, abs=1e-3)
 
 

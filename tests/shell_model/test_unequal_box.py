@@ -20,6 +20,7 @@ from geometry.unequal_box import UnequalBox
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
+from shell_model.reduction.symmetry import Folding
 from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LAW, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, UNEQUAL
@@ -31,7 +32,7 @@ def _apart(shell: SegmentShell) -> Array:
     """(2,) how far the first elastic frequencies are from those of the Timoshenko beam."""
     tip = shell.row(shell.outline(10.0).wall_deflection("z"))
     inputs = np.column_stack([shell.unit_loads["z"], tip])
-    reduced = reduce_segment(shell, inputs, KrylovOptions())
+    reduced = reduce_segment(Folding(shell), inputs, KrylovOptions())
     beam = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True).components["z"]
     modes = natural_modes(beam.stiffness, beam.mass, beam.rigid_modes)
     rigid = beam.rigid_modes

@@ -33,12 +33,14 @@ snapshots.render_files = lambda *_: []
 cli.main()
 """
 
-# One rank fails while the other waits for it.
+# One rank fails while the other waits for it, and does not wait long for the other to speak.
 LONELY_FAILURE = """
 from mpi4py import MPI
 from dynamics.failure import NumericsError
 from runs.cli import _all_ranks_end_together
+from runs.process import ranks
 
+ranks._GRACE = 0.5
 comm = MPI.COMM_WORLD
 with _all_ranks_end_together(comm):
     if comm.rank == 1:
