@@ -29,9 +29,10 @@ from geometry.section import Section, SectionError, infer_inner_section, infer_o
 from geometry.taper import check_alike, half_way, mean_area
 from runs.case import actions
 from runs.case.contact import JointTable
+from runs.case.extension import spans
 from runs.case.kinds.model import Joined
 from runs.case.limits import described
-from runs.case.places import at, spans
+from runs.case.places import at
 from runs.case.pulled import check_pulled
 from runs.case.schema import Case, Model
 from runs.case.segment import SegmentTable, SupportTable

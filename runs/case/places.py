@@ -1,25 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where things are along a boom: at an x, or at a distance from an end of what they are on.
-
-Segments that are given by their lengths have their places from the joints, which say how far each
-is drawn out, and what is at a distance from their ends goes with them.
-"""
+"""Where things are along a boom: at an x, or at a distance from an end of what they are on."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
-from geometry.boom import BoomError
 from runs.case.limits import In, NotNegative, Number, Table
-
-if TYPE_CHECKING:
-    from runs.case.contact import JointTable
-    from runs.case.segment import SegmentTable
 
 
 class PlaceTable(Table):
@@ -71,68 +62,3 @@ def at(place: float | PlaceTable, tail: float, head: float) -> float:
         return head - place.head
     assert place.tail is not None
     return tail + place.tail
-
-
-def spans(
-    segments: Sequence[SegmentTable], joints: Sequence[JointTable]
-) -> list[tuple[float, float]]:
-    """The x of the ends of each segment in m.
-
-    Args:
-        segments: with a name each; the first one starts at 0 where it is given by its length.
-        joints: of segments that are among them.
-
-    Raises:
-        BoomError: a segment has no place, or two.
-    """
-    lengths = {segment.name: segment.length for segment in segments}
-    ends = {segment.name: segment.span for segment in segments if segment.span is not None}
-    drawn = [
-        (f"joint[{i}].extension", j) for i, j in enumerate(joints, 1) if j.extension is not None
-    ]
-    for number, (where, joint) in enumerate(drawn):
-        if lengths[joint.inner] is None:
-            raise BoomError(
-                where,
-                f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
-                "or leave extension out",
-            )
-        for other, before in drawn[:number]:
-            if before.inner == joint.inner:
-                raise BoomError(
-                    where, f"{joint.inner!r} has its place by {other}; leave one of them out"
-                )
-    first = segments[0]
-    if first.length is not None and first.name not in {joint.inner for _, joint in drawn}:
-        ends[first.name] = 0.0, first.length
-    # One pass a joint draws the segments out, in whatever order.
-    for _ in drawn:
-        for where, joint in drawn:
-            if joint.outer in ends and joint.inner not in ends:
-                length = lengths[joint.inner]
-                assert length is not None
-                ends[joint.inner] = _drawn_out(where, joint, ends[joint.outer], length)
-    for number, segment in enumerate(segments, start=1):
-        if segment.name not in ends:
-            raise BoomError(
-                f"segment[{number}].length",
-                f"nothing says where {segment.name!r} is; give an extension to the joint in which "
-                "it slides, or a span to the segment",
-            )
-    return [ends[segment.name] for segment in segments]
-
-
-def _drawn_out(
-    where: str, joint: JointTable, outer: tuple[float, float], length: float
-) -> tuple[float, float]:
-    """The ends of an inner segment in m."""
-    start, end = outer
-    assert joint.extension is not None
-    least = max(0.0, length - (end - start))
-    if not least <= joint.extension < length:
-        raise BoomError(
-            where,
-            f"must be at least {least:g} m and below {length:g} m, so that {joint.inner!r} begins "
-            f"in {joint.outer!r}, got {joint.extension:g} m",
-        )
-    return end + joint.extension - length, end + joint.extension

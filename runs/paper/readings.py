@@ -45,9 +45,9 @@ from runs.paper.reading import (
 )
 from runs.paper.rules import DIVERGENCE
 from runs.process import notices
+from runs.report.numerals import number
 from runs.report.pages import page
 from runs.report.tables import TextTable, write
-from runs.report.theme import number
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/readings")

@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from runs.paper.statements import STATEMENTS
-from runs.report.theme import NONE, number
+from runs.report.numerals import NONE, number
 from runs.report.verdict import Verdict
 
 _STYLES = {"reproduced": "green", "contradicted": "red", "undecided": "yellow"}

@@ -15,7 +15,7 @@ from runs.case import actions
 from runs.case.places import at
 from runs.case.schema import Case, HistoryTable, LoadTable
 from runs.report import symbols, theme
-from runs.report.theme import number
+from runs.report.numerals import number
 
 FORCE = "#b03000"
 # Arrows of a load along a segment, m apart as a part of the boom's length.

@@ -10,9 +10,9 @@ from runs.pipeline.answers import Added, AtRest, Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
 from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
+from runs.report.numerals import NONE, amount, number
 from runs.report.strength_tables import life_table, pad_table, stress_table
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, amount, number
 
 # A part of a number that is next to nothing.
 HARDLY = 0.005

@@ -27,7 +27,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.files import whole
-from runs.report import symbols, theme
+from runs.report import numerals, symbols, theme
 from runs.report.acting import Acting, acting, amount
 from runs.report.figure_context import Figure, Pen
 from runs.report.sections_drawing import draw_sections, shown_sections
@@ -396,7 +396,7 @@ def _said(case: Case, boom: Boom) -> Iterator[str]:
     for base in case.base:
         yield f"the ground shakes along {base.direction}"
     if case.gravity is not None:
-        yield f"weights by {theme.number(case.gravity.acceleration, 4)} m/s²"
+        yield f"weights by {numerals.number(case.gravity.acceleration, 4)} m/s²"
 
 
 def _several(values: Iterable[float]) -> str:

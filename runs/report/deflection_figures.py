@@ -16,6 +16,7 @@ from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import Figure, Pen, farthest, highest, new_sheet
+from runs.report.numerals import fixed
 
 # Of an ensemble this part of the members lies in its band, in percent.
 BAND = (5.0, 95.0)
@@ -166,7 +167,7 @@ def _reach(pen: Pen, place: str) -> str:
     """How far the models, with play where any have it, deflect at one place, up or down."""
     reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
-    most = theme.fixed(reaches[name], 0, TO_MILLI)
+    most = fixed(reaches[name], 0, TO_MILLI)
     return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 

@@ -17,10 +17,10 @@ from runs.report.figure_context import Figure
 from runs.report.first_look import first_look
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
+from runs.report.numerals import NONE, number
 from runs.report.pages import MARKS, page
 from runs.report.stress_tables import wall_tables
 from runs.report.tables import Table, TextTable
-from runs.report.theme import NONE, number
 from runs.report.verdict import Verdict
 
 # Kinds of pictures in the order of their numbers.

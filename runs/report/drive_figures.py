@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from geometry.typography import TO_KILO, TO_MILLI
-from runs.report import theme
 from runs.report.charts import Chart
 from runs.report.contact_figures import FORCE_WINDOW, running_mean
 from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import Figure, Pen, farthest, new_sheet
+from runs.report.numerals import fixed
 
 
 def drives(pen: Pen) -> list[Figure]:
@@ -69,6 +69,6 @@ def _drive(pen: Pen, suffix: str, inner: str) -> Figure:
         "the boom would slide by itself. "
         f"Means over {TO_MILLI * FORCE_WINDOW:g} ms."
     )
-    title = f"Drive of {inner}: up to {theme.fixed(force, 2)} kN against friction"
+    title = f"Drive of {inner}: up to {fixed(force, 2)} kN against friction"
     chart = Chart(pen.time, "force (kN), power (kW)", curves, list(headings))
     return pen.finish(sheet, panels[0], f"drive{suffix}", title, caption, chart=chart)

@@ -10,6 +10,7 @@ from geometry.arrays import Array
 from runs.report import theme
 from runs.report.drawn_axis import drawn_axis
 from runs.report.figure_context import Figure, Pen, highest, new_sheet
+from runs.report.numerals import scientific
 
 # Of the numbers that an energy is the sum of.
 ROUND_OFF = 1.0e-16
@@ -72,7 +73,7 @@ def residuals(pen: Pen) -> list[Figure]:
         "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
         "the largest work: the largest so far. Without contact the motion is exact to round-off."
     )
-    title = f"Unaccounted energy: up to {theme.scientific(highest(worst), 2)} of the work"
+    title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
     statements = ("S8",) if pen.regular else ()
     return [pen.finish(sheet, axes, "energy-residual", title, caption, statements, part="numerics")]
 

@@ -16,8 +16,8 @@ from runs.pipeline.summary import PressedPad
 from runs.pipeline.trust import off_at_rest
 from runs.report.answer_tables import hardly
 from runs.report.figure_context import farthest
+from runs.report.numerals import NONE, SHOWN, amount, fixed, number
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, SHOWN, amount, fixed, number
 
 # To which part a swing has died that nobody heeds any more.
 TENTH = 0.1

@@ -20,8 +20,8 @@ from runs.pipeline.summary import (
     Whole,
 )
 from runs.report.model_tables import horizon_column
+from runs.report.numerals import NONE, fixed, number, scientific
 from runs.report.tables import Column, Table
-from runs.report.theme import NONE, fixed, number, scientific
 
 # What a table says of ``limits``.
 LIMITS = {

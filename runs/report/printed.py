@@ -16,7 +16,7 @@ from runs.pipeline.results import Results
 from runs.process.shown import message, shown
 from runs.process.terminal import say
 from runs.report.model_tables import model_table
-from runs.report.theme import number
+from runs.report.numerals import number
 
 # Columns of the models' table that fit a terminal → their headings there.
 SHOWN = {

@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, signed
 from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
-from runs.report import theme
+from runs.report import numerals, theme
 from runs.report.charts import Chart, Curve
 from runs.report.drawn_axis import of_rests, of_start
 from runs.report.figure_context import Figure, Pen, new_sheet
@@ -109,7 +109,7 @@ def mode_shapes(pen: Pen) -> list[Figure]:
             for what, values in shape.curves.items():
                 if what == _moving(mode):
                     axes.plot(shape.x, values, color=colors[number % len(colors)], linewidth=1.8)
-        axes.set_title(f"{theme.number(mode.frequency, 4)} Hz, {mode.way}")
+        axes.set_title(f"{numerals.number(mode.frequency, 4)} Hz, {mode.way}")
         axes.set_yticks([])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (

@@ -9,8 +9,8 @@ from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.case.build import material_of
 from runs.case.schema import Case
 from runs.pipeline.results import Results
+from runs.report.numerals import number
 from runs.report.tables import Column, Table
-from runs.report.theme import number
 
 if TYPE_CHECKING:
     from shell_model.stress.summary import LargestPatch, StressSummary

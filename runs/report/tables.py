@@ -17,7 +17,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from runs.folder.files import write_whole
-from runs.report.theme import NONE, count, fixed, number, repeated
+from runs.report.numerals import NONE, count, fixed, number, repeated
 
 # Letters that fit in a line of the report with its usual font, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40

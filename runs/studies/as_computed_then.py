@@ -21,8 +21,8 @@ from runs.paper import then
 from runs.paper.reading import LITERAL
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.process import notices
+from runs.report.numerals import NONE, number
 from runs.report.tables import Cell, Table, wide_console, write
-from runs.report.theme import NONE, number
 from runs.studies.study import Piece, Plot, Tell, titled
 from runs.studies.then.general_solver import METHODS
 from runs.studies.then.modal_integrators import NEWMARK, WILSON

@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from runs.case.build import build_boom
+from runs.report.numerals import scientific
 from runs.report.tables import Cell, Table
-from runs.report.theme import scientific
 from runs.studies.motions import friction_case
 from runs.studies.refined import Reference, Refined, error_plot, refined_table
 from runs.studies.study import Held, Piece, Proof, Tell, titled

@@ -17,8 +17,8 @@ from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
+from runs.report.numerals import number
 from runs.report.tables import Table
-from runs.report.theme import number
 from runs.studies.motions import (
     OUTPUT_STEP,
     friction_case,

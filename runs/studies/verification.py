@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from runs.report.numerals import fixed, number
 from runs.report.tables import TextTable
-from runs.report.theme import fixed, number
 from runs.studies.study import Proof, Study
 
 INTRODUCTION = """\

@@ -24,7 +24,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.report.theme import number
+from runs.report.numerals import number
 from runs.sweep.quantities import QUANTITIES, Quantity
 from runs.sweep.swings import draw_swings
 

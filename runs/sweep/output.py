@@ -15,8 +15,8 @@ from rich.console import Console
 from geometry.arrays import Array
 from runs.folder.files import alone, changed_folder, whole, whole_folder
 from runs.pipeline.results import CONVENTIONS
+from runs.report.numerals import NONE, number
 from runs.report.tables import TextTable
-from runs.report.theme import NONE, number
 from runs.sweep.distance_figures import draw_distances
 from runs.sweep.distances import DISTANCES, UNTIL
 from runs.sweep.figures import draw

@@ -14,6 +14,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_MILLI
 from runs.report import theme
 from runs.report.figure_context import new_sheet
+from runs.report.numerals import number
 
 # A swing that exceeds the level by no more than this part is no larger: steps and blows move it so.
 _SAME = 1.0e-2
@@ -83,11 +84,11 @@ def said(name: str, swings: Swings) -> Iterator[str]:
     for end in swings.levels:
         speed, swing, levels = swings.where_known(end)
         level, fastest = levels[end], fastest_within(swings, end)
-        ends = dict.fromkeys(theme.number(TO_MILLI * of) for of in (level.min(), level.max()))
+        ends = dict.fromkeys(number(TO_MILLI * of) for of in (level.min(), level.max()))
         last = "the fastest here" if speed[-1] == swings.speed[-1] else "the fastest known"
         rest = f"at rest {_ENDS[end][0]}, {' to '.join(ends)} mm"
         if fastest is None:
-            slow, least = speed[0], theme.number(TO_MILLI * float(swing[0]))
+            slow, least = speed[0], number(TO_MILLI * float(swing[0]))
             yield f"{name}: swings more than {rest}, at {slow:.3g} m/s already: {least} mm"
         elif fastest == speed[-1]:
             yield f"{name}: swings no more than {rest}, up to {fastest:.3g} m/s, {last}"

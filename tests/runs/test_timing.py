@@ -8,7 +8,7 @@ from functools import partial
 
 import pytest
 
-from runs.report.theme import repeated
+from runs.report.numerals import repeated
 from runs.studies.cost import timing
 from runs.studies.cost.timing import MEASURABLE, by_turns
 

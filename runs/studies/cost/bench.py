@@ -34,8 +34,8 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.process import notices
+from runs.report.numerals import repeated
 from runs.report.tables import Table, wide_console
-from runs.report.theme import repeated
 from runs.studies.cost import scaling
 from runs.studies.cost.drawing import MODELS, drawing
 from runs.studies.cost.generic_solvers import (

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How numbers look in tables, captions and sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from statistics import median
+
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, signed
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def scientific(number: float, digits: int = 1) -> str:
+    """8 × 10⁻⁵ for 8e-05, with at most so many significant digits."""
+    mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
+    return f"{signed(f'{float(mantissa):g}')} × 10{str(int(exponent)).translate(_SUPERSCRIPT)}"
+
+
+NONE = "–"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number for people, with so many significant digits; ``NONE`` for none."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    if value == 0.0 or 1.0e-3 <= abs(value) < 1.0e5:
+        rounded = float(f"{value:.{digits}g}")
+        whole = abs(rounded) >= 10.0 ** (digits - 1)
+        return signed(f"{rounded:.0f}" if whole else f"{rounded:g}")
+    return scientific(value, digits)
+
+
+SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
+
+
+def amount(value: float, unit: str) -> str:
+    """In the unit that is shown for one of the SI."""
+    name, factor = SHOWN[unit]
+    return f"{number(factor * value)} {name}".strip()
+
+
+def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
+    """A number times a factor, with so many decimals; ``NONE`` for none."""
+    if value is None or not math.isfinite(value):
+        return NONE
+    # Adding zero takes the sign of what is rounded to nothing.
+    return signed(f"{round(factor * value, decimals) + 0.0:.{decimals}f}")
+
+
+def repeated(values: Sequence[float]) -> str:
+    """The median of repetitions with the digits that their spread leaves.
+
+    There is a ``~`` before it if not one is left. The spread is half the range; its first digit is
+    the last that is shown. A single value has no known spread and is shown with one digit.
+    """
+    middle = median(values)
+    if middle == 0.0 or not math.isfinite(middle):
+        return f"{middle:g}"
+    spread = 0.5 * (max(values) - min(values))
+    leading = math.floor(math.log10(abs(middle)))
+    last = math.floor(math.log10(spread)) if spread > 0.0 else leading
+    digits = max(1, min(leading - last + 1, 3)) if len(values) > 1 else 1
+    place = leading - digits + 1
+    text = f"{round(middle, -place):.{max(0, -place)}f}"
+    return f"~{text}" if len(values) > 1 and last >= leading and spread > 0.0 else text
+
+
+def count(whole: float) -> str:
+    """``11 194 798``, with blanks that do not break."""
+    return f"{whole:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
