@@ -31,6 +31,7 @@ from dynamics.integrators.closed_contacts import ClosedContacts, closable, press
 from dynamics.integrators.drawn_out import integrate_drawn
 from dynamics.integrators.record import Record
 from dynamics.integrators.step import DRAGGED, contact_step
+from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.contact_kicks import (
     add_closed_forces,
     contact_energy,
@@ -80,7 +81,7 @@ _AGAIN = int(STRIDES[1])
 _UNTOLD = 0.01
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _telling(
     reach: Array,
     omega2: Array,
@@ -108,7 +109,7 @@ def _telling(
     return strides.size
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _march(
     lossy: Lossy, strides: Indices, flows: Array, springs: tuple[Array, Array, Terms, Limits],
     step: float, substeps: int, steady: bool, out: tuple[Array, ...],

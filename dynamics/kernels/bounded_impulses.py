@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
+from dynamics.kernels.compiled import LOOP
 
 # A pivot below this part of its diagonal: the row depends on those before it.
 _DEPENDENT = 1.0e-12
@@ -34,7 +35,7 @@ def problem_for(num_rows: int) -> Array:
     return np.zeros((_FACTOR + num_rows, num_rows))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def bounded_impulses(matrix: Array, problem: Array) -> bool:
     """Improve the impulses, a guess, until they solve the problem; False if they nearly do.
 
@@ -65,7 +66,7 @@ def bounded_impulses(matrix: Array, problem: Array) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _advance(problem: Array, count: int) -> float:
     """Change the inner impulses until the first is at its bound; the part of the change made."""
     part = 1.0
@@ -89,7 +90,7 @@ def _advance(problem: Array, count: int) -> float:
     return part
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def slip(matrix: Array, problem: Array, j: int) -> float:
     """c_j + (G p)_j."""
     total: float = problem[FREE, j]
@@ -98,7 +99,7 @@ def slip(matrix: Array, problem: Array, j: int) -> float:
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _newton(matrix: Array, problem: Array, count: int) -> None:
     """The change of the inner impulses that takes their slip away, by Cholesky's method.
 
@@ -129,7 +130,7 @@ def _newton(matrix: Array, problem: Array, count: int) -> None:
         problem[_CHANGE, p] = change / pivot if pivot > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _solved(matrix: Array, problem: Array) -> bool:
     for j in range(matrix.shape[0]):
         if problem[LOW, j] == problem[HIGH, j]:

@@ -8,7 +8,7 @@ from numba import njit
 
 from dynamics.arrays import Array
 from dynamics.contact_term import Limits, Terms
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 from dynamics.kernels.terms import term_energy, term_force
 
 
@@ -29,7 +29,7 @@ def contact_forces(a: Array, rows: Array, terms: Terms, y: Array, force: Array) 
     return touching
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def law_forces(y: Array, terms: Terms, force: Array) -> None:
     """Fill in the elastic forces of every row at the gaps y (num_rows,) in m."""
     force[:] = 0.0
@@ -37,7 +37,7 @@ def law_forces(y: Array, terms: Terms, force: Array) -> None:
         force[terms[t]["row"]] += term_force(terms[t], y[terms[t]["row"]])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def contact_energy(y: Array, terms: Terms) -> float:
     """Potential of the elastic forces in J."""
     energy = 0.0
@@ -110,7 +110,7 @@ def damped_kick(
     return loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**LOOP, inline="always")
 def _side(y: float, limit: np.void) -> float:
     """1 where a row presses above, -1 below, 0 where it is open."""
     if y > limit["high"]:
@@ -120,7 +120,7 @@ def _side(y: float, limit: np.void) -> float:
     return 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@njit(**LOOP, inline="always")
 def first_closing(
     y: Array, before: Array, limits: Limits, now: float, time: float
 ) -> tuple[int, float]:

@@ -14,7 +14,7 @@ from scipy.linalg import svd
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 
 # Rates c (num_modes,), or none (0,) where no mode has any, so that its loops cost nothing;
 # directions V (num_dashpots, num_modes) and their rates σ² (num_dashpots,).
@@ -28,7 +28,7 @@ def damping_arrays(system: GapSystem) -> Damping:
     return np.ascontiguousarray(rates), np.ascontiguousarray(directions), sigma**2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def kept_after(rates: Array, time: float, kept: Array) -> None:
     """Fill in what is left of a speed after ``time``, for each rate."""
     for i in range(rates.size):
@@ -60,7 +60,7 @@ def drag(v: Array, directions: Array, kept: Array) -> float:
     return 0.5 * loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def damp(v: Array, faded: Array, directions: Array, dragged: Array) -> float:
     """All damping over a time, as a symmetric matrix; gives the loss in J.
 

@@ -16,7 +16,7 @@ from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
 from dynamics.kernels import friction_step as coulomb
 from dynamics.kernels.bounded_impulses import problem_for
-from dynamics.kernels.compiled import borrowed
+from dynamics.kernels.compiled import LOOP, borrowed
 from dynamics.kernels.contact_kicks import contact_energy, contact_forces, damped_kick
 from dynamics.kernels.decay import fade, kept_after
 from dynamics.kernels.drawn_strides import Strides, glide
@@ -69,7 +69,7 @@ def space_for(system: GapSystem) -> Space:
     return length, half, faded, filtered, matrix, masses, ahead, middle, problem_for(f)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _damp(
     v: Array, faded: Array, rows: Array, carried: Array, time: float, backward: bool, driven: Array,
 ) -> float:  # fmt: skip
@@ -80,7 +80,7 @@ def _damp(
     return loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def drawn_steps(
     drawn: Drawn, step: float, first: int, last: int, substeps: int, gliding: bool
 ) -> int:
@@ -274,7 +274,7 @@ def drawn_steps(
     return k
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def march_drawn(
     drawn: Drawn, strides: Strides, step: float, substeps: int, out: tuple[Array, ...]
 ) -> None:

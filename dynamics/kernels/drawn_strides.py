@@ -9,6 +9,7 @@ from numba import njit
 from dynamics.arrays import Array, Indices
 from dynamics.contact_term import Limits
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.integrator_state import Excitations, State, enter, excite, read
 from dynamics.kernels.modal_flow import move, stacked_flows, travel
 from dynamics.kernels.moving_rows import Tables, place_rows, row_tables
@@ -51,7 +52,7 @@ def strides_over(
     return counts, flows, straight, rates, slopes, reach, bounds
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def glide(
     state: State, now: Array, modal: tuple[Array, Array, Array], limits: Limits, tables: Tables,
     ways: Array, excitations: Excitations, strides: Strides, step: float, first: int, last: int,

@@ -32,7 +32,7 @@ from dynamics.kernels.bounded_impulses import (
     bounded_impulses,
     slip,
 )
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 from dynamics.kernels.contact_kicks import contact_forces
 from dynamics.kernels.integrator_state import (
     BOUND,
@@ -79,7 +79,7 @@ def round_off(row_masses: Array, a: Array, noise: Array) -> None:
         noise[j] = _EPSILON * np.sqrt(row_masses[j, j] * total)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def bound_impulses(
     ahead: Array, v: Array, contact_rows: Array, terms: Terms, limits: Limits, push: Array,
     pressing: Array, given: Array, time: float, y: Array, force: Array, grip: Array,
@@ -116,7 +116,7 @@ def look_ahead(a: Array, v: Array, half: Array, ahead: Array) -> None:
         ahead[i] = half[0, i] * a[i] + half[1, i] * v[i] + half[2, i]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def rub(
     v: Array, ahead: Array, rows: Array, masses: Array, filtered: Array, matrix: Array, grip: Array,
     problem: Array, time: float,
@@ -151,7 +151,7 @@ def rub(
     return loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def settle(
     v: Array, rows: Array, carried: Array, masses: Array, grip: Array, problem: Array
 ) -> float:
@@ -181,7 +181,7 @@ def settle(
     return loss
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def note_directions(masses: Array, grip: Array, problem: Array) -> bool:
     """Note speeds and directions of the rows at the end of a step; whether a direction changed."""
     changed = False
@@ -195,7 +195,7 @@ def note_directions(masses: Array, grip: Array, problem: Array) -> bool:
     return changed
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def find_turns(masses: Array, grip: Array, problem: Array, time: float) -> float:
     """When in a step of ``time`` the first row turned, infinity if none did.
 
@@ -219,7 +219,7 @@ def find_turns(masses: Array, grip: Array, problem: Array, time: float) -> float
     return first
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def stop(problem: Array, time: float, grip: Array) -> None:
     """Let rows rest that turn at a time, or so shortly after it that they turn together."""
     for j in range(grip.shape[1]):

@@ -12,7 +12,7 @@ from dynamics.arrays import Array, Indices
 from dynamics.contact import contact_limits, contact_terms
 from dynamics.contact_term import Limits, Terms
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 from dynamics.kernels.contact_kicks import contact_forces, first_closing
 
 # omega2, load (num_modes,), contact rows (num_rows, num_modes), terms and limits of their laws.
@@ -129,7 +129,7 @@ def read(rows: Array, a: Array, values: Array) -> None:
         values[j] = total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def look(a: Array, v: Array, rows: Array, grip: Array) -> None:
     """Take place and speed of every friction row from a state that friction has not made."""
     read(rows, a, grip[PLACE])
@@ -137,7 +137,7 @@ def look(a: Array, v: Array, rows: Array, grip: Array) -> None:
     grip[SLIDING] = np.sign(grip[SPEED])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def enter(y: Array, before: Array, limits: Limits, time: float, tally: Array) -> None:
     """Enter a step of ``time`` that has been made: contact changes, the first contact."""
     tally[TIME] += time

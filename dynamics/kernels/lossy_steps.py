@@ -10,7 +10,7 @@ from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels import friction_step as coulomb
 from dynamics.kernels.bounded_impulses import problem_for
-from dynamics.kernels.compiled import borrowed
+from dynamics.kernels.compiled import LOOP, borrowed
 from dynamics.kernels.contact_kicks import contact_forces, damped_kick
 from dynamics.kernels.decay import Damping, damp, kept_after
 from dynamics.kernels.integrator_state import (
@@ -49,7 +49,7 @@ def space_for(system: GapSystem, damping: Damping) -> Space:
     return length, half, faded, dragged, filtered, matrix, ahead, middle, problem_for(f)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def lossy_steps(
     lossy: Lossy, step: float, first: int, last: int, substeps: int, always: bool
 ) -> int:

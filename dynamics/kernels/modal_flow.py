@@ -12,7 +12,7 @@ from scipy.special import spherical_jn
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 from dynamics.kernels.integrator_state import DAMPING, WORK
 
 
@@ -81,7 +81,7 @@ def _general_flow(omega2: float, damping: float, step: float) -> Array:
     return np.array([aa, av / scale, va * scale, vv, rise / scale, ramp / scale, mean / scale])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: float) -> None:
     """Fill ``flow`` (11, num_modes) for any time, as :func:`stacked_flows` does.
 
@@ -187,7 +187,7 @@ def mean_place(
         mean[i] += flow[7, i] * (flow[10, i] + now[i]) + flow[8, i] * (then[i] - now[i])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def travel(
     a: Array, v: Array, flow: Array, time: float, damped: bool, now: Array, then: Array,
     tally: Array,

@@ -7,13 +7,13 @@ from numba import njit
 
 from dynamics.arrays import Array
 from dynamics.contact_term import Limits
-from dynamics.kernels.compiled import borrowed
+from dynamics.kernels.compiled import LOOP, borrowed
 from dynamics.kernels.contact_kicks import contact_forces, elastic_kick
 from dynamics.kernels.integrator_state import State, System, enter
 from dynamics.kernels.modal_flow import move
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def pressed_steps(
     state: State,
     system: System,

@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
+from dynamics.kernels.compiled import LOOP
 
 # Of the body: m in kg, k in N/m, c in N·s/m, static friction over that of sliding.
 MASS, STIFFNESS, DASHPOT, STICKING = range(4)
@@ -43,7 +44,7 @@ _PLACES = np.array([0.0, 0.5 - np.sqrt(3.0 / 28.0), 0.5, 0.5 + np.sqrt(3.0 / 28.
 _WEIGHTS = np.array([9.0, 49.0, 64.0, 49.0, 9.0]) / 180.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def fades(body: Array, time: float) -> tuple[float, float]:
     """e^{−δt} cos ωt and e^{−δt} sin ωt/ω of the free swing, also where it creeps."""
     decay, omega2 = 0.5 * body[DASHPOT] / body[MASS], body[STIFFNESS] / body[MASS]
@@ -57,7 +58,7 @@ def fades(body: Array, time: float) -> tuple[float, float]:
     return 0.5 * (slow + fast), 0.5 * (slow - fast) / beat
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def slid(body: Array, state: Array, leg: Array, time: float) -> tuple[float, float]:
     """z in m and ż in m/s after a time in s of slipping."""
     decay, omega2 = 0.5 * body[DASHPOT] / body[MASS], body[STIFFNESS] / body[MASS]
@@ -69,13 +70,13 @@ def slid(body: Array, state: Array, leg: Array, time: float) -> tuple[float, flo
     return lag, drift + swing * (cosine - decay * sine) - omega2 * off * sine
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def pull(body: Array, lag: float, rate: float) -> float:
     """k z + c ż in N."""
     return float(body[STIFFNESS] * lag + body[DASHPOT] * rate)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def note(body: Array, state: Array, leg: Array, time: float, largest: Array) -> float:
     """What is larger than before, after a time in s of slipping; gives ż there in m/s."""
     lag, rate = slid(body, state, leg, time)
@@ -89,7 +90,7 @@ def note(body: Array, state: Array, leg: Array, time: float, largest: Array) -> 
     return float(rate)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def slide(body: Array, state: Array, leg: Array, time: float, sums: Array, largest: Array) -> None:
     """Slip through a time in s."""
     lag, speed, sign = state[LAG], state[SPEED], state[SIGN]
@@ -107,7 +108,7 @@ def slide(body: Array, state: Array, leg: Array, time: float, sums: Array, large
     sums[RUBBED] += sign * leg[FRICTION] * (leg[RATE] * time - end + lag)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def hold(body: Array, state: Array, leg: Array, time: float, sums: Array, largest: Array) -> None:
     """Stick through a time in s."""
     lag, rate = state[LAG], leg[RATE]
@@ -121,7 +122,7 @@ def hold(body: Array, state: Array, leg: Array, time: float, sums: Array, larges
     sums[DAMPED] += body[DASHPOT] * rate**2 * time
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def held_for(body: Array, state: Array, leg: Array, left: float) -> float:
     """For how many of the s left it sticks on, which gives σ of the slip to come, if one does."""
     bound = body[STICKING] * leg[FRICTION]
@@ -137,7 +138,7 @@ def held_for(body: Array, state: Array, leg: Array, left: float) -> float:
     return left
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def onward(body: Array, state: Array, leg: Array, time: float) -> tuple[float, float]:
     """σ ṡ in m/s and σ s̈ in m/s² after a time in s of slipping."""
     lag, rate = slid(body, state, leg, time)
@@ -145,7 +146,7 @@ def onward(body: Array, state: Array, leg: Array, time: float) -> tuple[float, f
     return state[SIGN] * (leg[RATE] - rate), state[SIGN] * forces / body[MASS]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def turns_within(
     body: Array, state: Array, leg: Array, which: int, rising: float, left: float
 ) -> float:
@@ -160,7 +161,7 @@ def turns_within(
     return high
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def slips_for(body: Array, state: Array, leg: Array, left: float) -> float:
     """For how many of the s left it slips on, until ṡ changes its sign, be it for a moment."""
     (_, begin), (speed, end) = onward(body, state, leg, 0.0), onward(body, state, leg, left)
@@ -171,14 +172,14 @@ def slips_for(body: Array, state: Array, leg: Array, left: float) -> float:
     return left if speed >= 0.0 else turns_within(body, state, leg, 0, -1.0, least)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def stands(body: Array, state: Array, leg: Array) -> bool:
     """Whether what stands sticks."""
     force = pull(body, state[LAG], leg[RATE]) + leg[PUSH]
     return bool(abs(force) <= body[STICKING] * leg[FRICTION])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def cover(body: Array, state: Array, leg: Array, time: float, sums: Array, largest: Array) -> None:
     """Go through a time in s whose data are straight."""
     left, turns = time, 0
@@ -202,7 +203,7 @@ def cover(body: Array, state: Array, leg: Array, time: float, sums: Array, large
         hold(body, state, leg, left, sums, largest)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def march_pulled(
     body: Array,
     step: float,

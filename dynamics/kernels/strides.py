@@ -8,7 +8,7 @@ from numba import njit
 
 from dynamics.arrays import Array, Indices
 from dynamics.contact_term import Limits
-from dynamics.kernels.compiled import SUMS
+from dynamics.kernels.compiled import LOOP, SUMS
 
 # Numbers of steps that are made at once.
 STRIDES = np.array([1, 8, 64, 512])
@@ -71,7 +71,7 @@ def closing_bounds(
         bounds[j] = swing + speed + fall * duration
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def safe_stride(
     y: Array, limits: Limits, bounds: Array, step: float, left: int, strides: Indices
 ) -> int:

@@ -11,10 +11,10 @@ from numba import njit
 
 from dynamics.arrays import Array
 from dynamics.contact_term import OfTerm, Terms, energy_of, force_of, slope_of
+from dynamics.kernels.compiled import LOOP
 
 term_force, term_energy, term_slope = (
-    njit(cache=True, nogil=True, error_model="numpy", inline="always")(of_term)
-    for of_term in (force_of, energy_of, slope_of)
+    njit(**LOOP, inline="always")(of_term) for of_term in (force_of, energy_of, slope_of)
 )
 
 COMPILED: dict[OfTerm, OfTerm] = {

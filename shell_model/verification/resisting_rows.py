@@ -19,6 +19,7 @@ from dynamics.contact import ContactLaw, contact_terms
 from dynamics.contact_term import Terms
 from dynamics.failure import StepTooLong
 from dynamics.friction import DryFriction
+from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.contact_kicks import contact_energy
 from geometry.arrays import Array
 
@@ -86,7 +87,7 @@ class ResistingRows:
         return float(contact_energy(self.readings[: self._contacts], self._terms))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def resist(problem: Problem, force: Array) -> bool:
     """Improve ``force`` (num_rows,) in N until it solves the problem; False if it does not.
 
@@ -117,7 +118,7 @@ def resist(problem: Problem, force: Array) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
     """Largest way in m by which a row misses its answer to the others; the answers' slopes."""
     compliance, free, _, _, _ = problem
@@ -129,7 +130,7 @@ def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
     return worst
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
     """A change of row j's force, as a multiple of one that is round-off."""
     reach = abs(free[j])
@@ -138,7 +139,7 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
     return abs(change) * compliance[j, j] / (_ROUND_OFF * reach) if reach > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _answer(problem: Problem, force: Array, j: int) -> tuple[float, float]:
     """The force of row j under those of the others, and its slope over what it would read."""
     compliance, free, terms, bound, place = problem

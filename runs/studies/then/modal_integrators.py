@@ -20,6 +20,7 @@ from dynamics.contact import contact_terms
 from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
+from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.contact_kicks import contact_energy, law_forces
 from dynamics.kernels.terms import term_slope
 from dynamics.motion import Motion
@@ -118,7 +119,7 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
     return Stepped(trajectory, lasted, unsettled)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
     """Fill in what contacts press with and hold, at gaps (num_times, num_rows)."""
     for k in range(len(gaps)):
@@ -126,7 +127,7 @@ def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
         energy[k] = contact_energy(gaps[k], terms)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
     """Gaps y (num_rows,) with y + ``cross`` F(y) = ``free``, by Newton's method; their forces."""
     for _ in range(NEWTON):
@@ -143,7 +144,7 @@ def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> 
     return False
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(**LOOP)
 def _march(
     system: tuple[Array, Array, Array, Terms, Array, Array],
     h: float,
