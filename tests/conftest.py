@@ -157,6 +157,8 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        # A rank that waits leaves its core to the other tests.
+        "OMPI_MCA_mpi_yield_when_idle": "1",
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
