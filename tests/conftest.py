@@ -157,14 +157,14 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        # A rank that waits leaves its core to the other tests.
         "OMPI_MCA_mpi_yield_when_idle": "1",
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-        launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"]
+        launcher = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none"]
         return subprocess.run(
             [*launcher, sys.executable, "-c", program, *arguments],
+            preexec_fn=_on_one_core,
             cwd=folder,
             env=environment,
             capture_output=True,
@@ -174,6 +174,14 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         )
 
     return run
+
+
+def _on_one_core() -> None:
+    """Ranks wait by looking again and again: those that share a core, and yield it, take no other
+    core from the tests of other workers."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
+    cores = sorted(os.sched_getaffinity(0))
+    os.sched_setaffinity(0, {cores[int(worker) % len(cores)]})
 
 
 @pytest.fixture
