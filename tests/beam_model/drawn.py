@@ -114,7 +114,7 @@ def runge_kutta(
 
     A thrust in N presses the inner segment, and the outer one as far as the inner one's tail.
     """
-    nodes = (0.0, 2.0, 3.5, 5.0, 7.5, 10.0), (5.0, 7.5, 10.0, 12.5, 15.0)
+    nodes = (0.0, 2.0, 5.0, 7.5, 10.0), (5.0, 7.5, 10.0, 12.5, 15.0)
     outer, inner = (Beam(segment, own) for segment, own in zip(boom.segments, nodes, strict=True))
     n, ends = outer.free.size, outer.free.size + inner.free.size
     stiffness, mass = (
