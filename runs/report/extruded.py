@@ -16,7 +16,8 @@ from geometry.typography import TO_MEGA
 from runs.pipeline.beam_output import BeamOutput, MovedSegment
 from runs.report.moving_surface import MovingSurface, few_shapes
 from shell_model.pictures.boom import DISPLACEMENT_DRAWN, PLAY_OF_SECTION, SECTION_DRAWN
-from shell_model.pictures.deformation import SAME_PLACE, WALL_DRAWN, round_scale
+from shell_model.pictures.deformation import SAME_PLACE, WALL_DRAWN
+from shell_model.pictures.theme import round_scale
 
 # A segment whose plates are unknown is drawn so high and wide, as a part of the boom's length.
 UNKNOWN = 0.015

@@ -16,9 +16,9 @@ def model_tables(results: Results) -> list[Table]:
     found = (
         model_table(results),
         step_table(results),
-        law_table(results),
         space_table(results),
         buckling_table(results),
+        law_table(results),
     )
     return [table for table in found if table is not None]
 

@@ -25,9 +25,8 @@ from shell_model.pictures.deformation import (
     MovingShell,
     Sign,
     Stop,
-    round_scale,
 )
-from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles, sharp_edges
+from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles, round_scale, sharp_edges
 
 # The whole boom: displacements are drawn up to this part of its length, sections so many times
 # larger, of which the play takes up to this part.

@@ -383,9 +383,3 @@ def _listed(fields: xr.Dataset, what: str, kind: type[_Kind]) -> list[_Kind]:
         return []
     columns = [fields[f"{what}_{name}"].values.tolist() for name in kind._fields]
     return [kind(*row) for row in zip(*columns, strict=True)]
-
-
-def round_scale(largest: float) -> float:
-    """The largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
-    decade = 10.0 ** np.floor(np.log10(largest))
-    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

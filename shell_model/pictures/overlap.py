@@ -16,8 +16,8 @@ from geometry.arrays import Array, Mask
 from geometry.typography import digits
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
-from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Overlap, round_scale
-from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles
+from shell_model.pictures.deformation import SAME_PLACE, MovingShell, Overlap
+from shell_model.pictures.theme import Camera, Scene, Sheet, Triangles, round_scale
 
 # A clearance is drawn up to this part of the outer section's height; room in m beside the stations.
 CLEARANCE_DRAWN, MARGIN = 0.08, 0.6

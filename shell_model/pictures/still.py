@@ -14,8 +14,8 @@ from PIL import Image
 from geometry.typography import digits
 from shell_model.pictures import theme as theme
 from shell_model.pictures.boom import Instant
-from shell_model.pictures.deformation import MovingShell, Overlap, round_scale
-from shell_model.pictures.theme import Camera, Scene, Sheet
+from shell_model.pictures.deformation import MovingShell, Overlap
+from shell_model.pictures.theme import Camera, Scene, Sheet, round_scale
 
 PIXELS = (theme.SHEET[0], 660)
 

@@ -308,3 +308,9 @@ class Sheet:
         for artist in sorted((*self._moving, *self._arrows), key=Artist.get_zorder):
             self.figure.draw_artist(artist)
         return Image.fromarray(page[..., :3].copy())
+
+
+def round_scale(largest: float) -> float:
+    """The largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
+    decade = 10.0 ** np.floor(np.log10(largest))
+    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

@@ -8,9 +8,10 @@ import pytest
 import xarray as xr
 
 from shell_model.pictures.boom import Instant, reach
-from shell_model.pictures.deformation import MovingShell, round_scale
+from shell_model.pictures.deformation import MovingShell
 from shell_model.pictures.rendering import where_pressed
 from shell_model.pictures.stress import apart, smoothed
+from shell_model.pictures.theme import round_scale
 from tests.shell_model.moving_segments import (
     CLEARANCE,
     INNER,
