@@ -27,10 +27,10 @@ from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
+from shell_model.observers import observers
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Reading
-from shell_model.segment.observers import observers
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
 
@@ -124,7 +124,11 @@ class BoomShell:
 
     @cached_property
     def foldings(self) -> Sequence[Folding]:
-        """Of the segments, once for all that is solved of their families. Collective."""
+        """Of the segments, once for all that is solved of their families. Collective.
+
+        Raises:
+            NumericsError: a segment is not its own mirror image.
+        """
         return [Folding(shell) for shell in self.shells]
 
     @property

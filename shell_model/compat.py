@@ -19,7 +19,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from geometry.arrays import Array, Indices
-from shell_model.segment import form_cache
+from shell_model import form_cache
 
 try:
     import basix.ufl

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from math import inf
@@ -157,31 +158,37 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        # Ranks wait by looking again and again: those that share a core, and yield it, take no
+        # other core from the tests of other workers.
         "OMPI_MCA_mpi_yield_when_idle": "1",
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
         launcher = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none"]
-        return subprocess.run(
-            [*launcher, sys.executable, "-c", program, *arguments],
-            preexec_fn=_on_one_core,
-            cwd=folder,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
+        with _on_one_core():
+            return subprocess.run(
+                [*launcher, sys.executable, "-c", program, *arguments],
+                cwd=folder,
+                env=environment,
+                capture_output=True,
+                text=True,
+                timeout=300,
+                check=False,
+            )
 
     return run
 
 
-def _on_one_core() -> None:
-    """Ranks wait by looking again and again: those that share a core, and yield it, take no other
-    core from the tests of other workers."""
+@contextmanager
+def _on_one_core() -> Iterator[None]:
+    """Keeps this thread, and the processes that it starts, on one core: its test worker's."""
     worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
-    cores = sorted(os.sched_getaffinity(0))
-    os.sched_setaffinity(0, {cores[int(worker) % len(cores)]})
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {sorted(cores)[int(worker) % len(cores)]})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, cores)
 
 
 @pytest.fixture

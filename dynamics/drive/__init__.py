@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What moves rows while a boom is drawn out."""
+"""What draws a boom out, rows and thrusts that go along, and drives that stick and slip."""

@@ -14,7 +14,7 @@ from numba import config, njit
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array
 
-# No C calls a loop: the entry that numba makes for that takes a tenth of the compilation.
+# No C calls a loop, and numba's entry for that takes time to compile.
 LOOP: Mapping[str, Any] = MappingProxyType(
     {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 )

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where segments end that are given by their lengths: the joints say how far each is drawn out.
-
-What is at a distance from their ends goes with them.
-"""
+"""Where segments end: by their spans, or by their lengths and how far joints draw them out."""
 
 from __future__ import annotations
 

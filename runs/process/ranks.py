@@ -27,6 +27,8 @@ _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 
 # Seconds for which another rank's message waits: if rank 0 has failed too, it speaks alone.
 _GRACE = 5.0
+# Seconds for which a message may wait to be read.
+_UNREAD = 5.0
 # Seconds between looks at whether the launcher has read a message.
 _LOOK = 1.0e-3
 
@@ -76,7 +78,7 @@ def _until_read(stream: int) -> None:
     if not stat.S_ISFIFO(os.fstat(stream).st_mode):
         return
     unread = array("i", [1])
-    deadline = time.monotonic() + _GRACE
+    deadline = time.monotonic() + _UNREAD
     while unread[0] and time.monotonic() < deadline:
         time.sleep(_LOOK)
         fcntl.ioctl(stream, termios.FIONREAD, unread)

@@ -26,10 +26,10 @@ from runs.studies.motions import SLOW
 from shell_model.contact.wall_points import gauss
 from shell_model.reduction.krylov import KrylovOptions, reduce_family
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.products import times
 from shell_model.segment.shell import Shell
 from shell_model.verification.lone_segment import shell_alone
 from shell_model.verification.plates import STEEL
@@ -169,17 +169,17 @@ def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[
     """A segment's families as shells, with triangles of a size in m."""
     whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
     rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
-    jobs = Folding(whole).jobs(rows, np.zeros((len(rows), 0)))
+    folding = Folding(whole)
     return {
         job.family: Quarter(
-            job.shell(),
+            job.shell(folding.part),
             {
                 probe.what: force
                 for probe, force in zip(probes, job.forces.T, strict=True)
                 if probe.family == job.family
             },
         )
-        for job in jobs
+        for job in folding.jobs(rows, np.zeros((len(rows), 0)))
     }
 
 

@@ -11,7 +11,7 @@ from geometry.section import BoxSection
 from runs.studies.box_pair import box
 from runs.studies.study import Held, Proof
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, Family
-from shell_model.reduction.products import quadratic_form
+from shell_model.segment.products import quadratic_form
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.solid import SolidFamily, assemble_solid
 from shell_model.verification.solid_mesh import mesh_quarter

@@ -21,8 +21,8 @@ from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from runs.studies.motions import friction_case
 from runs.studies.study import Held, Piece, Proof, Tell, titled
-from shell_model.reduction.products import quadratic_form
 from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.products import quadratic_form
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.lone_segment import compliances, shell_alone

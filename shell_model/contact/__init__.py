@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that read a shell where segments touch, rub or are held."""
+"""Where segments touch, rub or are tied: rows, and how much walls give way there."""

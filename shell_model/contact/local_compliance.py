@@ -18,7 +18,7 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from geometry.arrays import Array
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import Folding, Job, shared
+from shell_model.reduction.symmetry import Folding, Job, Part, shared
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
@@ -38,6 +38,7 @@ def full_compliance(shells: Sequence[SegmentShell], contacts: Sequence[Contact[R
         touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
         parts = [shell.row(contacts[i].reading[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
+        # Each folding goes with its segment; nothing else is asked of these shells.
         found[np.ix_(touching, touching)] += shell_compliance(Folding(shell), rows)
     return found
 
@@ -49,14 +50,14 @@ def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> 
     """
     comm, jobs = folding.shell.comm, folding.jobs(rows, rows[:, :0])
     found = np.zeros((rows.shape[1], rows.shape[1]))
-    for root, family in shared(comm, jobs, partial(_answers, frequency)):
+    for root, family in shared(comm, jobs, partial(_answers, folding.part, frequency)):
         found += comm.bcast(family, root)
     return found
 
 
-def _answers(frequency: float, _: int, job: Job) -> Array:
+def _answers(part: Part, frequency: float, _: int, job: Job) -> Array:
     """(num_rows, num_rows) the same of a family."""
-    solve = ShiftedSolver(job.shell(), frequency)
+    solve = ShiftedSolver(job.shell(part), frequency)
     answers = job.forces.T @ solve(job.forces)
     solve.destroy()
     return answers

@@ -83,10 +83,10 @@ class DrawnShell:
         self._passages = passages(boom, full, size)
         self.reduced: list[ReducedSegment] = []
         self._answers: list[Answers] = []
-        for number, folding in enumerate(full.foldings):
+        for number in range(len(full.shells)):
             own = reduce(number, self._columns(number, _EVERY))
             read = self._read(number)
-            self._answers.append(answers(folding, read.columns, test))
+            self._answers.append(answers(full.foldings[number], read.columns, test))
             self.reduced.append(self._kept(number, own, read))
         # Springs are what forces move beyond modes of the unloaded boom.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]

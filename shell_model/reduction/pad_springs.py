@@ -20,9 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Array
-from shell_model.reduction.products import times
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import Folding, Job, shared
+from shell_model.reduction.symmetry import Folding, Job, Part, shared
+from shell_model.segment.products import times
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
 # and of the fastest spring.
@@ -50,13 +50,13 @@ def answers(folding: Folding, columns: Array, test: float) -> Answers:
     """To columns (num_owned, num_columns), at ``SLOW`` and at ``test`` in Hz. Collective."""
     comm, jobs = folding.shell.comm, folding.jobs(columns, columns[:, :0])
     total = np.zeros((3, columns.shape[1], columns.shape[1]))
-    for root, family in shared(comm, jobs, partial(_answers, test)):
+    for root, family in shared(comm, jobs, partial(_answers, folding.part, test)):
         total += comm.bcast(family, root)
     return Answers(*total)
 
 
-def _answers(test: float, _: int, job: Job) -> Array:
-    shell = job.shell()
+def _answers(part: Part, test: float, _: int, job: Job) -> Array:
+    shell = job.shell(part)
     solve = ShiftedSolver(shell, SLOW)
     # Of all places pads press few.
     pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))

@@ -76,8 +76,7 @@ def reduce_segment(
         readings: (num_owned, num_readings) rows whose answer to the inputs is to be right too.
 
     Raises:
-        NumericsError: a compliance is not finite, the shell does not mirror itself, all inputs
-            are zero, or the tolerance is not met.
+        NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
     """
     comm = folding.shell.comm
     jobs = folding.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
@@ -88,9 +87,9 @@ def reduce_segment(
 
     def reduce_one(number: int, job: Job) -> FamilyCoordinates:
         mine = range(comm.rank, len(families), comm.size)
-        part = partial(_tell, progress, mine.index(number), len(mine))
+        tell = partial(_tell, progress, mine.index(number), len(mine))
         limited = replace(options, most=most[number])
-        return reduce_family(job.shell(), job.forces, job.readings, limited, part)
+        return reduce_family(job.shell(folding.part), job.forces, job.readings, limited, tell)
 
     parts = []
     shapes = []

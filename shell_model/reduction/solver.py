@@ -7,7 +7,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from geometry.arrays import Array
-from shell_model.reduction.products import dense
+from shell_model.segment.products import dense
 from shell_model.segment.shell import Shell
 
 # MUMPS's ICNTL(7): approximate minimum fill. A boom is long and thin: this ordering leaves as

@@ -66,8 +66,10 @@ class _Compact(Matrices):
 
 
 @dataclass(frozen=True)
-class Quarter:
+class Part:
     """The part of a segment, a quarter of it or half, whose mirror images are the rest.
+
+    Each rank assembles it once for all families that it computes; what is assembled stays there.
 
     Args:
         segment: the whole one.
@@ -81,22 +83,21 @@ class Quarter:
 
     @cached_property
     def plates(self) -> Plates:
-        """The same for all families, on the rank that asks."""
+        """On this rank alone."""
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh)
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
         """Places in m and rows of the displacements, and of the rotations."""
-        return [owned_nodes(self.plates.space, part) for part in (0, 1)]
+        return [owned_nodes(self.plates.space, kind) for kind in (0, 1)]
 
     @cached_property
     def rows(self) -> Rows:
         """What each row moves, and in which mirrors it lies."""
         return rows_of(self.nodes)
 
-    def __reduce__(self) -> tuple[type[Quarter], tuple[Any, ...]]:
-        """What was assembled stays where it is."""
-        return Quarter, (self.segment, self.mirrors, self.mesh)
+    def __reduce__(self) -> tuple[type[Part], tuple[Any, ...]]:
+        return Part, (self.segment, self.mirrors, self.mesh)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,30 +106,28 @@ class Job:
 
     Args:
         family: of the motions.
-        quarter: of the segment.
         forces, readings: (num_rows, num_columns) on that part's rows, images added up.
         springs, masses: of the segment, on these rows.
     """
 
     family: Family
-    quarter: Quarter
     forces: Array
     readings: Array
     springs: Attached
     masses: Attached
 
-    def shell(self) -> Shell:
-        """The quarter, with the energies of the whole segment."""
-        plates, mirrors = self.quarter.plates, self.quarter.mirrors
+    def shell(self, part: Part) -> Shell:
+        """A part of the segment, with the energies of the whole one."""
+        plates, mirrors = part.plates, part.mirrors
         holds = [
             *plates.holds,
             *(
-                hold(plates.space, part, component, partial(on_plane, axis=axis))
+                hold(plates.space, kind, component, partial(on_plane, axis=axis))
                 for axis in (COMPONENT[mirror] for mirror in mirrors)
-                for part, component in self.family.held(axis)
+                for kind, component in self.family.held(axis)
             ),
         ]
-        (nodes, node_dofs), (rotation_nodes, rotation_dofs) = self.quarter.nodes
+        (nodes, node_dofs), (rotation_nodes, rotation_dofs) = part.nodes
         return Shell(
             comm=MPI.COMM_SELF,
             matrices=_Compact(
@@ -144,12 +143,21 @@ class Job:
         )
 
 
-def _quarter(shell: SegmentShell) -> Quarter | None:
-    """Of a segment, on rank 0."""
-    if shell.mesh is None:
-        return None
-    mirrors = shell.section.mirrors
-    return Quarter(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
+def _part_of(shell: SegmentShell) -> Part:
+    """Of a segment, on each rank; assembled on rank 0, which folds. Collective."""
+    mirrors, comm = shell.section.mirrors, shell.comm
+
+    def of_mesh() -> Part | None:
+        if shell.mesh is None:
+            return None
+        part = Part(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
+        # Assembled here, where all ranks are told what fails.
+        assert part.nodes
+        return part
+
+    found = together(comm, of_mesh)
+    sent: Part = comm.bcast(found)
+    return found or sent
 
 
 class Folding:
@@ -164,18 +172,19 @@ class Folding:
 
     def __init__(self, shell: SegmentShell) -> None:
         self.shell, self._comm, self._mirrors = shell, shell.comm, shell.section.mirrors
-        self._part = together(self._comm, lambda: _quarter(shell))
+        self.part = _part_of(shell)
         parts = (shell.nodes, shell.node_dofs), (shell.rotation_nodes, shell.rotation_dofs)
         first, _ = shell.owned
-        self._row, self._quarter, self._component = np.empty((3, shell.free.size), dtype=np.int64)
+        shape = 3, shell.free.size
+        self._row, self._quarter_of_row, self._component = np.empty(shape, dtype=np.int64)
         for number, (nodes, dofs) in enumerate(parts):
             gathered = self._comm.gather(folded(nodes, self._mirrors))
             found: Sequence[Any] = []
-            if gathered is not None and self._part is not None:
-                places, rows = self._part.nodes[number]
+            if gathered is not None:
+                places, rows = self.part.nodes[number]
                 found = [rows[matches(some, places)] for some in gathered]
             self._row[dofs - first] = self._comm.scatter(found)
-            self._quarter[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
+            self._quarter_of_row[dofs - first] = quarter_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = components(number)
 
     def jobs(self, inputs: Array, readings: Array) -> list[Job]:
@@ -186,19 +195,19 @@ class Folding:
         shell = self.shell
         blocks = inputs, readings, shell.springs.rows, shell.masses.rows
         gathered = [self._gather(block) for block in blocks]
-        if self._part is None:
+        if self._comm.rank != 0:
             return []
-        images = [self._images(self._part, entries) for entries in gathered if entries is not None]
+        images = [self._images(entries) for entries in gathered if entries is not None]
         jobs = []
         for family in families(self._mirrors):
-            signs = family.signs[:, self._part.rows.component]
+            signs = family.signs[:, self.part.rows.component]
             forces, read, springs, masses = (_added_up(image, signs) for image in images)
             if forces.any():
                 attached = (
                     Attached(springs, shell.springs.factors),
                     Attached(masses, shell.masses.factors),
                 )
-                jobs.append(Job(family, self._part, forces, read, *attached))
+                jobs.append(Job(family, forces, read, *attached))
         return jobs
 
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
@@ -212,7 +221,7 @@ class Folding:
         every = sizes = None
         if rows is not None:
             every, sizes = np.concatenate(rows), [one.size for one in rows]
-        signs = family.signs[self._quarter, self._component]
+        signs = family.signs[self._quarter_of_row, self._component]
         unfolded = np.empty((self._row.size, count), order="F")
         for column in range(count):
             # One after another, so that no rank holds the whole block.
@@ -225,13 +234,13 @@ class Folding:
         """The numbers of a block that are not 0, on rank 0."""
         row, column = np.nonzero(block)
         value, columns = block[row, column], block.shape[1]
-        mine = _Entries(self._row[row], self._quarter[row], column, value, columns)
+        mine = _Entries(self._row[row], self._quarter_of_row[row], column, value, columns)
         return self._comm.gather(mine)
 
-    def _images(self, part: Quarter, gathered: list[_Entries]) -> Array:
+    def _images(self, gathered: list[_Entries]) -> Array:
         """(4, num_rows, num_columns) a block in each quarter; half in each of what lies between."""
-        in_mirrors = part.rows.in_mirrors
-        images = np.zeros((4, part.rows.component.size, gathered[0].columns))
+        in_mirrors = self.part.rows.in_mirrors
+        images = np.zeros((4, self.part.rows.component.size, gathered[0].columns))
         for entries in gathered:
             images[entries.quarter, entries.row, entries.column] = entries.value
         for axis in self._mirrors:

@@ -14,10 +14,10 @@ from geometry.boom import Direction, Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Section
 from shell_model import compat
-from shell_model.reduction.products import times
 from shell_model.segment.attachments import Attached, masses, springs
 from shell_model.segment.cross_section import Outline, Row
 from shell_model.segment.plates import assemble_plates
+from shell_model.segment.products import times
 from shell_model.segment.shell import Matrices, Plates, Shell, free_rows, owned_nodes
 
 # Part of the largest value below which a value of a load is round-off.

@@ -19,8 +19,8 @@ from petsc4py import PETSc
 from geometry.arrays import Array
 from geometry.boom import Segment
 from shell_model import compat
-from shell_model.reduction.products import times
 from shell_model.segment.forms import facet_frame, plane_stress, strains
+from shell_model.segment.products import times
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 

@@ -21,8 +21,8 @@ from petsc4py import PETSc
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.reduction.products import gram
 from shell_model.reduction.solver import ShiftedSolver
+from shell_model.segment.products import gram
 from shell_model.segment.segment_shell import SegmentShell
 
 # Relative residual of the accelerations at the start.

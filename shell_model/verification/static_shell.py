@@ -20,9 +20,9 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material
 from shell_model import compat
-from shell_model.reduction.products import times
 from shell_model.segment.attachments import Attached
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
+from shell_model.segment.products import times
 from shell_model.segment.shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
 
 # Part of the load that may be left over.

@@ -45,6 +45,9 @@ def tips(system: GapSystem) -> list[float]:
     return [float(system.observers[name].row @ rest) for name in ("tip", "head", "tail")]
 
 
+# The longest element in m, of the library's beams and of those here.
+LONGEST = 3.0
+
 # Coefficients (4, 4) of 1, ξ, ξ², ξ³ in the cubics of an element of unit length.
 HERMITE = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [-3, -2, 3, -1], [2, 1, -2, 1]], dtype=float)
 # i j and i + j − 1 of the powers from 1 on: ∫ d(ξⁱ) d(ξʲ) = i j ξⁱ⁺ʲ⁻¹/(i + j − 1).
@@ -114,6 +117,7 @@ def runge_kutta(
 
     A thrust in N presses the inner segment, and the outer one as far as the inner one's tail.
     """
+    # Those of the library's elements, of LONGEST at most.
     nodes = (0.0, 2.0, 5.0, 7.5, 10.0), (5.0, 7.5, 10.0, 12.5, 15.0)
     outer, inner = (Beam(segment, own) for segment, own in zip(boom.segments, nodes, strict=True))
     n, ends = outer.free.size, outer.free.size + inner.free.size

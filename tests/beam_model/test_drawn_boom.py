@@ -20,7 +20,7 @@ from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive
-from tests.beam_model.drawn import DRAWN, LAW, runge_kutta, shifted, telescope, tips
+from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, shifted, telescope, tips
 
 
 def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None]) -> Boom:
@@ -123,7 +123,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     boom = telescope(paper_boom, 0.0, Drive(history, DRAWN.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
     boom = replace(boom, segments=segments)
-    system = finite_element_system(boom, [LAW], element_length=3.0, rotary_inertia=False)
+    system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
     runs = [integrate(Motion(system, 0.6, 5.0e-3), step) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time)
     assert runs[0].data.attrs["contact_changes"] > 2
@@ -164,7 +164,7 @@ def test_out_and_in_again(paper_boom: Boom) -> None:
     assert drawn.data.attrs["contact_changes"] == 0
     assert np.abs(drawn.states - rest.states).max() < 1.0e-9 * np.abs(rest.states).max()
     gaps = drawn.data["gap"].values
-    assert np.abs(gaps[20] - rest.data["gap"].values[20]).max() > 1.0e-6
+    assert np.abs(gaps[20] - rest.data["gap"].values[20]).max() > 0.01 * np.abs(gaps[20]).max()
     assert gaps[-1] == pytest.approx(rest.data["gap"].values[-1], rel=1e-6, abs=1e-12)
 
 

@@ -26,7 +26,7 @@ from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
 from geometry.drive import Carrier, Drive
-from tests.beam_model.drawn import DRAWN, LAW, runge_kutta, telescope, tips
+from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, telescope, tips
 
 GRAVITY = 8.5
 THRUST = 1.5e4
@@ -139,7 +139,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     thrust = 1.0e5
     ropes = [Thrust(1, inner.end, thrust)]
     boom = replace(drawn, segments=with_compression((outer, inner), drawn.joints, ropes))
-    system = finite_element_system(boom, [LAW], element_length=3.0, rotary_inertia=False)
+    system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
     runs = [integrate(Motion(system, 0.6, 5.0e-3), step) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time, thrust)
     errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]

@@ -16,8 +16,8 @@ from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_seg
 from geometry.plating import plated
 from geometry.section import Section
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.products import times
 from shell_model.reduction.symmetry import Folding, Job
+from shell_model.segment.products import times
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, UNEQUAL
@@ -64,7 +64,7 @@ def test_rigid_motions_belong_to_their_families(
     folding, jobs = _everything(shell)
     assert [job.family for job in jobs] == list(own)
     for job in jobs:
-        found = folding.unfold(job.shell().rigid_motions(), job.family, 0)
+        found = folding.unfold(job.shell(folding.part).rigid_motions(), job.family, 0)
         expected = motions[:, own[job.family]]
         assert found.shape == expected.shape
         combination = np.linalg.lstsq(expected, found, rcond=None)[0]
@@ -84,7 +84,7 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
     shell = shells[kind]()
     folding, jobs = _everything(shell)
     for job in jobs:
-        quarter = job.shell()
+        quarter = job.shell(folding.part)
         motion = np.random.default_rng(2).standard_normal((quarter.num_dofs, 1))
         motion *= quarter.free[:, None]
         whole = folding.unfold(motion, job.family, 0)
@@ -108,7 +108,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
     for job in folding.jobs(force, force):
         assert np.array_equal(job.forces, job.readings)
         motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
-        motion *= job.shell().free[:, None]
+        motion *= job.shell(folding.part).free[:, None]
         parts += (job.forces.T @ motion)[:, 0]
         total += (force.T @ folding.unfold(motion, job.family, 0))[:, 0]
     assert parts == pytest.approx(total, rel=1.0e-10)

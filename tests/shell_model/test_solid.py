@@ -21,10 +21,10 @@ from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.products import quadratic_form, times
 from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Outline
+from shell_model.segment.products import quadratic_form, times
 from shell_model.segment.segment_shell import assemble_segment
 from shell_model.verification.eigenmodes import natural_frequencies
 from shell_model.verification.solid import SolidFamily, assemble_solid
@@ -195,9 +195,10 @@ def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     mesh = mesh_segment(thin, {"a": 0.0, "held": 0.5, "b": 2.0}, 0.05)
     shell = assemble_segment(MPI.COMM_SELF, box, plated(box, mesh))
     lift = shell.row(shell.outline(2.0).wall_deflection("z"))
-    (job,) = Folding(shell).jobs(lift[:, None], np.zeros((lift.size, 0)))
+    folding = Folding(shell)
+    (job,) = folding.jobs(lift[:, None], np.zeros((lift.size, 0)))
     assert job.family == ALONG_Z
-    quarter = job.shell()
+    quarter = job.shell(folding.part)
     solid = assemble_solid(box, mesh_quarter(thin, (0.0, 0.5, 2.0), (0.02, 0.2), 0.05), ALONG_Z)
     of_shell, of_solid = (
         _compliance(model, row)
