@@ -18,7 +18,7 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from geometry.arrays import Array
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import Folding, Job, Part, shared
+from shell_model.reduction.symmetry import FoldedPart, Folding, Job, shared
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
 
@@ -55,7 +55,7 @@ def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> 
     return found
 
 
-def _answers(part: Part, frequency: float, _: int, job: Job) -> Array:
+def _answers(part: FoldedPart, frequency: float, _: int, job: Job) -> Array:
     """(num_rows, num_rows) the same of a family."""
     solve = ShiftedSolver(job.shell(part), frequency)
     answers = job.forces.T @ solve(job.forces)

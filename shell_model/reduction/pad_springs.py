@@ -21,7 +21,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import Folding, Job, Part, shared
+from shell_model.reduction.symmetry import FoldedPart, Folding, Job, shared
 from shell_model.segment.products import times
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
@@ -55,7 +55,7 @@ def answers(folding: Folding, columns: Array, test: float) -> Answers:
     return Answers(*total)
 
 
-def _answers(part: Part, test: float, _: int, job: Job) -> Array:
+def _answers(part: FoldedPart, test: float, _: int, job: Job) -> Array:
     shell = job.shell(part)
     solve = ShiftedSolver(shell, SLOW)
     # Of all places pads press few.

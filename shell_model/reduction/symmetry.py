@@ -66,7 +66,7 @@ class _Compact(Matrices):
 
 
 @dataclass(frozen=True)
-class Part:
+class FoldedPart:
     """The part of a segment, a quarter of it or half, whose mirror images are the rest.
 
     Each rank assembles it once for all families that it computes; what is assembled stays there.
@@ -96,8 +96,8 @@ class Part:
         """What each row moves, and in which mirrors it lies."""
         return rows_of(self.nodes)
 
-    def __reduce__(self) -> tuple[type[Part], tuple[Any, ...]]:
-        return Part, (self.segment, self.mirrors, self.mesh)
+    def __reduce__(self) -> tuple[type[FoldedPart], tuple[Any, ...]]:
+        return FoldedPart, (self.segment, self.mirrors, self.mesh)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ class Job:
     springs: Attached
     masses: Attached
 
-    def shell(self, part: Part) -> Shell:
+    def shell(self, part: FoldedPart) -> Shell:
         """A part of the segment, with the energies of the whole one."""
         plates, mirrors = part.plates, part.mirrors
         holds = [
@@ -143,20 +143,20 @@ class Job:
         )
 
 
-def _part_of(shell: SegmentShell) -> Part:
+def _part_of(shell: SegmentShell) -> FoldedPart:
     """Of a segment, on each rank; assembled on rank 0, which folds. Collective."""
     mirrors, comm = shell.section.mirrors, shell.comm
 
-    def of_mesh() -> Part | None:
+    def of_mesh() -> FoldedPart | None:
         if shell.mesh is None:
             return None
-        part = Part(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
+        part = FoldedPart(shell.segment, mirrors, quarter_mesh(shell.mesh, mirrors))
         # Assembled here, where all ranks are told what fails.
         assert part.nodes
         return part
 
     found = together(comm, of_mesh)
-    sent: Part = comm.bcast(found)
+    sent: FoldedPart = comm.bcast(found)
     return found or sent
 
 
