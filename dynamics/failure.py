@@ -8,9 +8,5 @@ class NumericsError(RuntimeError):
     """The result is not finite, or its energy is out of bound. The message names the remedy."""
 
 
-class StepTooLong(NumericsError):
-    """One that smaller steps may mend."""
-
-
 # What numbers out of proportion may lead to, wherever they come to light.
 NUMERICS = NumericsError, ArithmeticError, np.linalg.LinAlgError, ValueError

@@ -10,11 +10,8 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 
-# Output intervals that are made at once; later a hundredth of those that have been made.
-_AT_ONCE = 100
-
-# Arrays of them take some MB, and between them a run can be stopped.
-_STEPS_AT_ONCE = 2**17
+# Steps of a motion at the default tolerance at most: chaotic motion has no step that keeps it.
+MOST_STEPS = 250_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,30 +61,7 @@ class Motion:
         """How many output steps are made."""
         return max(1, round(self.duration / self.output_step))
 
-    def until(self, done: int, substeps: int) -> int:
-        """How many output steps are made before a motion that has ``done`` of them is looked at.
-
-        Whatever its duration, so that a short motion is the beginning of a longer one.
-        ``substeps`` make an output step.
-        """
-        most = min(max(_AT_ONCE, done // _AT_ONCE), max(1, _STEPS_AT_ONCE // substeps))
-        return min(self.outputs, done + most)
-
-    def checks(self, first: int, done: int) -> list[int]:
-        """Up to which output steps its energy is held against that put in, from ``first`` on.
-
-        A hundredth of all apart, and at ``done``: what is lost early is little of the whole.
-        """
-        apart = max(1, self.outputs // 100)
-        return [*range(first + apart, done, apart), done]
-
     @property
     def from_rest(self) -> bool:
         """Whether nothing moves or is bent at t = 0."""
         return not (self.position.any() or self.velocity.any())
-
-    @property
-    def initial_speeds(self) -> Array:
-        """(num_modes,) √(v² + ω² a²), the speed that each mode reaches from its initial state."""
-        strained = np.maximum(self.system.omega2, 0.0) * self.position**2
-        return np.asarray(np.sqrt(self.velocity**2 + strained))

@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from dynamics.friction import DryFriction as DryFriction
     from dynamics.gap_system import GapSystem as GapSystem
     from dynamics.gap_system import Observer as Observer
-    from dynamics.integrators.integrator import Events as Events
-    from dynamics.integrators.integrator import Integrator as Integrator
-    from dynamics.integrators.integrator import Splitting as Splitting
-    from dynamics.integrators.integrator import simulate as simulate
+    from dynamics.integrator import AdaptiveStep as AdaptiveStep
+    from dynamics.integrator import FixedStep as FixedStep
+    from dynamics.integrator import Integrator as Integrator
+    from dynamics.integrator import simulate as simulate
     from dynamics.motion import Motion as Motion
     from dynamics.predictability.ensemble import integrate_ensemble as integrate_ensemble
     from dynamics.predictability.horizon import measure_horizons as measure_horizons
@@ -104,7 +104,7 @@ _HOMES = {
         "dynamics.failure": "NumericsError",
         "dynamics.friction": "DryFriction",
         "dynamics.gap_system": "GapSystem Observer",
-        "dynamics.integrators.integrator": "Events Integrator Splitting simulate",
+        "dynamics.integrator": "AdaptiveStep FixedStep Integrator simulate",
         "dynamics.motion": "Motion",
         "dynamics.drive.moving_thrust": "MovingThrust",
         "dynamics.predictability.ensemble": "integrate_ensemble",

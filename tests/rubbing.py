@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dynamics.integrators import splitting
 
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import splitting
 from dynamics.kernels import lossy_steps
 from dynamics.motion import Motion
 

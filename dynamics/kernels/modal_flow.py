@@ -1,129 +1,198 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The exact motion of uncoupled damped modes under loads that are straight lines in time."""
+"""The exact motion of uncoupled damped modes within one time step.
+
+Every mode obeys ä + c ȧ + ω² a = Q + S (t/h − ½), with a mean force Q that is constant within the
+step of length h, and a change S of the loads. With s(t) the response to a unit impulse,
+r = ∫ s dt, p = ∫ r dt/h and u = ∫∫ r dt dt/h²,
+
+    a₁ = (1 − ω² r) a₀ + s v₀ + r Q + (p − r/2) S
+    v₁ = −ω² s a₀ + (1 − c s − ω² r) v₀ + s Q + (r/h − s/2) S
+    ā  = (1 − ω² p) a₀ + (r/h) v₀ + p Q + (u − p/2) S
+
+The work of Q is Q (a₁ − a₀), that of S is S ((a₀ + a₁)/2 − ā), and the damping loss c ∫ v² dt is a
+quadratic form of v₀, v̇₀ and S/h.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.linalg import expm
 from scipy.special import spherical_jn
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP, SUMS
-from dynamics.kernels.integrator_state import DAMPING, WORK
+
+# Within (c + |ω|) h of 1 or less the power series converge in so many terms.
+_TERMS = 24
 
 
-@dataclass(frozen=True, slots=True)
-class ModalFlow:
-    """The exact map (a, v) → (a, v) of uncoupled damped modes over one step.
+class Flow(NamedTuple):
+    """The coefficients of steps of several lengths, the later ones each half as long.
 
-    Each array is (num_modes,): a' = aa a + av v + ap, v' = va a + vv v + vp under the constant
-    load. A further unit load moves a by ``rise`` and v by av; one that grows from 0 to 1 over the
-    step moves a by ``ramp`` and v by rise / step, and a in the mean over the step by ``mean``.
+    Args:
+        time: (num_lengths,) h in s.
+        omega2, damping: (num_modes,) ω² in 1/s² and c in 1/s.
+        impulse, rise, ramp, drift: (num_lengths, num_modes) s in s, and r, p, u in s².
+        loss: (num_lengths, 6, num_modes) c ∫ of αα, αβ, ββ, αr, βr, rr over the step, with
+            v = α v₀ + β v̇₀ + r S/h; no columns without damping.
     """
 
-    aa: Array
-    av: Array
-    ap: Array
-    va: Array
-    vv: Array
-    vp: Array
+    time: Array
+    omega2: Array
+    damping: Array
+    impulse: Array
     rise: Array
     ramp: Array
-    mean: Array
-
-    @classmethod
-    def over(cls, system: GapSystem, step: float) -> ModalFlow:
-        """The flow of ``system`` without contact over ``step`` seconds."""
-        omega = system.omega
-        cosine = np.cos(omega * step)
-        # h·sinc and h²·sinc²/2 reach through ω = 0, where the mode is rigid.
-        sine = step * np.sinc(omega * step / np.pi)
-        half = np.sinc(0.5 * omega * step / np.pi)
-        rise = 0.5 * step**2 * half**2
-        ramp = step**2 * _lag(omega * step)
-        mean = 0.125 * step**2 * (1.0 + half) * _lag(0.5 * omega * step)
-        rows = np.array([cosine, sine, -system.omega2 * sine, cosine, rise, ramp, mean])
-        for i in np.flatnonzero((system.damping > 0.0) | (system.omega2 < 0.0)):
-            rows[:, i] = _general_flow(float(system.omega2[i]), float(system.damping[i]), step)
-        aa, av, va, vv, rise, ramp, mean = rows
-        return cls(aa, av, rise * system.load, va, vv, av * system.load, rise, ramp, mean)
+    drift: Array
+    loss: Array
 
 
-def stacked_flows(system: GapSystem, times: Array) -> Array:
-    """(num_times, 11, num_modes) in the compiled loops' layout, with ω² and the constant load."""
-    flows = [ModalFlow.over(system, time) for time in times.tolist()]
-    own = [[getattr(flow, name) for name in ModalFlow.__slots__] for flow in flows]
-    return np.array([[*rows, system.omega2, system.load] for rows in own])
+def modal_flow(system: GapSystem, times: Array) -> Flow:
+    """Return the flow of the modes of a system over each of the times (num_lengths,) in s."""
+    found = [_flow_over(system.omega2, system.damping, time) for time in times.tolist()]
+    impulse, rise, ramp, drift, loss = (np.array(part) for part in zip(*found, strict=True))
+    omega2, damping = (np.ascontiguousarray(part) for part in (system.omega2, system.damping))
+    return Flow(times, omega2, damping, impulse, rise, ramp, drift, loss)
+
+
+def _flow_over(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
+    """Return s, r, p, u (num_modes,) and the integrals of the loss (6, num_modes) of one step."""
+    phase = np.sqrt(np.maximum(omega2, 0.0)) * time
+    half = _sinc(0.5 * phase)
+    impulse, rise = time * _sinc(phase), 0.5 * time**2 * half**2
+    ramp = time**2 * _lag(phase)
+    drift = 0.125 * time**2 * (1.0 + half) * _lag(0.5 * phase)
+    loss = np.zeros((6, c.size if c.any() else 0))
+    general = np.flatnonzero((c > 0.0) | (omega2 < 0.0))
+    if general.size:
+        *found, integrals = _damped_flow(omega2[general], c[general], time)
+        for of_all, of_some in zip((impulse, rise, ramp, drift), found, strict=True):
+            of_all[general] = of_some
+        if loss.size:
+            loss[:, general] = c[general] * integrals
+    return impulse, rise, ramp, drift, loss
 
 
 def _lag(x: Array) -> Array:
-    """(1 − sinc x)/x² with sinc x = sin x / x, through x = 0 by a spherical Bessel function."""
-    sinc, half = np.sinc(x / np.pi), np.sinc(0.5 * x / np.pi)
-    return np.asarray(0.5 * half**2 - (sinc + spherical_jn(2, x)) / 3.0)
+    """Return (1 − sin(x)/x)/x², through x = 0 by a spherical Bessel function."""
+    return np.asarray(0.5 * _sinc(0.5 * x) ** 2 - (_sinc(x) + spherical_jn(2, x)) / 3.0)
 
 
-def _general_flow(omega2: float, damping: float, step: float) -> Array:
-    """(7,) aa, av, va, vv, rise, ramp, mean of one damped mode, or of one that tips over.
+def _sinc(x: Array) -> Array:
+    """Return sin(x)/x. numpy's sinc rounds the argument, so that cos² + sin² drifts from 1."""
+    return np.divide(np.sin(x), x, out=np.ones(x.shape), where=x > 0.0)
 
-    By the matrix exponential: its closed forms cancel where damping or step is small. Lengths are
-    scaled so that both unknowns are velocities.
+
+def _damped_flow(omega2: Array, c: Array, time: float) -> tuple[Array, Array, Array, Array, Array]:
+    """Return s, r, p, u (num_modes,) and the integrals (6, num_modes) of damped or tipping modes.
+
+    Power series of s'' = −c s' − ω² s over a part of the step, and doublings of that part: closed
+    forms cancel where damping or step is small.
     """
-    scale = max(np.sqrt(np.abs(omega2)), 1.0 / step)
-    generator = np.zeros((5, 5))
-    generator[0, 1] = scale
-    generator[1] = [-omega2 / scale, -damping, 1.0, 0.0, 0.0]
-    generator[2, 3] = generator[3, 4] = 1.0 / step
-    (aa, av, rise, ramp, mean), (va, vv, _, _, _), _, _, _ = expm(step * generator)
-    return np.array([aa, av / scale, va * scale, vv, rise / scale, ramp / scale, mean / scale])
+    doublings = np.maximum(0.0, np.ceil(np.log2(time * (c + np.sqrt(np.abs(omega2))) + 1e-300)))
+    t = time / 2.0**doublings
+    older, newer = np.zeros(t.size), t.copy()
+    sine, rise, fall, drift = t.copy(), t**2 / 2.0, t**3 / 6.0, t**4 / 24.0
+    # Taylor coefficients of α, β and r over the part, for the integrals of their products.
+    series = np.zeros((3, _TERMS, t.size))
+    series[1, 1], series[2, 2] = t, 0.5 * t**2
+    for k in range(2, _TERMS):
+        older, newer = newer, -t / k * (c * newer + omega2 * t / (k - 1) * older)
+        sine += newer
+        rise += newer * t / (k + 1)
+        fall += newer * t**2 / ((k + 1) * (k + 2))
+        drift += newer * t**3 / ((k + 1) * (k + 2) * (k + 3))
+        series[1, k] = newer
+        if k + 1 < _TERMS:
+            series[2, k + 1] = newer * t / (k + 1)
+    # α = s' + c s.
+    powers = np.arange(1, _TERMS)
+    series[0, :-1] = series[1, 1:] * powers[:, None] / t
+    series[0] += c * series[1]
+    number = np.arange(_TERMS)
+    weights = 1.0 / (1.0 + number[:, None] + number)
+    gram = t * np.einsum("akm,kl,blm->abm", series, weights, series)
+    for doubling in range(int(doublings.max(initial=0.0))):
+        go = doubling < doublings
+        vv, aa = 1.0 - c * sine - omega2 * rise, 1.0 - omega2 * rise
+        # (v, v̇, S/h) at the end of a part: v = α v₀ + β v̇₀ + r S/h, v̇ its derivative.
+        zero, one = np.zeros(t.size), np.ones(t.size)
+        onward = np.array(
+            [[vv + c * sine, sine, rise], [-omega2 * sine, vv, sine], [zero, zero, one]]
+        )
+        more = gram + np.einsum("kam,klm,lbm->abm", onward, gram, onward)
+        new_drift = 2.0 * drift + (t - omega2 * fall) * fall + rise**2 + t * fall
+        new_fall = fall + aa * fall + sine * rise + t * rise
+        new_rise = rise + aa * rise + sine**2
+        new_sine = sine * (aa + vv)
+        for old, new in ((drift, new_drift), (fall, new_fall), (rise, new_rise), (sine, new_sine)):
+            old[go] = new[go]
+        gram[..., go] = more[..., go]
+        t = np.where(go, 2.0 * t, t)
+    pairs = gram[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
+    return sine, rise, fall / time, drift / time**2, pairs
 
 
-@njit(**LOOP)
-def tabulate(flow: Array, omega2: Array, load: Array, damping: Array, time: float) -> None:
-    """Fill ``flow`` (11, num_modes) for any time, as :func:`stacked_flows` does.
+@njit(**SUMS)
+def free_flow(
+    a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array
+) -> None:
+    """Set ``end`` to a₁; arguments as of :func:`finish_flow`."""
+    impulse, rise, ramp = flow.impulse[length], flow.rise[length], flow.ramp[length]
+    for i in range(a.size):
+        end[i] = a[i] + impulse[i] * v[i] + rise[i] * (force[i] - flow.omega2[i] * a[i])
+    for i in range(change.size):
+        end[i] += (ramp[i] - 0.5 * rise[i]) * change[i]
 
-    By the power series of the response to a unit impulse, x'' = −c x' − ω² x, and of its
-    integrals over a time as short as needed, and doublings of that time.
+
+@njit(**SUMS)
+def finish_flow(
+    a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array,
+    load: Array,
+) -> tuple[float, float]:  # fmt: skip
+    """Advance a and v (num_modes,) to the end of a step; return work and damping loss in J.
+
+    Args:
+        a, v: at the start of the step.
+        flow: of steps of several lengths,
+        length: the position of this one.
+        force: (num_modes,) the mean Q of all forces in N/√kg, and
+        change: (num_modes,) the change S of the loads in it; empty where they are constant.
+        end: (num_modes,) a₁.
+        load: (num_modes,) the part of Q whose work is returned, with that of S.
     """
-    for i in range(omega2.size):
-        c, square = damping[i], omega2[i]
-        doublings = max(0.0, np.ceil(np.log2(time * (c + np.sqrt(abs(square))) + 1.0e-300)))
-        t = time / 2.0**doublings
-        older, newer = 0.0, t  # terms of x's derivatives at 0
-        sine, rise, fall, drift = t, 0.5 * t * t, t * t * t / 6.0, t * t * t * t / 24.0
-        for k in range(2, 40):
-            older, newer = newer, -t / k * (c * newer + square * t / (k - 1) * older)
-            sine += newer
-            rise += newer * t / (k + 1)
-            fall += newer * t * t / ((k + 1) * (k + 2))
-            drift += newer * t * t * t / ((k + 1) * (k + 2) * (k + 3))
-            if abs(newer) + abs(older) < 1.0e-18 * t:
-                break
-        for _ in range(int(doublings)):
-            aa, vv = 1.0 - square * rise, 1.0 - c * sine - square * rise
-            drift += drift + (t - square * fall) * fall + rise * rise + t * fall
-            fall += aa * fall + sine * rise + t * rise
-            rise += aa * rise + sine * sine
-            sine *= aa + vv
-            t *= 2.0
-        flow[0, i] = 1.0 - square * rise
-        flow[1, i] = sine
-        flow[2, i] = rise * load[i]
-        flow[3, i] = -square * sine
-        flow[4, i] = 1.0 - c * sine - square * rise
-        flow[5, i] = sine * load[i]
-        flow[6, i] = rise
-        flow[7, i] = fall / time
-        flow[8, i] = drift / (time * time)
-        flow[9, i], flow[10, i] = square, load[i]
+    h, omega2, damping = flow.time[length], flow.omega2, flow.damping
+    impulse, rise, ramp = flow.impulse[length], flow.rise[length], flow.ramp[length]
+    drift, loss = flow.drift[length], flow.loss[length]
+    work = 0.0
+    lost = 0.0
+    for i in range(a.size):
+        work += load[i] * (end[i] - a[i])
+    for i in range(change.size):
+        mean = (1.0 - omega2[i] * ramp[i]) * a[i] + rise[i] / h * v[i] + ramp[i] * force[i]
+        mean += (drift[i] - 0.5 * ramp[i]) * change[i]
+        work += change[i] * (0.5 * (a[i] + end[i]) - mean)
+    for i in range(loss.shape[1]):
+        tilt = change[i] if change.size > 0 else 0.0
+        rate = force[i] - 0.5 * tilt - damping[i] * v[i] - omega2[i] * a[i]
+        tilt /= h
+        lost += v[i] * (loss[0, i] * v[i] + 2.0 * (loss[1, i] * rate + loss[3, i] * tilt))
+        lost += rate * (loss[2, i] * rate + 2.0 * loss[4, i] * tilt) + loss[5, i] * tilt * tilt
+    for i in range(a.size):
+        pull = force[i] - damping[i] * v[i] - omega2[i] * a[i]
+        v[i] += impulse[i] * pull - omega2[i] * rise[i] * v[i]
+        a[i] = end[i]
+    for i in range(change.size):
+        v[i] += (rise[i] / h - 0.5 * impulse[i]) * change[i]
+    return work, lost
 
 
 @njit(**SUMS)
 def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
-    """Kinetic and strain energy in J."""
+    """Return kinetic and strain energy in J."""
     kinetic = 0.0
     strain = 0.0
     for i in range(a.size):
@@ -132,74 +201,18 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
     return 0.5 * kinetic, 0.5 * strain
 
 
-@njit(**SUMS)
-def _energy_under_load(a: Array, v: Array, flow: Array) -> float:
-    """Kinetic and strain energy less load times way, which modes without damping keep."""
-    total = 0.0
-    for i in range(a.size):
-        total += 0.5 * (v[i] * v[i] + flow[9, i] * a[i] * a[i]) - flow[10, i] * a[i]
-    return total
-
-
-@njit(**SUMS)
-def move(a: Array, v: Array, flow: Array) -> None:
-    for i in range(a.size):
-        ai = a[i]
-        vi = v[i]
-        a[i] = flow[0, i] * ai + flow[1, i] * vi + flow[2, i]
-        v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i]
-
-
-@njit(**SUMS)
-def drive(a: Array, flow: Array, now: Array, then: Array) -> None:
-    """Add to ``a`` what a load does to it that goes straight from now to then, (num_modes,)."""
-    for i in range(a.size):
-        a[i] += flow[6, i] * now[i] + flow[7, i] * (then[i] - now[i])
-
-
-@njit(**SUMS)
-def _driven_move(a: Array, v: Array, flow: Array, time: float, now: Array, then: Array) -> float:
-    """Move under a load that goes from now to then too; gives its work in J.
-
-    ∫ p·ȧ dt = [p·a] − ṗ·∫ a dt, the integral exact as the flow is.
-    """
-    work = 0.0
-    for i in range(a.size):
-        ai, vi, more = a[i], v[i], then[i] - now[i]
-        held = flow[10, i] + now[i]
-        a[i] = flow[0, i] * ai + flow[1, i] * vi + flow[2, i] + flow[6, i] * now[i]
-        a[i] += flow[7, i] * more
-        v[i] = flow[3, i] * ai + flow[4, i] * vi + flow[5, i] + flow[1, i] * now[i]
-        v[i] += flow[6, i] / time * more
-        mean = (1.0 - flow[9, i] * flow[7, i]) * ai + flow[6, i] / time * vi
-        mean += flow[7, i] * held + flow[8, i] * more
-        work += then[i] * a[i] - now[i] * ai - more * mean
-    return work
-
-
-@njit(**SUMS)
-def mean_place(
-    a: Array, v: Array, flow: Array, time: float, now: Array, then: Array, mean: Array
-) -> None:
-    """Fill in where the modes are in the mean while they move under a load from now to then."""
-    for i in range(a.size):
-        mean[i] = (1.0 - flow[9, i] * flow[7, i]) * a[i] + flow[6, i] / time * v[i]
-        mean[i] += flow[7, i] * (flow[10, i] + now[i]) + flow[8, i] * (then[i] - now[i])
-
-
 @njit(**LOOP)
-def travel(
-    a: Array, v: Array, flow: Array, time: float, damped: bool, now: Array, then: Array,
-    tally: Array,
-) -> None:  # fmt: skip
-    """:func:`move`, with excitations; enters their work and the damping loss in J.
+def compliance(ends: Array, rows: Array, rise: Array) -> Array:
+    """Return C = E diag(r) Rᵀ (num_rows, num_rows) of rows at the end and in the mean of a step.
 
-    Args:
-        now, then: (num_modes,) what they push with at the start and at the end, in N/√kg.
-        tally: of the integration.
+    No product of BLAS, whose last bits depend on threads and on addresses in memory.
     """
-    held = _energy_under_load(a, v, flow) if damped else 0.0
-    work = _driven_move(a, v, flow, time, now, then)
-    tally[WORK] += work
-    if damped:
-        tally[DAMPING] += held + work - _energy_under_load(a, v, flow)
+    count = rows.shape[0]
+    result = np.zeros((count, count))
+    for j in range(count):
+        for k in range(count):
+            total = 0.0
+            for i in range(rise.size):
+                total += ends[j, i] * rise[i] * rows[k, i]
+            result[j, k] = total
+    return result

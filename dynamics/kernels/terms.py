@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Terms of contact laws, made part of the loops that import them.
+"""Terms of contact laws in compiled loops: force, energy, slope and discrete gradient.
 
-Their formulas stand in :mod:`dynamics.contact_term`, which is read without numba: it takes longer
-to load than a case to check.
+The formulas of the first three stand in :mod:`dynamics.contact_term`, which imports without numba:
+importing numba takes longer than checking a case.
 """
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
@@ -23,6 +24,9 @@ COMPILED: dict[OfTerm, OfTerm] = {
     slope_of: term_slope,
 }
 
+# Below this relative change of a penetration the difference quotient of a slope is round-off.
+_CLOSE = 1.0e-3
+
 
 @njit(nogil=True, error_model="numpy")
 def add_terms(of_term: OfTerm, terms: Terms, y: Array, total: Array) -> None:
@@ -30,3 +34,55 @@ def add_terms(of_term: OfTerm, terms: Terms, y: Array, total: Array) -> None:
     for t in range(terms.size):
         for i in range(y.size):
             total[i] += of_term(terms[t], y[i])
+
+
+@njit(**LOOP)
+def contact_energy(y: Array, terms: Terms) -> float:
+    """Return the elastic energy of all rows in J at the gaps y (num_rows,) in m."""
+    energy = 0.0
+    for t in range(terms.size):
+        energy += term_energy(terms[t], y[terms[t]["row"]])
+    return energy
+
+
+@njit(**LOOP)
+def contact_forces(y: Array, terms: Terms, force: Array) -> None:
+    """Set ``force`` (num_rows,) in N to the elastic forces at the gaps y (num_rows,) in m."""
+    force[:] = 0.0
+    for t in range(terms.size):
+        force[terms[t]["row"]] += term_force(terms[t], y[terms[t]["row"]])
+
+
+@njit(**LOOP)
+def discrete_gradient(term: np.void, before: float, after: float) -> tuple[float, float]:
+    """Return (V(y₁) − V(y₀))/(y₁ − y₀) of a term's energy V in N, and its derivative by y₁ in N/m.
+
+    Gonzalez (1996). Neither cancels where y₁ is near y₀; there the derivative, which only directs
+    Newton's method, is that of a midpoint unless the power is 1 or 2.
+
+    Args:
+        term: of a contact law.
+        before, after: the gaps y₀ and y₁ in m.
+    """
+    side, k, n = term["side"], term["stiffness"], term["exponent"]
+    p, q = side * before - term["onset"], side * after - term["onset"]
+    if p <= 0.0 and q <= 0.0:
+        return 0.0, 0.0
+    if p <= 0.0:
+        force = k * q**n
+        mean = force * q / ((n + 1.0) * (q - p))
+        return side * mean, (force - mean) / (q - p)
+    if q <= 0.0:
+        mean = k * p ** (n + 1.0) / ((n + 1.0) * (p - q))
+        return side * mean, mean / (p - q)
+    if n == 1.0:
+        return side * 0.5 * k * (p + q), 0.5 * k
+    if n == 2.0:
+        return side * k * (p * p + p * q + q * q) / 3.0, k * (p + 2.0 * q) / 3.0
+    change = (q - p) / p
+    mean = k * p**n
+    if change != 0.0:
+        mean *= np.expm1((n + 1.0) * np.log1p(change)) / ((n + 1.0) * change)
+    if abs(change) < _CLOSE:
+        return side * mean, 0.5 * n * k * ((p + 2.0 * q) / 3.0) ** (n - 1.0)
+    return side * mean, (k * q**n - mean) / (q - p)

@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.integrators.integrator import Integrator, by_splitting
+from dynamics.integrator import AdaptiveStep, Integrator
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 
@@ -160,7 +160,7 @@ def integrate_ensemble(
         seed: of the changes; the same one gives the same members wherever they are run.
         vary: what is changed, all of it by one factor: the loads, all clearances, or the initial
             velocity.
-        integrator: how all members move; by splitting at the step of member 0 unless given.
+        integrator: of member 0, :class:`AdaptiveStep` unless given; the others make its steps.
         executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
         progress: called with the part done, 0 to 1.
         unchanged: member 0, where it has moved already.
@@ -179,11 +179,12 @@ def integrate_ensemble(
     if not 0.0 < relative < 1.0:
         raise ValueError(f"relative must be between 0 and 1, got {relative:g}")
     check_varied(motion, vary)
-    integrator = integrator or by_splitting(motion)
+    integrator = integrator or AdaptiveStep()
     changes = perturbations(members, relative, seed)
-    runs = [] if unchanged is None else [_kept(unchanged, KEPT)]
-    others = [Member(motion, vary, change, integrator) for change in changes[len(runs) :]]
-    runs += run_members(others, executor, progress)
+    unchanged = integrator(motion) if unchanged is None else unchanged
+    same = integrator.like(unchanged)
+    others = [Member(motion, vary, change, same) for change in changes[1:]]
+    runs = [_kept(unchanged, KEPT), *run_members(others, executor, progress)]
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {
         "vary": vary,

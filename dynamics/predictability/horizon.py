@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.integrators.integrator import Integrator, by_splitting
+from dynamics.integrator import AdaptiveStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
@@ -168,8 +168,8 @@ def measure_horizons(
         relatives: ε, each between 0 and 1.
         vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
-        integrator: how the runs move; unless given by splitting at
-            :func:`dynamics.integrators.step.contact_step`.
+        integrator: of the unchanged run, :class:`AdaptiveStep` unless given; the others make its
+            steps, and one of them half of each.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
         observer: which output is watched.
@@ -181,20 +181,17 @@ def measure_horizons(
         NumericsError: a run cannot be computed.
     """
     check_varied(motion, vary)
-    integrator = integrator or by_splitting(motion)
+    integrator = integrator or AdaptiveStep()
+    unchanged = integrator(motion) if unchanged is None else unchanged
     sizes = np.sort(np.asarray(relatives, dtype=float))
-    one = Member(motion, vary, 0.0, integrator, (observer,))
+    one = Member(motion, vary, 0.0, integrator.like(unchanged), (observer,))
     number = np.arange(partners)
     parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
     *smaller, largest = [
         [replace(one, change=float(change)) for change in size * parts] for size in sizes
     ]
-    finer = [replace(one, integrator=integrator.finer())]
-    if unchanged is None:
-        (alone,) = run_members([one], executor)
-    else:
-        alone = unchanged.data
-    whole, time = alone[observer].values, alone["time"].values
+    finer = [replace(one, integrator=one.integrator.finer())]
+    whole, time = unchanged.data[observer].values, unchanged.time
 
     def told(before: float, part: float) -> None:
         progress(before + _STAGE * part)

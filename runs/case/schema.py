@@ -51,8 +51,9 @@ class TimeTable(Table):
     output_step: Annotated[Positive, In("s")] = 1.0e-3
     """the interval of the reported times in s"""
     step: Annotated[Positive, In("s")] | None = None
-    """the step of the integrator in s; each model's own, small enough for its contacts, unless
-    given"""
+    """the step of the integrator in s; as long as the tolerance allows unless given"""
+    tolerance: Annotated[Part, Field(ge=1.0e-8)] = 1.0e-3
+    """the part of the deflections' range by which the step may change them"""
 
 
 class EnsembleTable(Table):

@@ -171,7 +171,7 @@ def _beside_tied(
         # Tied it cannot be drawn out.
         return answers
     try:
-        motion = Plan.of(tied.system, case, model).moved()
+        motion = Plan.of(tied.system, case, model).trajectory()
         moved, lives = _moving(tied, resting, motion, model, case)
     except NUMERICS:
         # What rests is known all the same.

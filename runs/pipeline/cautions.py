@@ -52,7 +52,6 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
         *_far(boom, data),
         *_poor(models),
         *_coarse(models),
-        *_halved(models),
         *series_notes(case),
     ]
 
@@ -99,13 +98,4 @@ def _coarse(models: Mapping[str, ModelSummary]) -> Iterator[str]:
             yield (
                 f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of what the walls "
                 "give way where the segments touch; give a smaller mesh_size"
-            )
-
-
-def _halved(models: Mapping[str, ModelSummary]) -> Iterator[str]:
-    for name, model in models.items():
-        if refused := model.refused_steps:
-            yield (
-                f"caution: {name} took {2 ** len(refused)} times as many steps as chosen: "
-                f"{refused[0]}"
             )

@@ -16,12 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.failure import NUMERICS
-from dynamics.gap_system import GapSystem
+from dynamics.motion import MOST_STEPS
 from runs.case.declared import Declared
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
 from runs.pipeline.foreseen import Foreseen
-from runs.pipeline.motion import step_of
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0
@@ -36,8 +35,10 @@ _WRITING = 3.0e-5
 # Numbers for each output and member of an ensemble.
 _OF_MEMBER = 22.0
 
-# s for a step and for a coordinate in it: where segments rub, or loads change; where they do not.
-_ROUGH_STEP, _SMOOTH_STEP = (0.7e-6, 1.7e-8), (0.1e-6, 1.5e-9)
+# s for a step, for a coordinate in it, and for a row that reads a coordinate.
+_STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
+# Steps of an output interval and windows made again, as a part, of a motion by its tolerance.
+_SUBSTEPS, _AGAIN = 32.0, 2.0
 # Motions of a measurement of horizons.
 _HORIZONS = 24
 
@@ -106,26 +107,21 @@ def _of_model(foreseen: Foreseen, model: Model) -> Cost:
     before = Cost(stand_in.memory, stand_in.seconds)
     try:
         motion = foreseen.motion(model, stand_in.beam)
-        step = step_of(motion, case, stand_in.beam)
     except NUMERICS:
         # The run ends with it, and says so.
         return before
     system, time = motion.system, case.time
-    if not (model.step or time.step):
-        step /= stand_in.shorter
+    outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
+    step = model.step or time.step
+    steps = time.duration / step if step else min(_SUBSTEPS * outputs, MOST_STEPS)
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     doubled = bool(system.frictions) and case.regular
-    motions = 1 + 0.5 * doubled + members + (_HORIZONS if members else 0)
-    outputs, coordinates = time.duration / time.output_step, stand_in.coordinates
+    alone = 1.0 + 0.5 * doubled if step else _AGAIN
+    motions = alone + members + (_HORIZONS if members else 0)
+    rows = len(system.laws) + len(system.frictions) + len(system.dashpots)
+    each = _STEP + coordinates * (_OF_MODE + _OF_ROW * rows)
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
-    each, of_coordinate = _ROUGH_STEP if _is_rough(system) else _SMOOTH_STEP
     return before + Cost(
         8.0 * outputs * (numbers + _OF_MEMBER * members),
-        outputs * _WRITING + motions * time.duration / step * (each + of_coordinate * coordinates),
+        outputs * _WRITING + motions * steps * each,
     )
-
-
-def _is_rough(system: GapSystem) -> bool:
-    """Whether every step is made by itself, however far the segments are apart."""
-    lossy = any(law.damping > 0.0 for law in system.laws)
-    return lossy or bool(system.frictions) or bool(system.excitations)

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How few steps a model's slow motion needs."""
+"""The fewest time steps that keep the slow motion of a model."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
-from dynamics.failure import NumericsError
-from dynamics.integrators.event_driven import TOLERANCE, integrate_events, what_hinders
-from dynamics.integrators.integrator import FEW_MODES
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import contact_step
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from dynamics.trajectory import Trajectory
@@ -25,12 +19,13 @@ PEAKS = 3
 # the spread that an ensemble of fully resolved runs has by itself.
 WITHIN = 0.01
 
+# The first step is the output step over 2 to this power; the last one is below this part of a
+# period at the cutoff, which the filter still sees.
+_FINEST, _OF_PERIOD = -4, 0.25
+
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Longer and longer steps, until the energy is lost, and which keep the first slow peaks.
-
-    A step counts however many small ones it stands for: several made at once while nothing can
-    touch, or one jump from contact to contact.
+    """Move in longer and longer steps; tell which keep the first slow peaks.
 
     Args:
         motion: from rest, of whose duration as much is taken as the peaks need.
@@ -42,44 +37,31 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     """
     if peaks.times.size < PEAKS:
         return None
-    system, output_step = motion.system, motion.output_step
     # The filter leans on what follows the last peak by half a period of its own.
-    duration = output_step * round((peaks.times[PEAKS - 1] + 1.0 / cutoff) / output_step)
-    motion = replace(motion, duration=duration)
-    trials: list[Trial] = []
-
-    def note(integrator: str, trajectory: Trajectory) -> None:
+    lasting = peaks.times[PEAKS - 1] + 1.0 / cutoff
+    # Between outputs there is one step at least.
+    steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
+    trials = []
+    for step in steps[steps < _OF_PERIOD / cutoff]:
+        output_step = max(step, motion.output_step)
+        duration = output_step * round(lasting / output_step)
+        trial = FixedStep(step)(replace(motion, duration=duration, output_step=output_step))
         trials.append(
             Trial(
-                integrator=integrator,
-                step=trajectory.data.attrs["step"],
-                steps=trajectory.data.attrs["steps"],
-                energy_residual=trajectory.energy_residual,
-                holds=_holds(trajectory, peaks, cutoff),
+                step=step,
+                steps=trial.data.attrs["steps"],
+                energy_residual=trial.energy_residual,
+                holds=_holds(trial, peaks, cutoff),
             )
         )
-
-    # One trial that misses is chance, as a member of the ensemble may; the energy ends them.
-    with suppress(NumericsError):
-        for step in _coarser(contact_step(system, output_step), 2.0, output_step):
-            note("splitting", integrate(motion, step))
-    if system.num_modes <= FEW_MODES and what_hinders(system) is None:
-        with suppress(NumericsError):
-            for tolerance in _coarser(TOLERANCE, 10.0, 1.0):
-                note("events", integrate_events(motion, tolerance))
+    # One trial that misses is chance, as a member of the ensemble may.
     return StepsForPeaks(
         peaks=PEAKS,
         within=WITHIN,
-        duration=duration,
+        duration=lasting,
         fewest=min((trial.steps for trial in trials if trial.holds), default=None),
         trials=trials,
     )
-
-
-def _coarser(first: float, factor: float, last: float) -> Iterator[float]:
-    while first <= last:
-        yield first
-        first *= factor
 
 
 def _holds(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:

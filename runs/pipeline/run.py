@@ -303,35 +303,19 @@ def _move(
     executor: Executor | None,
     stages: Stages,
 ) -> Finished:
-    """The motion of a model, in steps as short as it needs."""
-    moved, refused = Plan.of(built.system, case, model).halved(
-        lambda plan: _move_at(plan, built.num_dofs, model, case, cutoff, executor, stages)
-    )
-    moved.summary.refused_steps = refused
-    moved.summary.seconds = stages.seconds
-    return moved
-
-
-def _move_at(
-    plan: Plan,
-    num_dofs: int,
-    model: Model,
-    case: Case,
-    cutoff: float | None,
-    executor: Executor | None,
-    stages: Stages,
-) -> Finished:
-    """The motion as it is, and what is to be known of it."""
+    """Move a model; measure its step error, its ensemble and its horizons."""
+    plan = Plan.of(built.system, case, model)
     motion, system = plan.motion, plan.motion.system
     plan.warm()
     with stages.stage("motion") as told:
         trajectory = plan.trajectory(told)
-    summary = _summary(model, system, trajectory, num_dofs)
+    summary = _summary(model, system, trajectory, built.num_dofs)
     if stick_slip := trajectory.data.attrs.get("stick_slip"):
         summary.stick_slip = stick_slip
-    if system.frictions and case.regular:
+    if summary.step_error is None and system.frictions and case.regular:
         with stages.stage("twice the step") as told:
-            summary.step_doubling = plan.change_by_longer_steps(trajectory, told)
+            summary.step_error = plan.step_error(trajectory, told)
+    summary.seconds = stages.seconds
     if case.ensemble is None or not system.laws:
         return Finished(trajectory, summary, None)
     with stages.stage("ensemble") as told:
@@ -352,7 +336,6 @@ def _summary(
     trajectory: Trajectory,
     num_dofs: int,
 ) -> ModelSummary:
-    """Without what it took and what was refused, which :func:`_move` knows."""
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
     return ModelSummary(
@@ -372,6 +355,7 @@ def _summary(
             if name in trajectory.data
         },
         peak_contact_force=float(peaks.max()) if peaks.size else None,
-        refused_steps=[],
+        step_error=attributes["step_error"],
+        resolving_step=attributes["resolving_step"],
         static_tip=static_tip(system),
     )

@@ -68,14 +68,14 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     """The largest R in N at rest, under the loads of t = 0 and where drives have drawn it to."""
-    from dynamics.integrators.drawn_out import rubbing
+    from dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0
     rests = positions(system, instants(system, duration)) | drawn_positions(system, duration)
     for time, position in rests.items():
         gaps = system.standing(time).rows @ position
         forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]
-        most = max(most, float(rubbing(system, travel, np.array([forces]))[0]))
+        most = max(most, float(axial_friction(system, travel, np.array([forces]))[0]))
     return most
 
 

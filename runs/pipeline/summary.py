@@ -102,7 +102,6 @@ class Predictability(Entry):
 class Trial(Entry):
     """A motion in longer steps: ``step`` in s, and whether it keeps the slow peaks."""
 
-    integrator: str
     step: float
     steps: int
     energy_residual: float
@@ -161,9 +160,9 @@ class ModelSummary(Entry):
 
     ``wall_time`` in s is what has passed, be it for compiling loops, while a stage whose results
     earlier runs have kept has the seconds that it took then.
-    ``first_peak`` by the place; ``peak_contact_force`` in N; ``step_doubling`` is what twice
-    the step changes at the tip, as a part of its range; ``refused_steps`` says why steps were
-    halved;
+    ``first_peak`` by the place; ``peak_contact_force`` in N is a mean over a step where
+    ``resolving_step`` names the step in s that would resolve the blow; ``step_error`` is the change
+    of the tip by the time step, as a part of its range;
     ``static_tip`` in m is where the tip rests under the constant loads; ``critical_factor`` is that
     of the axial forces at which the boom with its joints pressed buckles; ``stick_slip`` is what
     drives of a given stiffness do, by the names of what trajectories hold of their forces. Four are
@@ -184,11 +183,11 @@ class ModelSummary(Entry):
     first_peak: dict[str, Peak]
     peak_contact_force: Known
     wall_time: float | None = None
-    step_doubling: float | None = None
+    step_error: Known = None
+    resolving_step: Known = None
     ensemble: EnsembleSummary | None = None
     horizons: Predictability | None = None
     steps_for_peaks: StepsForPeaks | None = None
-    refused_steps: list[str]
     static_tip: Known = None
     critical_factor: Known = None
     reduction_errors: dict[str, Known] = {}

@@ -123,6 +123,6 @@ def _standing(system: GapSystem, case: Case, model: Model) -> float | None:
         changes = system.excitations or system.released.any() or plan.motion.velocity.any()
         if case.start.state == "equilibrium" and not changes:
             return 0.0
-        return farthest_from_rest(system, plan.moved())[0]
+        return farthest_from_rest(system, plan.trajectory())[0]
     except NUMERICS:
         return None

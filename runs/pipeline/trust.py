@@ -91,9 +91,9 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
 
 
 def _step(summary: Summary) -> Iterator[str]:
-    doubled = [model.step_doubling for model in summary.models.values() if model.step_doubling]
-    if doubled:
-        yield f"Twice the step changes the tip by {percent(max(doubled))} of its range at most."
+    errors = [model.step_error for model in summary.models.values() if model.step_error]
+    if errors:
+        yield f"The time step changes the tip by {percent(max(errors))} of its range at most."
 
 
 def _reduction(summary: Summary) -> Iterator[str]:

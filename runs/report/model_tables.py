@@ -88,8 +88,8 @@ def step_table(results: Results) -> Table:
         Column("openings and closings", [model.contact_changes for model in models]),
     ]
     notes = [
-        "While nothing can open or close many steps are made at once, and count as one; each "
-        "opening or closing takes one of its own, whatever the solver."
+        "The step error adds up, over windows of the motion, the difference that twice the step "
+        "makes to the deflections. In chaotic motion no step keeps a tolerance."
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((found for found in tried if found), None)
@@ -100,10 +100,9 @@ def step_table(results: Results) -> Table:
             f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
             f"of them within {TO_PERCENT * within.within:g} %, beyond the ensemble's spread."
         )
-    doubled = [model.step_doubling for model in models]
-    if any(change is not None for change in doubled):
-        heading = "change by twice the step\n% of the tip's range"
-        columns.append(Column(heading, doubled, ".2g", TO_PERCENT))
+    errors = [model.step_error for model in models]
+    if any(error is not None for error in errors):
+        columns.append(Column("step error\n% of the tip's range", errors, ".2g", TO_PERCENT))
     if results.case.statements:
         notes.append(
             "The paper names at most 2000 steps for the series and more than 4000 for beam "

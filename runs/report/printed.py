@@ -79,12 +79,8 @@ def _print_swings(results: Results, console: Console) -> None:
 
 
 def say_what_failed(file: str, results: Results) -> int:
-    """A line where a model took smaller steps, and one for all that failed; the exit status."""
+    """Print a line for all models that failed; return the exit status."""
     numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
-    for name, model in results.summary.models.items():
-        if refused := model.refused_steps:
-            taken = f"took {2 ** len(refused)} times as many steps"
-            say(message(f"{shown(file)}: model[{numbers[name]}]: {taken}, since {refused[0]}"))
     failures = results.summary.failures
     if not failures:
         return 0

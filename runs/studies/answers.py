@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from dynamics.integrators.integrator import simulate
 from mpi4py import MPI
 
 from beam_model.component import SegmentModel
@@ -13,7 +14,6 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.segment_model import tied_system
-from dynamics.integrators.integrator import simulate
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file

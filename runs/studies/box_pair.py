@@ -13,11 +13,11 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from dynamics.integrators.splitting import integrate
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Segment, Support

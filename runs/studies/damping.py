@@ -9,12 +9,12 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from dynamics.integrators.splitting import integrate
 from scipy.signal import find_peaks
 
 from dynamics.damping import pressed_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from runs import CASES

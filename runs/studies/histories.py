@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+from dynamics.integrators.splitting import integrate
 
 from dynamics.excitation import Excitation, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from runs.studies.study import Held, Proof, Tell, titled

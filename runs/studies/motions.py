@@ -15,10 +15,10 @@ from tempfile import TemporaryDirectory
 from typing import TypeVar
 
 import numpy as np
-
-from dynamics.gap_system import GapSystem
 from dynamics.integrators.splitting import integrate
 from dynamics.integrators.step import contact_step
+
+from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from dynamics.integrators.splitting import integrate
 from scipy.optimize import brentq
 
 from beam_model.elements import Theory
@@ -18,7 +19,6 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Material, Segment, Support

@@ -142,11 +142,10 @@ def comparable_until(
         return end
     tools = None if comm is None else workshop(comm, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
-    for _ in results.summary.models[model.name].refused_steps:
-        plan = plan.finer()
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
-        (run,) = run_members([Member(plan.motion, vary, CHANGE, plan.integrator, ("tip",))])
+        same = plan.integrator.like(plan.trajectory())
+        (run,) = run_members([Member(plan.motion, vary, CHANGE, same, ("tip",))])
     except NumericsError:
         # What one step more or less decides is compared nowhere.
         return float(time[0])

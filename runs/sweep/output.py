@@ -21,7 +21,7 @@ from runs.sweep.distance_figures import draw_distances
 from runs.sweep.distances import DISTANCES, UNTIL
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import DOUBLED, QUANTITIES, Measured, Quantity
+from runs.sweep.quantities import QUANTITIES, STEP_ERROR, Measured, Quantity
 from runs.sweep.run import Outcome
 from runs.sweep.swings import said, swings
 
@@ -138,8 +138,10 @@ def _until_when(until: xr.DataArray) -> str:
 
 
 def _by_steps(data: xr.Dataset, reference: str) -> str:
-    changed = _range(data[DOUBLED.name].sel(model=reference).round(DIGITS), DOUBLED)
-    return "" if changed == NONE else f"twice the step moves the tip of {reference} by {changed} %"
+    changed = _range(data[STEP_ERROR.name].sel(model=reference).round(DIGITS), STEP_ERROR)
+    if changed == NONE:
+        return ""
+    return f"the time step changes the tip of {reference} by {changed} % of its range"
 
 
 def _range(values: xr.DataArray, quantity: Quantity) -> str:

@@ -37,10 +37,8 @@ class Quantity:
     charted: bool = True  #: whether it is a curve and no noise
 
 
-# Of the tip, as a part of its range, where friction makes motions regular.
-DOUBLED = Quantity(
-    "step_doubling", "1", "what twice the step changes", TO_PERCENT, "%", charted=False
-)
+# Of the tip, as a part of its range.
+STEP_ERROR = Quantity("step_error", "1", "error by the time step", TO_PERCENT, "%", charted=False)
 
 # Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
@@ -67,7 +65,7 @@ QUANTITIES = (
     Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
     Quantity("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
     Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
-    DOUBLED,
+    STEP_ERROR,
 )
 
 
@@ -96,7 +94,7 @@ def measure(results: Results, model: str) -> Measured:
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,
-        DOUBLED.name: summary.step_doubling,
+        STEP_ERROR.name: summary.step_error,
     }
 
 

@@ -17,10 +17,10 @@ from numba import njit
 
 from dynamics.contact import ContactLaw, contact_terms
 from dynamics.contact_term import Terms
-from dynamics.failure import StepTooLong
+from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.contact_kicks import contact_energy
+from dynamics.kernels.terms import contact_energy
 from geometry.arrays import Array
 
 _ROUNDS = 1000
@@ -68,12 +68,12 @@ class ResistingRows:
             free: (num_rows,) what the rows would read without, in m.
 
         Raises:
-            StepTooLong: they are not found.
+            NumericsError: they are not found.
         """
         forces, friction = self._forces, slice(self._contacts, None)
         problem = self._compliance, free, self._terms, self._bound, self._place
         if not (np.isfinite(free).all() and resist(problem, forces)):
-            raise StepTooLong("the forces of contact and friction are not found; halve the step")
+            raise NumericsError("the forces of contact and friction are not found; halve the step")
         way = self._onward * (free - self._compliance @ forces - self.readings)
         self.readings += way
         self.friction_loss += float(forces[friction] @ way[friction])

@@ -161,7 +161,7 @@ def _march(
         energies[k, [0, 1, 3]] = np.sum([stepper.energies() for stepper in steppers], axis=0)
         energies[k, [2, 5]] = rows.contact_energy, rows.friction_loss
         if k == outputs or k % max(1, outputs // _CHECKS) == 0:
-            check_energy(energies[: k + 1], alpha.step, energy_bound)
+            check_energy(energies[: k + 1], energy_bound)
     return DirectMotion(
         time=substeps * alpha.step * np.arange(outputs + 1),
         observed=dict(zip(full.observed, observed.T, strict=True)),

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.signal import find_peaks
 
 from beam_model.component import SegmentModel
@@ -16,7 +17,6 @@ from dynamics.contact import PowerContact
 from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
@@ -18,7 +19,6 @@ from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_ratios
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Segment, Support

@@ -9,14 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.integrator import Splitting
+from dynamics.integrators.splitting import integrate
 
 from beam_model.systems import finite_element_system, kantorovich_system
 from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Table
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.integrator import Splitting
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.linalg import eigh
 
 from beam_model.boom_modes import critical_factor
@@ -21,7 +22,6 @@ from dynamics.arrays import Array
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass

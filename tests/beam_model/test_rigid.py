@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from beam_model.boom_modes import BoomModes
 from beam_model.rigid import rigid_segment
@@ -14,7 +15,6 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom, PointMass, Support
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
@@ -16,7 +17,6 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array

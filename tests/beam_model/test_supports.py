@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.optimize import brentq
 
 from beam_model.component import Component, SegmentModel, natural_modes
@@ -17,7 +18,6 @@ from beam_model.kantorovich import Base, kantorovich_bending
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Step
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support

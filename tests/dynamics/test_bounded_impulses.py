@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from dynamics.arrays import Array
 from dynamics.kernels.bounded_impulses import (
     FREE,
     HIGH,
@@ -16,6 +14,8 @@ from dynamics.kernels.bounded_impulses import (
     bounded_impulses,
     problem_for,
 )
+
+from dynamics.arrays import Array
 
 
 def solve(matrix: Array, free: Array, bound: Array, guess: Array) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
@@ -14,7 +15,6 @@ from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Ramp, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 

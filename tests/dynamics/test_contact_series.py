@@ -7,9 +7,6 @@ import math
 
 import numpy as np
 import pytest
-
-from dynamics.arrays import Array
-from dynamics.contact import PowerContact, contact_terms
 from dynamics.kernels.contact_series import (
     ORDER,
     Series,
@@ -21,6 +18,9 @@ from dynamics.kernels.contact_series import (
     impulse,
     reach,
 )
+
+from dynamics.arrays import Array
+from dynamics.contact import PowerContact, contact_terms
 
 
 def series_of(

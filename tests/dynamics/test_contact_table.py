@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dynamics.integrators.event_driven import what_hinders
+from dynamics.integrators.splitting import integrate
 from scipy.integrate import trapezoid
 
 from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.contact_term import energy_of, force_of
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.event_driven import what_hinders
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.

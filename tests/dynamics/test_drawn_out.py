@@ -9,6 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dynamics.integrators.drawn_out import integrate_drawn
+from dynamics.integrators.event_driven import integrate_events, what_hinders
+from dynamics.integrators.integrator import Events, Splitting, suited
+from dynamics.integrators.splitting import integrate
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, PowerContact
@@ -18,10 +22,6 @@ from dynamics.energy import ENERGY_BOUND
 from dynamics.excitation import Excitation, History, Ramp, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.drawn_out import integrate_drawn
-from dynamics.integrators.event_driven import integrate_events, what_hinders
-from dynamics.integrators.integrator import Events, Splitting, suited
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 
 # A simply supported beam: length in m, E J in N·m², mass per length in kg/m.

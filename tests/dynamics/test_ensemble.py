@@ -14,12 +14,12 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 import xarray as xr
-
-from dynamics.excitation import Excitation, Sine
-from dynamics.failure import NumericsError
 from dynamics.integrators.event_driven import integrate_events
 from dynamics.integrators.integrator import Events, Integrator, Splitting
 from dynamics.integrators.splitting import integrate
+
+from dynamics.excitation import Excitation, Sine
+from dynamics.failure import NumericsError
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import (
     Member,

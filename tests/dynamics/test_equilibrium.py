@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from beam_model.finite_element import finite_element_segment
 from beam_model.segment_model import gap_system
@@ -14,7 +15,6 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom
 

@@ -11,6 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dynamics.integrators.event_driven import integrate_events, what_hinders
+from dynamics.integrators.integrator import Events, Splitting
+from dynamics.integrators.splitting import integrate
 from scipy.special import gamma
 
 from dynamics.contact import PowerContact
@@ -18,9 +21,6 @@ from dynamics.excitation import Excitation, Ramp
 from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.event_driven import integrate_events, what_hinders
-from dynamics.integrators.integrator import Events, Splitting
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from tests.dynamics.one_stop import reference_states, two_modes

@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.integrator import Events, suited
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, History, Ramp, Sine, Step, Table, followed
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.integrator import Events, suited
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
 from runs.studies.histories import KINKED, OMEGAS, masses, response
 

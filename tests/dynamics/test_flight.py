@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from dynamics.kernels.flight import jump, pulls, safe_time, stay, tabulate
 
 OMEGA = np.array([0.0, 3.0, 20.0])

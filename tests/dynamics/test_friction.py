@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.integrate import solve_ivp
 
 from dynamics.arrays import Array
@@ -17,7 +18,6 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, Sine
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-
 from dynamics.integrators.integrator import Events, Integrator, Splitting
+
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import changed, integrate_ensemble
 from dynamics.predictability.horizon import (

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from dynamics.contact import PowerContact, restitution_damping
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 
 OneMass = Callable[..., GapSystem]

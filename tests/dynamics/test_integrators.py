@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from dynamics.integrators.event_driven import integrate_events
 from dynamics.integrators.integrator import (
     FEW_MODES,
@@ -21,6 +20,7 @@ from dynamics.integrators.integrator import (
 )
 from dynamics.integrators.splitting import integrate
 from dynamics.integrators.step import contact_step
+
 from dynamics.motion import Motion
 from tests.dynamics.two_stops import CHAOTIC
 

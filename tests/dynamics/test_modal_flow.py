@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.kernels.modal_flow import ModalFlow, tabulate
 from dynamics.motion import Motion
 

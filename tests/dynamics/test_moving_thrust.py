@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.linalg import eigh
@@ -19,7 +20,6 @@ from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Table
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.splitting import integrate
 from dynamics.kernels.moving_thrusts import press_along, thrust_arrays
 from dynamics.motion import Motion
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.integrator import Splitting, suited
+from dynamics.integrators.splitting import integrate
 
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Ramp
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.integrator import Splitting, suited
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.second_order import buckling_factor, softened
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.event_driven import what_hinders
+from dynamics.integrators.splitting import integrate
 
 from dynamics.contact import ContactLaw, PowerContact, contact_limits
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.event_driven import what_hinders
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.sided_contact import SidedContact
 

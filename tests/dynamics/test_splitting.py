@@ -9,15 +9,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators import splitting
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import DRAGGED, PHASE
 from scipy.integrate import solve_ivp
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators import splitting
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import DRAGGED, PHASE
 from dynamics.kernels.modal_flow import ModalFlow
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory

@@ -8,11 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, Ramp, Sine, Table
-from dynamics.friction import DryFriction
-from dynamics.gap_system import GapSystem
 from dynamics.integrators.step import (
     PHASE,
     closing_speeds,
@@ -20,6 +15,11 @@ from dynamics.integrators.step import (
     contact_step,
     sliding_frequencies,
 )
+
+from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, Ramp, Sine, Table
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem
 
 
 def test_closing_speeds_by_hand(one_mass: Callable[..., GapSystem]) -> None:

@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from dynamics.integrators.integrator import Events, Splitting
+from dynamics.integrators.splitting import integrate
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
 from dynamics.energy import ENERGIES, energy_residual
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrators.integrator import Events, Splitting
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 

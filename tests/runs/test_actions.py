@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dynamics.integrators.integrator import Events
 
 from dynamics.excitation import Ramp, Sine, Step, Table
-from dynamics.integrators.integrator import Events
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom

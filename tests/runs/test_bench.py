@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dynamics.integrators.event_driven import TOLERANCE, integrate_events
 from rich.console import Console
 
-from dynamics.integrators.event_driven import TOLERANCE, integrate_events
 from dynamics.motion import Motion
 from runs.case import reading as case_file
 from runs.report import figures

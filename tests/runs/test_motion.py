@@ -7,11 +7,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from dynamics.integrators.integrator import Events, Splitting
 
 from dynamics.contact import PowerContact
 from dynamics.failure import StepTooLong
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.integrator import Events, Splitting
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from protractile.cases import change

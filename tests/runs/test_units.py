@@ -13,14 +13,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.event_driven import integrate_events
+from dynamics.integrators.splitting import integrate
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.event_driven import integrate_events
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support

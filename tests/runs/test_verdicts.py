@@ -6,10 +6,10 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from protractile.cases import run_case
 from runs.case.build import build_boom, contact_laws

@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load

@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import BoomError
 from geometry.contact_places import ContactLine

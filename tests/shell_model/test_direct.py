@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 import scipy.sparse
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import eigh
@@ -17,7 +18,6 @@ from scipy.linalg import eigh
 from dynamics.contact import PowerContact
 from dynamics.energy import energy_residual
 from dynamics.gap_builder import GapBuilder, Observed
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Direction, Stop

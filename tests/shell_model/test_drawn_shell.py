@@ -8,6 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
+from dynamics.integrators.step import contact_step
 from mpi4py import MPI
 
 from beam_model.systems import finite_element_system
@@ -15,8 +17,6 @@ from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import contact_step
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
@@ -16,7 +17,6 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop

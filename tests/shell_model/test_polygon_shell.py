@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import (

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.excitation import Step
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
 from geometry.load import Load

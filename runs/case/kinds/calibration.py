@@ -136,7 +136,6 @@ class CalibratedTable(BeamTable):
         return StandIn(
             beam,
             own.coordinates,
-            own.shorter,
             own.memory + shell.memory,
             own.seconds + shell.seconds,
         )

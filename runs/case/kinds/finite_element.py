@@ -113,11 +113,9 @@ class FiniteElementTable(CalibratedTable):
         )
         coordinates = int((5 if boom.spatial else 2) * nodes)
         coarser = max(1.0, coordinates / _BUILT)
-        # The highest frequency of bending goes with the inverse square of the length.
         return StandIn(
             self.model_copy(update={"element_length": coarser * self.element_length}),
             coordinates,
-            shorter=coarser**2,
             memory=8.0 * _EIGEN_ROOM * coordinates**2,
             seconds=_EIGEN_TIME * coordinates**3,
         )

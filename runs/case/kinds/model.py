@@ -103,7 +103,6 @@ class StandIn:
 
     beam: ModelTable  #: quickly built
     coordinates: int  #: of the model itself
-    shorter: float = 1.0  #: than the beam's its steps are, as a factor
     #: Bytes and s that it takes before it moves.
     memory: float = 0.0
     seconds: float = 0.0

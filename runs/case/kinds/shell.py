@@ -29,8 +29,8 @@ _FLAT, _SPATIAL = 60, 210
 _DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
 # How many times as many dofs a graded mesh has, at corners and at pads.
 _GRADED, _PADDED = 3.0, 6.0
-# Elements of the longest segment of the beam that stands for it; how much shorter its steps are.
-_ELEMENTS, _SHORTER = 20, 10.0
+# Elements of the longest segment of the beam that stands for it.
+_ELEMENTS = 20
 
 
 class ShellTable(ModelTable):
@@ -161,7 +161,7 @@ class ShellTable(ModelTable):
             section_fields=False,
         )
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
-        return StandIn(beam, coordinates, _SHORTER, memory, _REDUCTION * dofs)
+        return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
 
     def _krylov(self) -> KrylovOptions:
         from shell_model.reduction.krylov import KrylovOptions

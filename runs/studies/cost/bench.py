@@ -19,13 +19,13 @@ from statistics import median
 from typing import Any
 
 import numpy as np
+from dynamics.integrators.event_driven import TOLERANCE
+from dynamics.integrators.integrator import Events, Integrator, by_splitting
+from dynamics.integrators.splitting import integrate
 from rich.console import Console
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.event_driven import TOLERANCE
-from dynamics.integrators.integrator import Events, Integrator, by_splitting
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from runs import CASES

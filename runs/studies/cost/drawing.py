@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from dynamics.integrators.splitting import integrate
 from dynamics.integrators.step import contact_step
+
 from dynamics.motion import Motion
 from protractile.cases import change
 from runs import CASES

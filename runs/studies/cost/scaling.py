@@ -19,11 +19,11 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from dynamics.integrators.splitting import integrate
 from rich.console import Console
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from runs import CASES

@@ -21,8 +21,7 @@ from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.contact_kicks import contact_energy, law_forces
-from dynamics.kernels.terms import term_slope
+from dynamics.kernels.terms import contact_energy, contact_forces, term_slope
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 
@@ -123,7 +122,7 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
 def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
     """Fill in what contacts press with and hold, at gaps (num_times, num_rows)."""
     for k in range(len(gaps)):
-        law_forces(gaps[k], terms, forces[k])
+        contact_forces(gaps[k], terms, forces[k])
         energy[k] = contact_energy(gaps[k], terms)
 
 
@@ -131,7 +130,7 @@ def _press(gaps: Array, terms: Terms, forces: Array, energy: Array) -> None:
 def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> bool:
     """Gaps y (num_rows,) with y + ``cross`` F(y) = ``free``, by Newton's method; their forces."""
     for _ in range(NEWTON):
-        law_forces(y, terms, force)
+        contact_forces(y, terms, force)
         excess = y + cross @ force - free
         if (excess**2).sum() < AGREED**2:
             return True
@@ -140,7 +139,7 @@ def _settle(free: Array, cross: Array, terms: Terms, y: Array, force: Array) -> 
             j = terms[t]["row"]
             slopes[:, j] += cross[:, j] * term_slope(terms[t], y[j])
         y -= np.linalg.solve(slopes, excess)
-    law_forces(y, terms, force)
+    contact_forces(y, terms, force)
     return False
 
 
@@ -164,13 +163,13 @@ def _march(
     cross = (reach * rows * give) @ rows.T
     a, v = states[0], speeds[0]
     y, force = rows @ a, np.zeros(rows.shape[0])
-    law_forces(y, terms, force)
+    contact_forces(y, terms, force)
     sign = np.sign(slides @ v)
     acceleration = load - omega2 * a - force @ rows - (drag * sign) @ slides
     for k in range(unsettled.size):
         ahead = a + tau * v + (0.5 * tau**2 - reach) * acceleration
         if not settled:
-            law_forces(rows @ a, terms, force)
+            contact_forces(rows @ a, terms, force)
             sign = np.sign(slides @ v)
         for _ in range(ROUNDS):
             pushed = load - omega2 * ahead - (drag * sign) @ slides

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dynamics.integrators.splitting import integrate as split
 
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
-from dynamics.integrators.splitting import integrate as split
 from dynamics.motion import Motion
 from runs.studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 from runs.studies.then.scheme_errors import (

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The choice of the time step: by a tolerance, fixed, or as in another run of the same motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from dynamics.arrays import Array
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.march import Output, State
+from dynamics.motion import MOST_STEPS, Motion
+from dynamics.time_step import Run, histories_of
+from dynamics.trajectory import Trajectory
+
+# Part of the range of the observed deflections by which the step may change them.
+TOLERANCE = 1.0e-3
+
+# Steps of an output interval at first, and at least: mean forces of two steps do not alternate.
+_FIRST, _FEWEST = 8, 2
+
+# Output intervals and steps of a call of the time loop, between which a run can be interrupted.
+_CALL, _STEPS_OF_CALL = 100, 2**17
+
+# Output intervals of a window at most, and ω in rad/s where no mode has one.
+_LONGEST, _WITHOUT_FREQUENCY = 128, 100.0
+
+# Times, in periods, at which a difference of two steps is followed.
+_FOLLOWED = np.linspace(0.0, 0.25, 9)
+
+# h times the fastest circular frequency of a history at most.
+_HISTORY_PHASE = 0.5
+
+# Part of the largest deflection that counts as its range at least.
+_LEAST_RANGE = 1.0e-3
+
+# The next window is made in half as many steps where this part of the tolerance was enough.
+_EASY = 0.125
+
+Progress = Callable[[float], None]
+
+
+class Integrator(Protocol):
+    """A way to compute a motion. A user's own needs these three methods."""
+
+    def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
+        """Return the trajectory; ``progress`` is called with the part done, 0 to 1."""
+        ...
+
+    def like(self, trajectory: Trajectory) -> Integrator:
+        """Return an integrator that makes the steps of one of its trajectories."""
+        ...
+
+    def finer(self) -> Integrator:
+        """Return an integrator with smaller errors, to see what they change."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class StepSchedule:
+    """Steps whose length is given in each window of the motion.
+
+    Args:
+        substeps: steps of an output interval in each window; the last number holds to the end.
+        window: output intervals of a window.
+    """
+
+    substeps: tuple[int, ...]
+    window: int
+
+    @classmethod
+    def of(cls, trajectory: Trajectory) -> StepSchedule:
+        """Return the steps of a trajectory."""
+        attributes = trajectory.data.attrs
+        return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
+
+    def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
+        run = Run.begin(_gathered(motion))
+        for number, (first, last) in enumerate(_windows(motion, self.window)):
+            substeps = self.substeps[min(number, len(self.substeps) - 1)]
+            run.advance(first, last, substeps, run.state, run.part(first, last))
+            if progress is not None:
+                progress(last / motion.outputs)
+        return run.trajectory(self.substeps, self.window)
+
+    def like(self, trajectory: Trajectory) -> StepSchedule:
+        """Return itself."""
+        return self
+
+    def finer(self) -> StepSchedule:
+        """Return steps half as long, a quarter of the error."""
+        return replace(self, substeps=tuple(2 * count for count in self.substeps))
+
+    def coarser(self) -> StepSchedule:
+        """Return steps twice as long."""
+        return replace(self, substeps=tuple(max(1, count // 2) for count in self.substeps))
+
+
+@dataclass(frozen=True, slots=True)
+class FixedStep:
+    """Steps of one length.
+
+    >>> motion = pt.FixedStep(1e-5)(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion.energy_residual < 1e-11
+    True
+
+    Args:
+        step: in s, made smaller to fit the output step.
+    """
+
+    step: float
+
+    def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
+        substeps = max(1, int(np.ceil(motion.output_step / self.step * (1.0 - 1e-12))))
+        window = min(_CALL, max(1, _STEPS_OF_CALL // substeps))
+        return StepSchedule((substeps,), window)(motion, progress)
+
+    def like(self, trajectory: Trajectory) -> FixedStep:
+        """Return itself."""
+        return self
+
+    def finer(self) -> FixedStep:
+        """Return half the step, a quarter of the error."""
+        return FixedStep(0.5 * self.step)
+
+    def coarser(self) -> FixedStep:
+        """Return twice the step."""
+        return FixedStep(2.0 * self.step)
+
+
+@dataclass(frozen=True, slots=True)
+class AdaptiveStep:
+    """Steps as long as a tolerance allows, by step doubling (Hairer, Nørsett and Wanner 1993).
+
+    Each window of the motion is made with a step and with twice that step from the same state. The
+    difference of the observed deflections within the window, and in free motion over the quarter
+    period of the slowest mode that follows, is the error of the window; the errors may add up to
+    the tolerance. A window is about a period of that mode, long enough for the mean of impacts.
+
+    The trajectory has the sum of the errors as the attribute ``step_error``. Chaotic motion has no
+    step that keeps a tolerance: its steps end at a length.
+
+    >>> motion = pt.AdaptiveStep()(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion.data.attrs["step_error"] < 1e-3
+    True
+
+    Args:
+        tolerance: part of the largest range of the observed deflections by which the step may
+            change them.
+
+    Raises:
+        ValueError: the tolerance is not between 0 and 1.
+    """
+
+    tolerance: float = TOLERANCE
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.tolerance < 1.0:
+            raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
+
+    def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
+        motion = _gathered(motion)
+        run, error = Run.begin(motion), _WindowError.of(motion.system)
+        outputs, output_step = motion.outputs, motion.output_step
+        window = _whole_power(error.period / output_step, 1, _LONGEST)
+        fastest = max((history.fastest for history in histories_of(motion.system)), default=0.0)
+        fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
+        affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
+        most = _whole_power(affordable, fewest, MOST_STEPS)
+        # Few long steps tell the range.
+        pilot = Run.begin(motion)
+        pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
+        scale = error.scale(pilot.output.states)
+        substeps, made, total = min(max(_FIRST, fewest), most), list[int](), 0.0
+        for first, last in _windows(motion, window):
+            allowed = self.tolerance * (last - first) / outputs
+            part = run.part(first, last)
+            while True:
+                state, coarse = (State(*(array.copy() for array in run.state)) for _ in range(2))
+                run.advance(first, last, substeps, state, part)
+                compared = run.advance(first, last, substeps // 2, coarse)
+                found = error(part, compared, state, coarse)
+                limit = allowed * scale
+                if found <= limit or substeps >= most:
+                    break
+                substeps *= 2
+            for kept, reached in zip(run.state, state, strict=True):
+                kept[...] = reached
+            made.append(substeps)
+            total += found
+            if found < _EASY * limit:
+                substeps = max(fewest, substeps // 2)
+            if progress is not None:
+                progress(last / outputs)
+        return run.trajectory(tuple(made), window, total / scale if scale > 0.0 else 0.0)
+
+    def like(self, trajectory: Trajectory) -> StepSchedule:
+        """Return the steps that the trajectory has found, so that changes of data alone count."""
+        return StepSchedule.of(trajectory)
+
+    def finer(self) -> AdaptiveStep:
+        """Return a quarter of the tolerance, half the step."""
+        return AdaptiveStep(0.25 * self.tolerance)
+
+
+@dataclass(frozen=True, slots=True)
+class _WindowError:
+    """The difference that twice the step makes to observed deflections.
+
+    Args:
+        rows: (num_observed, num_modes) of the deflections.
+        period: of the slowest elastic mode in s.
+        places, speeds: (num_followed, num_observed, num_modes) response of the deflections to a
+            change of coordinates and velocities, at times of the quarter period that follows.
+    """
+
+    rows: Array
+    period: float
+    places: Array
+    speeds: Array
+
+    @classmethod
+    def of(cls, system: GapSystem) -> _WindowError:
+        seen = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
+        rows = np.array(seen or system.rows).reshape(-1, system.num_modes)
+        omega = system.omega
+        period = 2.0 * np.pi / min(omega[omega > 0.0], default=_WITHOUT_FREQUENCY)
+        times = _FOLLOWED[:, None] * period
+        sines = np.divide(np.sin(omega * times), omega, out=times + 0.0 * omega, where=omega > 0.0)
+        return cls(rows, period, rows * np.cos(omega * times)[:, None], rows * sines[:, None])
+
+    def __call__(self, fine: Output, coarse: Output, state: State, other: State) -> float:
+        """Return the largest difference in m within the window and after it."""
+        within = np.abs(self._read(fine.states - coarse.states))
+        places = (self.places * (state.a - other.a)).sum(axis=2)
+        after = np.abs(places + (self.speeds * (state.v - other.v)).sum(axis=2))
+        return float(max(within.max(initial=0.0), after.max(initial=0.0)))
+
+    def scale(self, states: Array) -> float:
+        """Return the largest range of a deflection in m."""
+        read = self._read(states)
+        ranges = np.ptp(read, axis=0).max(initial=0.0)
+        return float(max(ranges, _LEAST_RANGE * np.abs(read).max(initial=0.0)))
+
+    def _read(self, states: Array) -> Array:
+        # No product of BLAS, whose last bits depend on addresses in memory.
+        return np.asarray(np.einsum("ti,ri->tr", states, self.rows))
+
+
+def _gathered(motion: Motion) -> Motion:
+    return replace(motion, system=motion.system.gathered())
+
+
+def _windows(motion: Motion, length: int) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last output of each window."""
+    for first in range(0, motion.outputs, length):
+        yield first, min(first + length, motion.outputs)
+
+
+def _whole_power(number: float, least: int, most: int) -> int:
+    """Return the power of two that is nearest to a number, between two others."""
+    power: int = 2 ** round(float(np.log2(max(number, 1.0))))
+    return min(max(power, least), most)
+
+
+def simulate(
+    system: GapSystem,
+    duration: float,
+    output_step: float = 1.0e-3,
+    position: npt.ArrayLike = (),
+    velocity: npt.ArrayLike = (),
+    integrator: Integrator | None = None,
+) -> Trajectory:
+    """Return the motion of a system from its initial state.
+
+    >>> motion = pt.simulate(ball, duration=1.0, position=[0.5])
+    >>> print(f"{motion.first_contact:.3f} s")
+    0.319 s
+
+    Args:
+        system, duration, output_step, position, velocity: of the :class:`Motion`.
+        integrator: :class:`AdaptiveStep` unless given.
+
+    Raises:
+        ValueError: the motion lacks something.
+        NumericsError: it cannot be computed.
+    """
+    a, v = (np.asarray(state, dtype=np.float64) for state in (position, velocity))
+    return (integrator or AdaptiveStep())(Motion(system, duration, output_step, a, v))

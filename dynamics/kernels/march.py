@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The time loop: steps of exact modal flow under row forces that are constant within each step.
+
+A constant force does the work force times displacement on a linear flow, so that the energy of
+modes and contacts changes by exactly the work of loads and drives less the losses of damping,
+friction and dashpots, at any step size. Rows that move read B₀ a₀ at the start and B₁ a₁ at the
+end, and push with their mean B̄ (see :mod:`dynamics.kernels.moving_rows`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from dynamics.arrays import Array
+from dynamics.kernels.compiled import LOOP, SUMS
+from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
+from dynamics.kernels.moving_rows import Moving, average_rows, copy_rows, place_rows
+from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
+from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
+from dynamics.kernels.terms import contact_energy, term_force, term_slope
+
+# Positions in the tally. From the work on as in ``dynamics.energy.ENERGIES``.
+TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
+
+# h ω of a pressed contact up to which a step resolves its press: the highest of samples misses
+# 1 − cos(hω/2), 3 %, of a half-sine at most.
+RESOLVED = 0.5
+
+# Iterations of the forces of moving thrusts, and their change, as a part of them, that ends these.
+_MOST_ROUNDS, _AGREED = 40, 1.0e-13
+
+
+class System(NamedTuple):
+    """The parts of a gap system that stay as they are.
+
+    Args:
+        omega2, load: (num_modes,) ω² and the constant load.
+        excitations: (num_excitations, num_modes) loads that histories multiply.
+        laws: of the rows.
+        moving: rows that move, by travels.
+        thrusts: axial forces whose places move.
+    """
+
+    omega2: Array
+    load: Array
+    excitations: Array
+    laws: Laws
+    moving: Moving
+    thrusts: Thrusts
+
+
+class State(NamedTuple):
+    """All that steps change.
+
+    Args:
+        a, v: (num_modes,) modal coordinates and velocities.
+        rows: (num_rows, num_modes) as they are: contacts, friction rows, dashpots.
+        y: (num_rows,) their displacements in m.
+        force: (num_rows,) forces of the last step in N.
+        thrust: (num_modes,) forces of moving thrusts in the last step.
+        tally: sums over all steps, by the positions above.
+        driven: (num_rows + num_thrusts,) work of drives at each so far in J.
+        crest: (num_contacts,) largest force so far in N, and
+        resolving: (num_contacts,) the step in s that would resolve the press it belongs to;
+            infinite where this one does.
+    """
+
+    a: Array
+    v: Array
+    rows: Array
+    y: Array
+    force: Array
+    thrust: Array
+    tally: Array
+    driven: Array
+    crest: Array
+    resolving: Array
+
+
+class Course(NamedTuple):
+    """Loads and travels within the steps of a call.
+
+    Args:
+        mean, change: (num_steps, num_excitations) mean of each history within each step, and its
+            change from the start to the end of the straight line that has its moments.
+        ways: (num_steps + 1, num_travels) in m at the ends of the steps.
+    """
+
+    mean: Array
+    change: Array
+    ways: Array
+
+
+class Output(NamedTuple):
+    """(num_outputs, …) what is recorded at the end of each output interval.
+
+    Args:
+        states, velocities: modal; velocities may have no columns.
+        energies: in J, as in ``dynamics.energy.ENERGIES``.
+        gaps: of the contacts in m.
+        means, peaks: of contact forces within the interval in N.
+        frictions: mean friction forces in N.
+        drives: work of drives so far in J at each row and thrust; may have no columns.
+    """
+
+    states: Array
+    velocities: Array
+    energies: Array
+    gaps: Array
+    means: Array
+    peaks: Array
+    frictions: Array
+    drives: Array
+
+
+@njit(**SUMS)
+def read_rows(rows: Array, a: Array, values: Array) -> None:
+    """Set ``values`` (num_rows,) to rows a."""
+    for j in range(rows.shape[0]):
+        total = 0.0
+        for i in range(a.size):
+            total += rows[j, i] * a[i]
+        values[j] = total
+
+
+@njit(**SUMS)
+def _push(rows: Array, force: Array, total: Array) -> None:
+    """Subtract Rᵀ f from ``total`` (num_modes,)."""
+    for j in range(rows.shape[0]):
+        if force[j] != 0.0:
+            for i in range(total.size):
+                total[i] -= rows[j, i] * force[j]
+
+
+@njit(**LOOP)
+def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: float) -> None:
+    """Count contacts that open or close within a step; note when the first one closes."""
+    closing = np.inf
+    for j in range(laws.limits.size):
+        low, high = laws.limits[j]["low"], laws.limits[j]["high"]
+        before = (state.y[j] > high) * 1.0 - (state.y[j] < low) * 1.0
+        after = (end[j] > high) * 1.0 - (end[j] < low) * 1.0
+        if before == after:
+            continue
+        state.tally[CHANGES] += 1.0
+        if after != 0.0:
+            bound = high if after > 0.0 else low
+            # Up to the contact the row goes as it would without.
+            closing = min(closing, time * (bound - state.y[j]) / (free[j] - state.y[j]))
+    if np.isnan(state.tally[FIRST_CONTACT]) and closing < np.inf:
+        state.tally[FIRST_CONTACT] = state.tally[TIME] + closing
+
+
+@njit(**LOOP)
+def _note_peaks(
+    state: State, laws: Laws, compliance: Array, time: float, end: Array, force: Array,
+    peaks: Array,
+) -> None:  # fmt: skip
+    """Keep the largest contact forces: at the end of a step that resolves the press, else its mean.
+
+    An unresolved press swings about its mean from step to step.
+    """
+    for j in range(laws.limits.size):
+        largest, slope = 0.0, 0.0
+        for t in range(laws.first_term[j], laws.first_term[j + 1]):
+            largest += term_force(laws.terms[t], end[j])
+            slope += term_slope(laws.terms[t], end[j])
+        phase = np.sqrt(2.0 * max(slope, 0.0) * compliance[j, j])
+        if phase > RESOLVED:
+            largest = force[j]
+        if abs(largest) > abs(peaks[j]):
+            peaks[j] = largest
+        if abs(largest) > state.crest[j]:
+            state.crest[j] = abs(largest)
+            state.resolving[j] = time * RESOLVED / phase if phase > RESOLVED else np.inf
+
+
+@njit(**SUMS)
+def _set_loads(
+    system: System, mean: Array, change: Array, middle: float, part: float,
+    load: Array, tilt: Array,
+) -> None:  # fmt: skip
+    """Set the mean loads (num_modes,) and their changes within a part of a step.
+
+    ``mean`` and ``change`` (num_excitations,) are those of the whole step, in parts of which the
+    ``middle`` of this ``part`` lies off the middle of the step.
+    """
+    load[:] = system.load
+    tilt[:] = 0.0
+    for e in range(system.excitations.shape[0]):
+        now, then = mean[e] + middle * change[e], part * change[e]
+        for i in range(load.size):
+            load[i] += now * system.excitations[e, i]
+            tilt[i] += then * system.excitations[e, i]
+
+
+@njit(**LOOP)
+def _agree(found: Array, used: Array) -> bool:
+    """Return whether forces (num_modes,) are those that were used; use the found ones."""
+    apart, size = 0.0, 0.0
+    for i in range(found.size):
+        apart = max(apart, abs(found[i] - used[i]))
+        size = max(size, abs(found[i]))
+        used[i] = found[i]
+    return apart <= _AGREED * size
+
+
+@njit(**LOOP)
+def march(
+    system: System, flow: Flow, compliances: Array, state: State, course: Course, substeps: int,
+    problem: Problem, output: Output,
+) -> bool:  # fmt: skip
+    """Advance by as many output intervals as ``output`` has; return whether all steps converged.
+
+    Args:
+        system: moves.
+        flow: over the step, its half, its quarter and so on: a step whose forces do not converge
+            is halved.
+        compliances: (num_lengths, num_rows, num_rows) C of each, where no row moves.
+        state: is changed.
+        course: of the ``substeps`` steps of each output interval, one after the other.
+        problem: scratch for the row forces.
+        output: is filled.
+    """
+    laws, thrusts, moving = system.laws, system.thrusts, system.moving
+    a, v, rows, y, force, thrust = state.a, state.v, state.rows, state.y, state.force, state.thrust
+    tally, free, now = state.tally, problem.free, problem.force
+    n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]
+    moves, excited = moving.stretches.shape[0] > 0, system.excitations.shape[0] > 0
+    pushed, travels = thrusts.force.size > 0, course.ways.shape[1]
+    end, load, total, pull = system.load.copy(), system.load.copy(), np.zeros(n), np.zeros(n)
+    tilt, y_end = np.zeros(n if excited else 0), np.zeros(m)
+    then, middle = (rows.copy(), rows.copy()) if moves else (rows, rows)
+    way, way_end = np.zeros(travels), np.zeros(travels)
+    stored = np.zeros((4, thrusts.force.size))
+    mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
+    matrix = compliances[0]
+    for step in range(output.states.shape[0] * substeps):
+        done, depth = 0.0, 0
+        while done < 1.0:
+            part, time = 0.5**depth, flow.time[depth]
+            if excited:
+                off = done + 0.5 * part - 0.5
+                _set_loads(system, course.mean[step], course.change[step], off, part, load, tilt)
+            for t in range(travels):
+                length = course.ways[step + 1, t] - course.ways[step, t]
+                way[t] = course.ways[step, t] + done * length
+                way_end[t] = way[t] + part * length
+            if moves:
+                place_rows(way_end, moving, then)
+                average_rows(rows, then, moving, middle)
+                matrix = compliance(then, middle, flow.rise[depth])
+            elif m > 0:
+                matrix = compliances[depth]
+            now[:] = force
+            converged = False
+            for _ in range(_MOST_ROUNDS):
+                total[:] = load + thrust
+                if m > 0:
+                    free_flow(a, v, flow, depth, total, tilt, end)
+                    read_rows(then, end, free)
+                    if not solve_rows(laws, problem, matrix, y, time):
+                        break
+                    _push(middle, now, total)
+                free_flow(a, v, flow, depth, total, tilt, end)
+                converged = not pushed
+                if pushed:
+                    pull[:] = 0.0
+                    y_mean = 0.5 * (a + end)
+                    add_thrust_forces(way, thrusts, y_mean, 0.5, pull)
+                    add_thrust_forces(way_end, thrusts, y_mean, 0.5, pull)
+                    converged = _agree(pull, thrust)
+                if converged:
+                    break
+            if not converged:
+                depth += 1
+                if depth == flow.time.size:
+                    return False
+                continue
+            share = part / substeps
+            for j in range(m):
+                y_end[j] = free[j]
+                for i in range(m):
+                    y_end[j] -= matrix[j, i] * now[i]
+                moved = now[j] * (y_end[j] - y[j])
+                if j < contacts:
+                    mean[j] += share * now[j]
+                    if now[j] != 0.0 and laws.limits[j]["damping"] > 0.0:
+                        _, _, elastic = contact_response(laws, j, y[j], y_end[j], time)
+                        tally[CONTACT] += moved - elastic * (y_end[j] - y[j])
+                elif j < contacts + frictions:
+                    friction[j - contacts] -= share * now[j]
+                    tally[FRICTION] += moved
+                else:
+                    tally[DAMPING] += moved
+                if moves and now[j] != 0.0:
+                    for i in range(n):
+                        moved -= now[j] * middle[j, i] * (end[i] - a[i])
+                    state.driven[j] += moved
+            if pushed:
+                thrust_energies(way, thrusts, a, stored[0])
+                thrust_energies(way_end, thrusts, a, stored[1])
+                thrust_energies(way, thrusts, end, stored[2])
+                thrust_energies(way_end, thrusts, end, stored[3])
+                for t in range(thrusts.force.size):
+                    rise = stored[1, t] - stored[0, t] + stored[3, t] - stored[2, t]
+                    state.driven[m + t] -= 0.5 * rise
+            _note_contacts(state, laws, y_end, free, time)
+            _note_peaks(state, laws, matrix, time, y_end, now, peak)
+            work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
+            tally[WORK] += work
+            tally[DAMPING] += lost
+            tally[TIME] += time
+            tally[STEPS] += 1.0
+            y[:] = y_end
+            force[:] = now
+            if moves:
+                copy_rows(then, moving, rows)
+            done += part
+            while depth > 0 and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
+                depth -= 1
+        if (step + 1) % substeps == 0:
+            interval = step // substeps
+            output.states[interval] = a
+            output.velocities[interval] = v[: output.velocities.shape[1]]
+            output.gaps[interval] = y[:contacts]
+            output.means[interval] = mean
+            output.peaks[interval] = peak
+            output.frictions[interval] = friction
+            output.drives[interval] = state.driven[: output.drives.shape[1]]
+            energies = output.energies[interval]
+            energies[0], energies[1] = modal_energy(a, v, system.omega2)
+            energies[1] -= stored[3].sum()
+            energies[2] = contact_energy(y, laws.terms)
+            energies[3:7] = tally[WORK : WORK + 4]
+            if energies.size > 7:
+                energies[7] = state.driven.sum()
+            mean[:] = 0.0
+            peak[:] = 0.0
+            friction[:] = 0.0
+    return True

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Motion of a gap system by one time step for all models, contact laws and losses.
+
+Within a step of length h all row forces are constant and every mode moves exactly. Contact forces
+are discrete gradients of their energy (Gonzalez 1996), friction obeys its set-valued law on the
+displacement of the step (Moreau 1988), dashpots resist its mean rate. The energy balances to
+round-off at every h; the step is second order, and reversible where nothing is lost. The time loop
+is :func:`dynamics.kernels.march.march`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dynamics.arrays import Array
+from dynamics.drive.stick_slip import FOLLOWED, follow
+from dynamics.drive.travel import Travel
+from dynamics.energy import DRAWN_ENERGIES, ENERGIES, check_energy
+from dynamics.excitation import History
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.march import (
+    CHANGES,
+    FIRST_CONTACT,
+    STEPS,
+    TALLY,
+    Course,
+    Output,
+    State,
+    System,
+    march,
+)
+from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
+from dynamics.kernels.moving_rows import moving_rows, stacked_rows
+from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
+from dynamics.kernels.row_forces import row_laws, row_problem
+from dynamics.motion import Motion
+from dynamics.trajectory import OF_DRIVES, Trajectory
+
+# How often a step is halved whose forces do not converge.
+_HALVINGS = 10
+
+# Gauss's points and weights on [0, 1], exact for polynomials of the fifth degree.
+_POINTS = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A motion that is being computed.
+
+    Args:
+        motion: its loads are gathered.
+        output: of all times; the first is that of the initial state.
+        state: after the last output that is done.
+    """
+
+    motion: Motion
+    output: Output
+    state: State
+
+    @classmethod
+    def begin(cls, motion: Motion) -> Run:
+        """Return the run at t = 0."""
+        system, laws = motion.system, motion.system.laws
+        n, m, f = system.num_modes, len(laws), len(system.frictions)
+        a, v, rows = motion.position.copy(), motion.velocity.copy(), stacked_rows(system)
+        y, thrusts = (rows * a).sum(axis=1), thrust_arrays(system)
+        thrust, stored = np.zeros(n), np.zeros(thrusts.force.size)
+        ways = np.zeros(len(system.travels))
+        add_thrust_forces(ways, thrusts, a, 1.0, thrust)
+        thrust_energies(ways, thrusts, a, stored)
+        forces = [float(law.force(gap)) for law, gap in zip(laws, y, strict=False)]
+        tally = np.zeros(TALLY)
+        tally[FIRST_CONTACT] = 0.0 if any(forces) else np.nan
+        driven = y.size + stored.size if ways.size else 0
+        state = State(
+            a, v, rows, y, np.zeros(y.size), thrust, tally, np.zeros(driven), np.zeros(m),
+            np.full(m, np.inf),
+        )  # fmt: skip
+        kinds = DRAWN_ENERGIES if ways.size else ENERGIES
+        columns = (n, n if system.observes_rates else 0, len(kinds), m, m, m, f, driven)
+        output = Output(*(np.zeros((motion.outputs + 1, count)) for count in columns))
+        output.states[0], output.gaps[0] = a, y[:m]
+        output.velocities[0] = v[: output.velocities.shape[1]]
+        output.means[0] = output.peaks[0] = forces
+        strain = 0.5 * float((system.omega2 * a**2).sum()) - float(stored.sum())
+        contact = sum(float(law.energy(gap)) for law, gap in zip(laws, y, strict=False))
+        output.energies[0, :3] = 0.5 * float((v**2).sum()), strain, contact
+        return cls(motion, output, state)
+
+    @cached_property
+    def _system(self) -> System:
+        system = self.motion.system
+        loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
+        omega2, load = (np.ascontiguousarray(x) for x in (system.omega2, system.load))
+        moving, thrusts = moving_rows(system), thrust_arrays(system)
+        return System(omega2, load, loads, row_laws(system), moving, thrusts)
+
+    @cached_property
+    def _tables(self) -> dict[int, tuple[Flow, Array]]:
+        return {}
+
+    def advance(
+        self, first: int, last: int, substeps: int, state: State, output: Output | None = None
+    ) -> Output:
+        """Advance a state through output intervals, and return what it leaves at their ends.
+
+        Args:
+            first, last: outputs at the start and at the end.
+            substeps: of each interval.
+            state: at the start, which is changed.
+            output: is filled in; a new one unless given.
+
+        Raises:
+            NumericsError: the state is not finite, or row forces do not converge.
+        """
+        system, step = self.motion.system, self.motion.output_step / substeps
+        if substeps not in self._tables:
+            flow = modal_flow(system, step * 0.5 ** np.arange(_HALVINGS + 1))
+            matrices = [compliance(state.rows, state.rows, rise) for rise in flow.rise]
+            self._tables[substeps] = flow, np.array(matrices)
+        if output is None:
+            output = Output(*(np.zeros((last - first, x.shape[1])) for x in self.output))
+        times = step * np.arange(first * substeps, last * substeps + 1)
+        problem = row_problem(len(state.rows), len(system.frictions))
+        if not march(
+            self._system, *self._tables[substeps], state, course(system, times), substeps,
+            problem, output,
+        ):  # fmt: skip
+            raise NumericsError(
+                f"contact and friction forces do not converge even in steps of "
+                f"{step * 0.5**_HALVINGS:.3g} s; make the contact softer"
+            )
+        if not (np.isfinite(state.a).all() and np.isfinite(state.v).all()):
+            raise NumericsError(f"the motion is not finite after {times[-1]:.3g} s")
+        return output
+
+    def part(self, first: int, last: int) -> Output:
+        """Return the outputs from after ``first`` to ``last``, to be filled in."""
+        return Output(*(array[1 + first : 1 + last] for array in self.output))
+
+    def trajectory(
+        self, substeps: tuple[int, ...], window: int, step_error: float = np.nan
+    ) -> Trajectory:
+        """Return the motion.
+
+        With a drive, also the length drawn out in m, the force of the drive against friction in N
+        and its power in W of each travel that has a suffix; of an elastic drive what ``FOLLOWED``
+        lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
+
+        Args:
+            substeps, window: of the :class:`dynamics.integrator.StepSchedule` that was made.
+            step_error: part of the range by which the step changes observed deflections; NaN
+                where it is not known.
+
+        Raises:
+            NumericsError: the energy residual passes its bound.
+        """
+        motion, output, tally = self.motion, self.output, self.state.tally
+        step = motion.output_step / max(substeps)
+        # What the loads give within an output interval is round-off beside any motion.
+        load = motion.system.largest_load
+        least = 0.5 * step**2 * float((load * load).sum())
+        check_energy(output.energies, least=least)
+        found = Trajectory.record(
+            motion.system,
+            time=motion.output_step * np.arange(motion.outputs + 1),
+            states=output.states,
+            velocities=output.velocities,
+            energies=output.energies,
+            row_gaps=output.gaps,
+            row_forces=output.means,
+            row_peaks=output.peaks,
+            row_frictions=output.frictions,
+            step=step,
+            steps=int(tally[STEPS]),
+            first_contact=float(tally[FIRST_CONTACT]),
+            contact_changes=int(tally[CHANGES]),
+            least_energy=least,
+        )
+        found.data.attrs |= {
+            "substeps": list(substeps),
+            "window": window,
+            "step_error": step_error,
+            "resolving_step": float(self.state.resolving.min(initial=np.inf)),
+        }
+        return self._with_drives(found) if motion.system.travels else found
+
+    def _with_drives(self, found: Trajectory) -> Trajectory:
+        """Add the results of drives to a trajectory."""
+        system, moving = self.motion.system, self._system.moving.stretches
+        at_rows, at_thrusts = np.split(self.output.drives, [len(self.state.rows)], axis=1)
+        of_thrust = self._system.thrusts.place[:, 0]
+        added, told = {}, {}
+        for number, travel in enumerate(system.travels):
+            if travel.suffix is None:
+                continue
+            rows = np.unique(moving[moving[:, 1] == number, 0])
+            work = at_rows[:, rows].sum(axis=1) + at_thrusts[:, of_thrust == number].sum(axis=1)
+            way, friction = (
+                travel.history(found.time),
+                axial_friction(system, travel, self.output.means),
+            )
+            rubbed = np.sign(np.diff(way, prepend=way[0])) * friction
+            against = (rubbed + travel.borne) * np.diff(way, prepend=way[0])
+            power = np.diff(work + np.cumsum(against), prepend=0.0)
+            power[1:] /= np.diff(found.time)
+            for (name, of), values in zip(OF_DRIVES.items(), (way, rubbed, power), strict=True):
+                added[f"{name}{travel.suffix}"] = ("time", values, of)
+            if travel.pulled is not None:
+                followed = follow(travel.pulled, travel.history, found.time, friction)
+                told[f"drive_force{travel.suffix}"] = followed.told
+                for name, of in FOLLOWED.items():
+                    added[f"{name}{travel.suffix}"] = ("time", getattr(followed, name), of)
+        data = found.data.assign(added).assign_attrs({"stick_slip": told} if told else {})
+        return Trajectory(data, found.states)
+
+
+def course(system: GapSystem, times: Array) -> Course:
+    """Return loads and travels in steps that end at times (num_steps + 1,) in s."""
+    found = [moments(x.history, times) for x in system.excitations]
+    mean, change = np.array(found).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
+    ways = np.array([travel.history(times) for travel in system.travels])
+    return Course(mean.copy(), change.copy(), ways.reshape(-1, times.size).T.copy())
+
+
+def moments(history: History, times: Array) -> tuple[Array, Array]:
+    """Return mean and change (num_steps,) of the straight line that stands for a history in a step.
+
+    The line has the integral and the first moment of the history, so that kinks within a step need
+    no step of their own: a mode's response is off by (ωh)⁴/720 of the kink's at most.
+
+    Args:
+        history: of a load.
+        times: (num_steps + 1,) ends of the steps in s, evenly spaced.
+    """
+    kinks = np.asarray(history.kinks, dtype=np.float64)
+    ends = np.union1d(times, kinks[(kinks > times[0]) & (kinks < times[-1])])
+    lengths, step = np.diff(ends), (times[-1] - times[0]) / (times.size - 1)
+    inside = ends[:-1, None] + lengths[:, None] * _POINTS
+    owner = np.searchsorted(times, ends[:-1], side="right") - 1
+    weighed = history(inside) * _WEIGHTS * (lengths / step)[:, None]
+    part = (inside - times[owner, None]) / step - 0.5
+    number = times.size - 1
+    mean, moment = (
+        np.asarray(np.bincount(owner, each.sum(axis=1), number), dtype=np.float64)
+        for each in (weighed, weighed * part)
+    )
+    return mean, 12.0 * moment
+
+
+def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
+    """Return μ Σ|N| (num_times,) in N of the pads that a travel moves.
+
+    Args:
+        system: with the travel.
+        travel: one of its own.
+        forces: (num_times, num_rows) of the contacts in N.
+    """
+    coefficients = {friction.station: friction.coefficient for friction in system.frictions}
+    total = np.zeros(len(forces))
+    for kind, row in travel.moving:
+        if kind == "rows":
+            coefficient = coefficients.get(int(system.station_of_row[row]), 0.0)
+            total += coefficient * np.abs(forces[:, row])
+        elif kind == "friction_rows":
+            friction = system.frictions[row]
+            total += friction.coefficient * friction.normal_force
+    return total
+
+
+def histories_of(system: GapSystem) -> Sequence[History]:
+    """Return all histories that the time step must follow."""
+    return [*(x.history for x in system.excitations), *(x.history for x in system.travels)]
