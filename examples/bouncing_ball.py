@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A ball on a springy floor: a gap system of one's own, moved from contact to contact."""
+"""A ball on a springy floor: a gap system of one's own."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def fall() -> pt.Trajectory:
         stations=[0.0],
         observers={"height": pt.Observer(np.array([1.0]))},
     )
-    return pt.simulate(ball, 1.0, 1.0e-3, position=[HEIGHT], integrator=pt.Events())
+    return pt.simulate(ball, 1.0, 1.0e-3, position=[HEIGHT])
 
 
 if __name__ == "__main__":

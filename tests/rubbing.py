@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dynamics.integrators import splitting
 
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.kernels import lossy_steps
+from dynamics.integrator import FixedStep
+from dynamics.kernels import march, row_forces
 from dynamics.motion import Motion
 
 
@@ -24,7 +24,7 @@ def compiled_in(factory: pytest.TempPathFactory) -> Path:
 def compile_loop(file: Path) -> None:
     """Leave in a file what the motion tells, unless some of its loop had been compiled before."""
     said = told()
-    loops = splitting._march, lossy_steps.lossy_steps
+    loops = march.march, row_forces.solve_rows
     if all(loop.stats.cache_misses for loop in loops):
         file.write_text(said, encoding="utf-8")
 
@@ -44,7 +44,7 @@ def told() -> str:
         friction_rows=random.normal(size=(2, 12)),
         frictions=[DryFriction(0.2, 0, 1.0), DryFriction(0.2, 1, 2.0)],
     )
-    data = splitting.integrate(Motion(system, 0.5, 0.01), step=1.0e-4).data
+    data = FixedStep(1.0e-4)(Motion(system, 0.5, 0.01)).data
     return f"{ {name: values.values.tolist() for name, values in data.items()} }\n"
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from dynamics.integrators.integrator import simulate
 from mpi4py import MPI
 
 from beam_model.component import SegmentModel
@@ -14,6 +13,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.segment_model import tied_system
+from dynamics.integrator import simulate
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file

@@ -13,11 +13,11 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from dynamics.integrators.splitting import integrate
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
@@ -240,7 +240,9 @@ def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
         stations=[HEAD],
         observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},
     )
-    motion = integrate(Motion(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity))
+    motion = AdaptiveStep()(
+        Motion(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity)
+    )
     return Blow(
         motion.time,
         np.asarray(motion.data["contact_force"].values[:, 0]),

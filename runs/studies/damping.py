@@ -9,12 +9,12 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from dynamics.integrators.splitting import integrate
 from scipy.signal import find_peaks
 
 from dynamics.damping import pressed_modes, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from runs import CASES
@@ -38,10 +38,8 @@ RATIOS = (0.005, 0.02, 0.05)
 MODES = 3
 # The numbers of the loads of the cases are those of the masses.
 GRAVITY = 9.80665
-# Step times the highest frequency.
-PHASE = 0.2
-# For which each mode swings.
-PERIODS = 1.1
+# For which each mode swings, and steps of each.
+PERIODS, STEPS = 1.1, 2000
 # What a swing changes of a contact's penetration.
 SWING = 0.02
 
@@ -59,7 +57,6 @@ class PressedBoom:
     rest: Array  #: (num_modes,) in √kg·m
     omega: Array  #: (MODES,) of the first modes in rad/s
     shapes: Array  #: (num_modes, MODES)
-    step: float  #: of the integrator in s, small for all pressed modes
 
     @classmethod
     def of(cls, system: GapSystem) -> PressedBoom:
@@ -67,7 +64,7 @@ class PressedBoom:
         system = replace(without_friction(system), load=-GRAVITY * system.load)
         omega, shapes = pressed_modes(system)
         rest = equilibrium(system, system.load)
-        return cls(system, rest, omega[:MODES], shapes[:, :MODES], PHASE / omega[-1])
+        return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
         """The ratio by the logarithmic decrement of a mode's swing, and its energy residual."""
@@ -77,14 +74,13 @@ class PressedBoom:
         deep = np.array([abs(gap) - law.clearance for law, gap in laws])
         shape, period = self.shapes[:, mode], 2.0 * np.pi / self.omega[mode]
         reach = np.abs(self.system.rows @ shape)
-        run = integrate(
+        run = FixedStep(period / STEPS)(
             Motion(
                 with_ratio(self.system, ratio),
                 PERIODS * period,
                 period / 200.0,
                 position=self.rest + shape * SWING * (deep / reach)[pressed].min(),
-            ),
-            self.step,
+            )
         )
         swing = (run.states - self.rest) @ shape
         peaks, _ = find_peaks(swing)

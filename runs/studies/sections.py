@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Joint, Material, Segment, Support
@@ -110,7 +110,7 @@ def collared(boom: Boom, thickness: float) -> Boom:
 
 def first_peak(system: GapSystem) -> float:
     """Of the tip in m."""
-    tip = integrate(Motion(system, DURATION, output_step=1.0e-3)).data["tip"].values
+    tip = AdaptiveStep()(Motion(system, DURATION, output_step=1.0e-3)).data["tip"].values
     return float(np.abs(tip).max())
 
 

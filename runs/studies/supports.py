@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from dynamics.integrators.splitting import integrate
 from scipy.optimize import brentq
 
 from beam_model.elements import Theory
@@ -19,6 +18,7 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Material, Segment, Support
@@ -86,7 +86,7 @@ def first_frequency(segment: Segment, rotation_stiffness: float) -> float:
 
 def decrement(system: GapSystem, position: Array, period: float) -> float:
     """Mean logarithm of the ratio of successive maxima of the tip, which swings about zero."""
-    tip = integrate(Motion(system, 8.5 * period, period / 500.0, position)).data["tip"].values
+    tip = AdaptiveStep()(Motion(system, 8.5 * period, period / 500.0, position)).data["tip"].values
     before, at, after = tip[:-2], tip[1:-1], tip[2:]
     peaks = (at > before) & (at >= after)
     before, at, after = before[peaks], at[peaks], after[peaks]

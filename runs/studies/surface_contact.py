@@ -31,9 +31,6 @@ from runs.studies.motions import (
 from runs.studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
 from runs.studies.study import Piece, Plot, Proof, Tell, titled
 
-# Of the highest frequency of the contacts, see dynamics.integrators.step: thrice what a run would
-# take, which changes the tip with friction by less than 0.1 % of its range.
-PHASE = 0.1
 # Beyond the play, in m: how deep the approaches of the proofs go.
 DEPTH = 1.0e-3
 DEFAULT_POINTS = (8, 4)
@@ -105,7 +102,7 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
     ]
     tell("motions with friction")
     tips = {
-        contact.name: np.asarray(move(contact.system, sizes.duration, PHASE).data["tip"].values)
+        contact.name: np.asarray(move(contact.system, sizes.duration).data["tip"].values)
         for contact in (lines, default)
     }
     apart = np.abs(tips[lines.name] - tips[default.name]).max() / np.ptp(tips[default.name])
@@ -158,7 +155,7 @@ def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> T
     """The tip's first peak without and with friction, and how far it is off the first contact's."""
     both = np.array(
         [
-            [move(one, sizes.peak, PHASE).first_peak()[1] for one in (without_friction(of), of)]
+            [move(one, sizes.peak).first_peak()[1] for one in (without_friction(of), of)]
             for _, _, of in contacts
         ]
     )

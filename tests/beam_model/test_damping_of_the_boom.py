@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from scipy.signal import find_peaks
 
 from beam_model.component import SegmentModel
@@ -17,6 +16,7 @@ from dynamics.contact import PowerContact
 from dynamics.damping import pressed_modes, pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom
 
@@ -60,7 +60,7 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
     """Reference: analytic, the logarithmic decrement 2πζ/√(1 − ζ²)."""
     omega, shapes = pressed_modes(heavy)
     rest = equilibrium(heavy, heavy.load)
-    run = integrate(
+    run = AdaptiveStep()(
         Motion(
             with_ratio(heavy, ratio),
             3.2 * 2.0 * np.pi / omega[mode],
@@ -83,7 +83,7 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
     damped = with_ratio(wide, 0.05)
     tied = pressed_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
-    run = integrate(Motion(damped, 1.0, 0.1, velocity=thrown))
+    run = AdaptiveStep()(Motion(damped, 1.0, 0.1, velocity=thrown))
     way = (1.0 - np.exp(-0.05 * tied * run.time)) / (0.05 * tied)
     np.testing.assert_allclose(run.states @ thrown, way, rtol=1e-9, atol=1e-12)
     assert run.energy_residual < 1e-12
@@ -92,7 +92,7 @@ def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: G
 def test_rest_under_weight_loses_nothing(heavy: GapSystem) -> None:
     """Reference: analytic. Nothing moves, however much the modes are damped."""
     damped = replace(heavy, damping=3e-4 * heavy.omega2)
-    run = integrate(Motion(damped, 0.5, 0.01, position=equilibrium(heavy, heavy.load)))
+    run = AdaptiveStep()(Motion(damped, 0.5, 0.01, position=equilibrium(heavy, heavy.load)))
     strain = float(run.data["strain_energy"][0])
     assert float(run.data["damping_loss"][-1]) < 1e-6 * strain
 
@@ -105,7 +105,7 @@ def test_the_error_is_of_second_order_in_the_step(heavy: GapSystem) -> None:
     start = rest + 1e-3 * shapes[:, :3].sum(axis=1)
 
     def states(step: float) -> np.ndarray:
-        return integrate(Motion(damped, 0.05, 0.01, position=start), step=step).states
+        return FixedStep(step)(Motion(damped, 0.05, 0.01, position=start)).states
 
     exact = states(5e-6 / 16.0)
     errors = [np.abs(states(step) - exact).max() for step in (2e-5, 1e-5, 5e-6)]

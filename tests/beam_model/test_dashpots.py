@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
@@ -19,6 +18,7 @@ from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_ratios
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Segment, Support
@@ -32,7 +32,7 @@ BOTH_WAYS = PowerContact(SPRING, exponent=1.0, clearance=0.0)
 
 def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
     """Logarithms of the ratios of successive maxima of an observer, which swings about zero."""
-    run = integrate(Motion(system, duration, 1e-4, position), energy_bound=1e-4)
+    run = AdaptiveStep()(Motion(system, duration, 1e-4, position))
     swing = run.data[name].values
     inside = swing[1:-1]
     (peaks,) = np.nonzero((inside > swing[:-2]) & (inside >= swing[2:]))
@@ -116,7 +116,7 @@ def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
     (joint,) = paper_boom.joints
     boom = replace(paper_boom, joints=(replace(joint, dashpot=2.0e4),))
     law = PowerContact(1.0e9, exponent=1.0, clearance=joint.clearance)
-    run = integrate(Motion(gap_system(boom, elements(1.0), [law]), 1.0), energy_bound=1e-4)
+    run = AdaptiveStep()(Motion(gap_system(boom, elements(1.0), [law]), 1.0))
     loss = np.diff(run.data["damping_loss"].values)
     assert loss.min() >= 0.0
     assert loss.sum() > 0.1 * np.ptp(run.data["kinetic_energy"].values)

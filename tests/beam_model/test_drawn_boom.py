@@ -9,14 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.integrator import Splitting
-from dynamics.integrators.splitting import integrate
 
 from beam_model.systems import finite_element_system, kantorovich_system
 from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Table
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive
@@ -87,7 +86,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
     for rows in ("rows", "friction_rows"):
         found, expected = ((r := getattr(s, rows)) @ r.T for s in (system, there))
         assert found == pytest.approx(expected, rel=1e-8, abs=1e-10)
-    run = integrate(Motion(built(0.0, Drive(SCurve(4.0, 0.5), DRAWN.carriers)), 0.5), 5.0e-5)
+    run = FixedStep(5.0e-5)(Motion(built(0.0, Drive(SCurve(4.0, 0.5), DRAWN.carriers)), 0.5))
     assert run.energy_residual < 1.0e-3
     assert float(np.abs(run.data["drive_work"]).max()) > 0.0
 
@@ -99,7 +98,7 @@ def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
     system = finite_element_system(boom, [LAW], element_length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
-    run = integrate(Motion(system, 80.0, 0.1, position=rest), 1.0e-4)
+    run = FixedStep(1.0e-4)(Motion(system, 80.0, 0.1, position=rest))
     for time in np.linspace(0.0, 80.0, 9):
         there = tips(system.standing(time))[0]
         found = float(run.data["tip"].sel(time=time, method="nearest"))
@@ -124,7 +123,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
     boom = replace(boom, segments=segments)
     system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
-    runs = [integrate(Motion(system, 0.6, 5.0e-3), step) for step in (2.0e-5, 1.0e-5)]
+    runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time)
     assert runs[0].data.attrs["contact_changes"] > 2
     errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]
@@ -132,7 +131,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     assert errors[1] < 0.4 * errors[0]
     assert float(runs[1].data["drive_work"][-1]) == pytest.approx(work, rel=1e-4)
     # Without the drive the tip is elsewhere.
-    still = Splitting(2.0e-5)(Motion(replace(system, travels=()), 0.6, 5.0e-3))
+    still = FixedStep(2.0e-5)(Motion(replace(system, travels=()), 0.6, 5.0e-3))
     assert np.abs(still.data["tip"].values - tip).max() > 0.05 * np.ptp(tip)
 
 
@@ -143,7 +142,7 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
     for changes in ({}, joint):
         boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRAWN.carriers), **changes)
         system = finite_element_system(boom, [LAW], element_length=1.0)
-        run = integrate(Motion(system, 1.5), 1.0e-5)
+        run = FixedStep(1.0e-5)(Motion(system, 1.5))
         put_in = float(np.abs(run.data["work"]).max())
         assert run.energy_residual < 1.0e-5
         assert abs(float(run.data["drive_work"][-1])) > 0.01 * put_in
@@ -158,7 +157,7 @@ def test_out_and_in_again(paper_boom: Boom) -> None:
     system = finite_element_system(boom, [LAW], element_length=1.0)
     speeds = 1.0e-3 * np.cos(np.arange(system.num_modes))
     drawn, rest = (
-        integrate(Motion(one, 0.4, 1.0e-2, velocity=speeds), 1.0e-4)
+        FixedStep(1.0e-4)(Motion(one, 0.4, 1.0e-2, velocity=speeds))
         for one in (system, replace(system, travels=()))
     )
     assert drawn.data.attrs["contact_changes"] == 0

@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from scipy.linalg import eigh
 
 from beam_model.boom_modes import critical_factor
@@ -22,6 +21,7 @@ from dynamics.arrays import Array
 from dynamics.drive.travel import SCurve, Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
@@ -118,7 +118,7 @@ def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None
     system = finite_element_system(boom, [LAW], element_length=1.0)
     system = replace(system, damping=0.2 * np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
-    run = integrate(Motion(system, 60.0, 0.1, position=rest), 1.0e-4)
+    run = FixedStep(1.0e-4)(Motion(system, 60.0, 0.1, position=rest))
     for way, time in ((2.0, 0.0), (3.0, 30.0), (4.0, 60.0)):
         there = finite_element_system(pressed(paper_boom, way), [LAW], element_length=1.0)
         found = float(run.data["tip"].sel(time=time, method="nearest"))
@@ -140,14 +140,14 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     ropes = [Thrust(1, inner.end, thrust)]
     boom = replace(drawn, segments=with_compression((outer, inner), drawn.joints, ropes))
     system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
-    runs = [integrate(Motion(system, 0.6, 5.0e-3), step) for step in (2.0e-5, 1.0e-5)]
+    runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time, thrust)
     errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]
     assert errors[1] < 1.0e-5
     assert errors[1] < 0.4 * errors[0]
     assert float(runs[1].data["drive_work"][-1]) == pytest.approx(work, rel=1e-4)
     still = replace(system, travels=[replace(t, thrusts=()) for t in system.travels])
-    off = integrate(Motion(still, 0.6, 5.0e-3), 2.0e-5).data["tip"].values - tip
+    off = FixedStep(2.0e-5)(Motion(still, 0.6, 5.0e-3)).data["tip"].values - tip
     assert np.abs(off).max() > 3.0e-4 * np.ptp(tip)
 
 
@@ -162,7 +162,7 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))
         system = finite_element_system(boom, [LAW], element_length=1.0)
         steps = (4.0e-5, 2.0e-5, 1.0e-5)
-        runs = [integrate(Motion(system, 1.5, 5.0e-3), step) for step in steps]
+        runs = [FixedStep(step)(Motion(system, 1.5, 5.0e-3)) for step in steps]
         assert runs[-1].energy_residual < 1.0e-5
         residuals = [run.energy_residual for run in runs]
         assert residuals[1] < 0.35 * residuals[0]

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.component import SegmentModel
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom
 
@@ -38,13 +38,13 @@ def five_terms(
 def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
     """Reference: the boom itself under a load changed by 1e-9: so is the motion for 10 s."""
     changed = replace(five_terms, load=five_terms.load * (1.0 + 1e-9))
-    one, other = (integrate(Motion(system, 10.0), step=STEP) for system in (five_terms, changed))
+    one, other = (FixedStep(STEP)(Motion(system, 10.0)) for system in (five_terms, changed))
     tip = one.data["tip"].values
     assert np.abs(tip - other.data["tip"].values).max() < 1e-7 * np.ptp(tip)
     assert one.data.attrs["contact_changes"] > 20
     # Without friction the same change grows to the size of the motion.
     free = [
-        integrate(Motion(replace(system, friction_rows=np.zeros((0, 5)), frictions=()), 10.0))
+        AdaptiveStep()(Motion(replace(system, friction_rows=np.zeros((0, 5)), frictions=()), 10.0))
         for system in (five_terms, changed)
     ]
     apart = np.abs(free[0].data["tip"].values - free[1].data["tip"].values)
@@ -53,7 +53,7 @@ def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
 
 def test_friction_takes_energy_and_the_ledger_closes(five_terms: GapSystem) -> None:
     """Reference: analytic. The loss is force times way: never less, and all but what is held."""
-    run = integrate(Motion(five_terms, 3.0), step=STEP)
+    run = FixedStep(STEP)(Motion(five_terms, 3.0))
     loss = run.data["friction_loss"].values
     assert np.diff(loss).min() >= 0.0
     assert loss[-1] > 0.5 * float(run.data["work"][-1])
@@ -68,7 +68,7 @@ def test_friction_takes_energy_and_the_ledger_closes(five_terms: GapSystem) -> N
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
     """Reference: a finer step, 4e-6 s. A quarter of the step leaves well below half the error."""
     tips = [
-        integrate(Motion(five_terms, 2.0), step=step).data["tip"].values
+        FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
         for step in (6.4e-5, 1.6e-5, 4e-6)
     ]
     errors = [np.abs(tip - tips[-1]).max() / np.ptp(tips[-1]) for tip in tips[:-1]]

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
@@ -18,6 +17,7 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Segment, Support
 
@@ -31,7 +31,7 @@ def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> Gap
 
 def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
     """Reference: analytic, nothing is lost: below 1e-4 of the work of the load."""
-    run = integrate(Motion(five_terms, 10.0))
+    run = AdaptiveStep()(Motion(five_terms, 10.0))
     assert run.data.attrs["contact_changes"] > 1000
     held = sum(run.data[f"{kind}_energy"].values for kind in ("kinetic", "strain", "contact"))
     work = run.data["work"].values
@@ -43,7 +43,7 @@ def test_the_step_of_the_paper_is_refused(five_terms: GapSystem) -> None:
     """7 s in 4375 steps, as the paper's finite element run with friction."""
     message = "the motion is not finite at a step of 0.0016 s; halve the step"
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
-        integrate(Motion(five_terms, 7.0, output_step=1.6e-3), step=1.6e-3)
+        FixedStep(1.6e-3)(Motion(five_terms, 7.0, output_step=1.6e-3))
 
 
 def test_four_and_five_terms_coincide_until_they_touch(
@@ -51,7 +51,7 @@ def test_four_and_five_terms_coincide_until_they_touch(
 ) -> None:
     """Statement 4.1 of the paper: until then the inner segment moves as a rigid body."""
     four, five = (
-        integrate(Motion(gap_system(paper_boom, series(terms), [paper_law]), 0.4), step=4.0e-6)
+        FixedStep(4.0e-6)(Motion(gap_system(paper_boom, series(terms), [paper_law]), 0.4))
         for terms in ((2, 2), (2, 3))
     )
     assert 0.1 < five.first_contact < 0.2
@@ -68,9 +68,9 @@ def test_four_and_five_terms_coincide_until_they_touch(
 def test_the_first_contact_does_not_depend_on_the_step(five_terms: GapSystem) -> None:
     """Reference: analytic. Before it the motion is exact; the line between two places is not,
     by ÿ h²/8 over the closing speed, some 1e-2 /s of h²."""
-    finest = integrate(Motion(five_terms, 0.2), step=1.0e-6).first_contact
+    finest = FixedStep(1.0e-6)(Motion(five_terms, 0.2)).first_contact
     for step in (1.0e-3, 1.0e-4, 1.0e-5):
-        first = integrate(Motion(five_terms, 0.13), step=step, energy_bound=np.inf).first_contact
+        first = FixedStep(step)(Motion(five_terms, 0.13)).first_contact
         assert abs(first - finest) < 10.0 * step**2 + 1e-12
 
 
@@ -88,7 +88,7 @@ def test_with_friction_the_complete_series_follows_the_elements(
     boom = replace(paper_boom, joints=(joint,))
     law = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
     beams, complete, printed = (
-        integrate(Motion(gap_system(boom, models, [law]), 0.6), step=4.0e-6)
+        FixedStep(4.0e-6)(Motion(gap_system(boom, models, [law]), 0.6))
         for models in (elements(1.0), series((12, 12), "complete"), series((2, 3)))
     )
     assert 0.3 < beams.first_contact < 0.4
@@ -139,7 +139,7 @@ def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
             models = finite_element_segments(boom, unit, "euler-bernoulli", True)
             law = PowerContact(1.0e10 / unit, 1.0, 7.0e-3 * unit)
         system = gap_system(boom, models, [law])
-        runs.append(integrate(Motion(system, 0.122, output_step=1.0e-3)))
+        runs.append(AdaptiveStep()(Motion(system, 0.122, output_step=1.0e-3)))
     metres, millimetres = runs
     assert metres.data.attrs["contact_changes"] >= 2
     assert millimetres.data.attrs["contact_changes"] == metres.data.attrs["contact_changes"]

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.boom_modes import BoomModes
 from beam_model.rigid import rigid_segment
@@ -15,6 +14,7 @@ from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, PointMass, Support
 
@@ -51,7 +51,7 @@ def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
     lowest = -LAW.clearance - sag - np.hypot(sag, speed / omega)
     period = 2.0 * fall + contact
 
-    found = integrate(Motion(system, 4.0 * period, period / 40.0), 2.0e-6)
+    found = FixedStep(2.0e-6)(Motion(system, 4.0 * period, period / 40.0))
     tip = found.data["tip"].values
     assert tip[20::40] == pytest.approx([lowest] * 4, rel=1e-6)
     assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.clearance)

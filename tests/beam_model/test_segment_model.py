@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
@@ -16,6 +15,7 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
@@ -214,8 +214,8 @@ def test_tied_halves_move_as_the_whole(
     """Reference: analytic, until the rounding of the first presses has grown."""
     law = PowerContact(1e9, 1.0, 7e-3)
     step = 2.0e-5
-    whole = integrate(Motion(gap_system(paper_boom, elements(1.0), [law]), 0.2), step=step)
-    halves = integrate(Motion(gap_system(*leaves, [law, law]), 0.2), step=step)
+    whole = FixedStep(step)(Motion(gap_system(paper_boom, elements(1.0), [law]), 0.2))
+    halves = FixedStep(step)(Motion(gap_system(*leaves, [law, law]), 0.2))
     assert 0.1 < whole.first_contact < 0.15
     assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)
     assert halves.data.attrs["contact_changes"] == whole.data.attrs["contact_changes"] > 1

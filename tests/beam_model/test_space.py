@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
@@ -17,6 +16,7 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
@@ -245,7 +245,7 @@ def test_the_vertical_plane_is_the_flat_boom(
             else [kantorovich_segment(s, 6, "complete", True) for s in boom.segments]
         )
         system = gap_system(boom, models, [LAW], lateral)
-        runs.append(integrate(Motion(system, duration), step=2.0e-5))
+        runs.append(FixedStep(2.0e-5)(Motion(system, duration)))
     plane, space = runs
     assert plane.data.attrs["contact_changes"] > 10
     same(plane, space, {name: name for name in ("tip", "head", "tail")}, 1e-9)
@@ -262,7 +262,7 @@ def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> Non
     side = rolled(boom)
     lying = gap_system(side, beams(side), [LATERAL_LAW], [LAW])
     assert len(upright.frictions) == 16
-    one, other = (integrate(Motion(system, 0.25), step=2.0e-5) for system in (upright, lying))
+    one, other = (FixedStep(2.0e-5)(Motion(system, 0.25)) for system in (upright, lying))
     assert one.data["friction_loss"].values[-1] > 0.3
     names = ("tip", "head", "tail")
     same(one, other, {name: f"{name}_lateral" for name in names}, 1e-7)
@@ -319,7 +319,7 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
     friction couples to the plane stays within what its load puts in."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.3),)), 60.0, 40.0)
-    run = integrate(Motion(gap_system(boom, beams(boom), [LAW], [LATERAL_LAW]), 1.0))
+    run = AdaptiveStep()(Motion(gap_system(boom, beams(boom), [LAW], [LATERAL_LAW]), 1.0))
     loss = run.data["friction_loss"].values
     assert loss[-1] > 0.05
     assert np.diff(loss).min() >= -1e-9 * loss[-1]

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from runs import CASES
@@ -37,7 +37,7 @@ def five_terms() -> tuple[GapSystem, float]:
 
 def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
     """Slow peaks of one run as those of an ensemble."""
-    run = integrate(Motion(system, 4.0, STEP))
+    run = AdaptiveStep()(Motion(system, 4.0, STEP))
     times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
     period = float(np.diff(times).mean())
     return SlowPeaks(

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from dynamics.integrators.integrator import simulate
 from matplotlib.figure import Figure as Sheet
 
 from dynamics.contact import PowerContact
@@ -18,6 +17,7 @@ from dynamics.drive.travel import SCurve, Travel
 from dynamics.excitation import Excitation, History, Ramp, Sine, Table
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import simulate
 from dynamics.trajectory import Trajectory
 from protractile.cases import run_case
 from runs import CASES

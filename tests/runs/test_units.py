@@ -13,14 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.event_driven import integrate_events
-from dynamics.integrators.splitting import integrate
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
@@ -149,18 +148,18 @@ def test_beams_do_not_know_the_units(
     """Reference: this model in SI, to 1e-9 of the range, with friction and through presses."""
     boom = flat_boom(friction=0.2)
     runs = [
-        integrate(Motion(model(*data), 1.0), step=5.0e-6)
+        FixedStep(5.0e-6)(Motion(model(*data), 1.0))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
     ]
     agree(*runs)
 
 
-def test_jumps_from_contact_to_contact_do_not_know_the_units() -> None:
+def test_steps_by_tolerance_do_not_know_the_units() -> None:
     """Reference: this model in SI, without play and without friction, until chaos takes over."""
     boom = flat_boom()
     law = replace(LINEAR, clearance=0.0)
     runs = [
-        integrate_events(Motion(series(*data), 0.3))
+        AdaptiveStep()(Motion(series(*data), 0.3))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
     ]
     agree(*runs)
@@ -173,7 +172,7 @@ def test_shells_do_not_know_the_units(line: str) -> None:
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
     runs = [
-        integrate(Motion(_shell(line)(*data), 0.6), step=2.0e-6)
+        FixedStep(2.0e-6)(Motion(_shell(line)(*data), 0.6))
         for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
     ]
     agree(*runs)

@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system, tied_system
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load
@@ -58,7 +58,9 @@ def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
         assert _differ(_compliance(space, _walls(space, "z"), sigma), expected) < 1.0e-9
-    motions = [integrate(Motion(system, 0.3, output_step=0.01)).data for system in (flat, space)]
+    motions = [
+        AdaptiveStep()(Motion(system, 0.3, output_step=0.01)).data for system in (flat, space)
+    ]
     tips = [motion["tip"].values for motion in motions]
     early = motions[0]["time"].values < 0.115
     assert _differ(tips[1][early], tips[0][early]) < 1.0e-9
@@ -146,7 +148,7 @@ def test_each_pad_rubs_where_it_presses() -> None:
 def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
     """Reference: analytic. Pressed sideways the boom loses energy at each station, gains
     none, and rubs with less than μ times the largest blow."""
-    motion = integrate(Motion(_system(boom_in_space(friction=0.2, sideways=0.5)), 0.3))
+    motion = AdaptiveStep()(Motion(_system(boom_in_space(friction=0.2, sideways=0.5)), 0.3))
     loss = motion.data["friction_loss"].values
     assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
     assert loss[-1] > 1.0e-3 * float(motion.data["work"][-1])
@@ -171,7 +173,7 @@ def test_lateral_motion_is_that_of_beams() -> None:
     boom = replace(flat, segments=segments)
     elements = finite_element_segments(boom, 0.5, "timoshenko", True)
     systems = [_system(boom), gap_system(boom, elements, [LAW], [LATERAL_LAW])]
-    shell, beam = (integrate(Motion(system, 0.25)) for system in systems)
+    shell, beam = (AdaptiveStep()(Motion(system, 0.25)) for system in systems)
     assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
     tips = [motion.data["tip_lateral"].values for motion in (shell, beam)]
     assert _differ(tips[0], tips[1]) < 0.02

@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.boom import BoomError
 from geometry.contact_places import ContactLine
@@ -61,7 +61,7 @@ def test_the_first_press_is_that_of_the_beam() -> None:
     """Reference: other code, this project's beams: the first contact of stiff thin beams is at
     0.1195 s; shear and distortion delay it by less than 1 %. Energy is kept.
     """
-    trajectory = integrate(Motion(_shell("near webs").system, 0.4))
+    trajectory = AdaptiveStep()(Motion(_shell("near webs").system, 0.4))
     assert trajectory.first_contact == pytest.approx(0.1195, rel=0.01)
     assert trajectory.energy_residual < 1.0e-4
     assert float(trajectory.data["contact_force"].sel(station=10.0).max()) > 0.0
@@ -73,7 +73,7 @@ def test_fields_add_up_to_what_the_observers_read() -> None:
     """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
     shell = _shell("near webs")
     assert shell.fields is not None
-    state = integrate(Motion(shell.system, 0.1)).states[-1]
+    state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
     displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)
     at_tip = np.abs(shell.fields["points"].values[:, 0] - 19.0) < 1.0e-9
     read = float(shell.system.observers["tip"].row @ state)

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 from scipy.linalg import eigh
 
@@ -16,6 +15,7 @@ from dynamics.contact import PowerContact
 from dynamics.drive.travel import Stroke
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom
@@ -70,6 +70,6 @@ def test_on_the_way_it_is_the_shell_that_rests_there() -> None:
     # Without the force that goes along it rests and swings by several times that elsewhere.
     plain = replace(here, softening=np.zeros((0, 0)))
     assert (np.abs(told(plain)[:4] / there[:4] - 1.0) > 5.0e-4).all()
-    run = integrate(Motion(system, 0.7, 1.0e-2), 5.0e-6)
+    run = FixedStep(5.0e-6)(Motion(system, 0.7, 1.0e-2))
     assert run.energy_residual < 1.0e-4
     assert abs(float(run.data["drive_work"][-1])) > 0.01 * float(np.abs(run.data["work"]).max())

@@ -8,8 +8,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import contact_step
 from mpi4py import MPI
 
 from beam_model.systems import finite_element_system
@@ -17,6 +15,7 @@ from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
@@ -160,7 +159,7 @@ def test_no_ring_of_the_mesh_is_felt() -> None:
 
 
 def moved(system: GapSystem, duration: float) -> Trajectory:
-    return integrate(Motion(system, duration), contact_step(system, 1.0e-3))
+    return FixedStep(1.0e-5)(Motion(system, duration))
 
 
 @pytest.mark.slow

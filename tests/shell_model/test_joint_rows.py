@@ -8,7 +8,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
@@ -17,6 +16,7 @@ from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Step
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Load, Stop
@@ -80,7 +80,7 @@ def test_dashpots_take_of_the_shell_what_they_take_of_beams(line: ContactLine) -
     boom = _dragged(flat_boom())
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     beam, shell = (
-        integrate(Motion(system, 0.4), energy_bound=1e-4)
+        AdaptiveStep()(Motion(system, 0.4))
         for system in (gap_system(boom, models, [LAW]), _system(boom, line=line))
     )
     taken, expected = (float(run.data["damping_loss"][-1]) for run in (shell, beam))
@@ -95,7 +95,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
     nothing.
     """
     rough, smooth = (
-        integrate(Motion(_system(flat_boom(friction)), 0.25)) for friction in (0.2, 0.0)
+        AdaptiveStep()(Motion(_system(flat_boom(friction)), 0.25)) for friction in (0.2, 0.0)
     )
     loss = rough.data["friction_loss"].values
     assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()

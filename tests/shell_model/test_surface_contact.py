@@ -9,11 +9,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, PadSize, SlidePad
@@ -194,7 +194,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
 def test_contact_over_a_surface_keeps_energy() -> None:
     """Reference: analytic, the ledger; first contact where the stations' is, at the tail."""
     surface, lines = (
-        integrate(Motion(_system(flat_boom(), line=line), 0.25))
+        AdaptiveStep()(Motion(_system(flat_boom(), line=line), 0.25))
         for line in ("surface", "near webs")
     )
     assert surface.energy_residual < 1.0e-4

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
 from mpi4py import MPI
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.excitation import Step
+from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
 from geometry.load import Load
@@ -142,7 +142,9 @@ def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
         boom, law, ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF, lateral_laws=sides
     )
     beam, found = (
-        float(np.abs(integrate(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max())
+        float(
+            np.abs(AdaptiveStep()(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max()
+        )
         for system in (gap_system(boom, models, law, sides), shell.system)
     )
     assert found == pytest.approx(beam, rel=0.02)

@@ -13,10 +13,6 @@ from importlib.util import find_spec
 from time import process_time
 from typing import Any, NamedTuple
 
-from dynamics.integrators.splitting import integrate
-from dynamics.integrators.step import contact_step
-
-from dynamics.motion import Motion
 from protractile.cases import change
 from runs import CASES
 from runs.case import reading as case_file
@@ -25,7 +21,7 @@ from runs.case.kinds.shell import ShellTable
 from runs.case.schema import Case
 from runs.process import notices
 from runs.report.tables import Table, wide_console
-from runs.studies.motions import OUTPUT_STEP, gap_system, model_of
+from runs.studies.motions import OUTPUT_STEP, gap_system, model_of, move
 
 CASE = CASES / "drawn-out.toml"
 MODELS = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
@@ -106,11 +102,10 @@ def _cost(case: Case, name: str) -> Cost:
     begin = process_time()
     system = gap_system(case, build_boom(case), model)
     built = process_time() - begin
-    step = contact_step(system, OUTPUT_STEP)
     # One output compiles the time loop.
-    integrate(Motion(system, OUTPUT_STEP, OUTPUT_STEP), step)
+    move(system, OUTPUT_STEP)
     begin = process_time()
-    integrate(Motion(system, case.time.duration, OUTPUT_STEP), step)
+    move(system, case.time.duration)
     return Cost(system.num_modes, built, process_time() - begin)
 
 

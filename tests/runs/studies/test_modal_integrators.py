@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate as split
 
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from runs.studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 from runs.studies.then.scheme_errors import (
@@ -133,7 +133,7 @@ def test_iterated_impacts_come_near_the_converged_ones() -> None:
     stop = replace(sprung(), laws=[PowerContact(100.0, 1.0, clearance=0.5)])
     motion = Motion(stop, 2.0, 0.005, velocity=np.ones(1))
     found = integrate(motion, NEWMARK, True).trajectory.states[-1]
-    assert found == pytest.approx(split(motion, 1e-4).states[-1], abs=1e-2)
+    assert found == pytest.approx(FixedStep(1e-4)(motion).states[-1], abs=1e-2)
 
 
 def test_sliding_loses_what_friction_takes() -> None:

@@ -24,8 +24,8 @@ def test_orders_are_those_of_a_power_law() -> None:
     assert orders(sizes, np.abs(np.diff(3.0 * sizes**2))) == pytest.approx([2.0, 2.0])
 
 
-def test_a_finer_step_settles_with_the_splitting_s_order(case: Case) -> None:
-    """Reference: analytic. The splitting is of second order, with friction too."""
+def test_a_finer_step_settles_with_its_order(case: Case) -> None:
+    """Reference: analytic. The time step is of second order, with friction too."""
     model = model_of(case, "kantorovich-5-linear")
     rows = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], with_step)
     names, _, apart, found, _ = zip(*rows, strict=True)
