@@ -11,23 +11,21 @@ from numba import njit
 from scipy.integrate import odeint, solve_ivp
 
 from dynamics.contact import contact_terms
-from dynamics.energy import ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.terms import term_force
 from geometry.arrays import Array
+from runs.studies.motions import OUTPUT_STEP
 
 Rates = Callable[[float, Array], Array]
-
-OUTPUT_STEP = 1.0e-3
 
 # Methods of solve_ivp, whose loop is in Python, and the one solver whose loop is in Fortran.
 METHODS = ("LSODA", "DOP853", "Radau")
 SOLVERS = (*METHODS, "odeint")
 
-# Of which the loosest is taken whose energy residual is no larger than ours.
+# Of which the loosest is taken that errs no more than ours.
 TOLERANCES = 10.0 ** np.arange(-3.0, -13.5, -0.5)
 # Absolute tolerance over the relative one: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the one with which
-# LSODA takes the least time for the same energy residual.
+# LSODA took the least time for the same energy residual.
 ABSOLUTE = 1.0e-3
 
 
@@ -86,18 +84,6 @@ def array_rates(system: GapSystem) -> Rates:
     return rubbed
 
 
-def residual_of(system: GapSystem, states: Array) -> float:
-    """Largest energy residual of a motion from rest, states (num_times, 2 num_modes)."""
-    a, v = np.split(states, 2, axis=1)
-    energies = np.zeros((len(states), len(ENERGIES)))
-    energies[:, 0] = 0.5 * (v**2).sum(axis=1)
-    energies[:, 1] = 0.5 * a**2 @ system.omega2
-    gaps = a @ system.rows.T
-    energies[:, 2] = sum(w.energy(y) for w, y in zip(system.laws, gaps.T, strict=True))
-    energies[:, 3] = a @ system.load
-    return float(np.abs(energy_residual(energies)).max())
-
-
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
     """(num_times, num_states) from rest by one of scipy's solvers, at the output steps of ours."""
     times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
@@ -109,22 +95,23 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
     return np.asarray(solve_ivp(rates, span, start, name, times, **tolerances).y.T)
 
 
-def matched(
-    name: str, system: GapSystem, rates: Rates, duration: float, target: float
-) -> tuple[float | None, float]:
-    """The loosest of ``TOLERANCES`` that leaves no more than ``target``, and what it leaves.
+def matched(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
+    """Return the loosest of ``TOLERANCES`` that errs by no more than ``target``, and its error.
 
-    By bisection, as if less tolerance left less; None, and the least that was found, where the
-    tightest ones do not.
+    By bisection, as if less tolerance erred less; None, and the least error that was found, where
+    the tightest ones err more.
+
+    Args:
+        error: of a tolerance.
+        target: in the same unit.
     """
-    residuals: dict[int, float] = {}
+    found: dict[int, float] = {}
 
     def suffices(i: int) -> bool:
-        states = generic(name, rates, 2 * system.num_modes, duration, float(TOLERANCES[i]))
-        residuals[i] = residual_of(system, states)
-        return residuals[i] <= target
+        found[i] = error(float(TOLERANCES[i]))
+        return found[i] <= target
 
     i = bisect_left(range(TOLERANCES.size), True, key=suffices)
     if i == TOLERANCES.size:
-        return None, min(residuals.values())
-    return float(TOLERANCES[i]), residuals[i]
+        return None, min(found.values())
+    return float(TOLERANCES[i]), found[i]
