@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.kernels.compiled import LOOP, SUMS
+from dynamics.kernels.compiled import LOOP, SUMS, borrowed
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
 from dynamics.kernels.moving_rows import Moving, average_rows, copy_rows, place_rows
 from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
@@ -30,7 +30,7 @@ TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = r
 RESOLVED = 0.5
 
 # Iterations of the forces of moving thrusts, and their change, as a part of them, that ends these.
-_MOST_ROUNDS, _AGREED = 40, 1.0e-13
+_MOST_ROUNDS, _AGREED = 40, 1.0e-10
 
 
 class System(NamedTuple):
@@ -225,7 +225,10 @@ def march(
         problem: scratch for the row forces.
         output: is filled.
     """
-    laws, thrusts, moving = system.laws, system.thrusts, system.moving
+    laws, thrusts, moving = (
+        borrowed(system.laws), borrowed(system.thrusts), borrowed(system.moving),
+    )  # fmt: skip
+    state, flow, problem = borrowed(state), borrowed(flow), borrowed(problem)
     a, v, rows, y, force, thrust = state.a, state.v, state.rows, state.y, state.force, state.thrust
     tally, free, now = state.tally, problem.free, problem.force
     n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]

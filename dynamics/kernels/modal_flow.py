@@ -23,7 +23,7 @@ from scipy.special import spherical_jn
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import LOOP, SUMS
+from dynamics.kernels.compiled import SUMS
 
 # Within (c + |ω|) h of 1 or less the power series converge in so many terms.
 _TERMS = 24
@@ -201,7 +201,7 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
     return 0.5 * kinetic, 0.5 * strain
 
 
-@njit(**LOOP)
+@njit(**SUMS)
 def compliance(ends: Array, rows: Array, rise: Array) -> Array:
     """Return C = E diag(r) Rᵀ (num_rows, num_rows) of rows at the end and in the mean of a step.
 
