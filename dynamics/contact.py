@@ -22,8 +22,8 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# In m, N and J: smaller than any that matters; and the logarithm of a penetration beyond all.
-_LEAST, _DEEPEST = 1.0e-300, 500.0
+# In N: smaller than any force that matters; and the logarithm of a penetration beyond all.
+_LEAST, _DEEPEST = 1.0e-300, 300.0
 
 
 class ContactLaw(ABC):
@@ -98,44 +98,27 @@ class ContactLaw(ABC):
         """How far in m it is pressed in at a gap in m, 0 where it is open."""
         return max(0.0, *(term.side * y - term.onset for term in self.terms))
 
-    def slope_where(self, measure: OfTerm, value: float) -> float:
-        """dF/dy in N/m where a measure of the law has come to a value, on its stiffer side.
-
-        Args:
-            measure: :func:`force_of`, whose amount counts, or :func:`energy_of`.
-            value: in N or J, not negative.
-        """
-        # The least penetration would be lost beside a clearance.
-        law = self.behind(0.0)
-        return max(law._slope_on(side, measure, value) for side in {t.side for t in law.terms})
-
-    def _slope_on(self, side: float, measure: OfTerm, value: float) -> float:
+    def slope_at(self, force: float) -> float:
+        """Return dF/dy in N/m where the law presses with a force in N, on its stiffer side."""
         from scipy.optimize import brentq
 
-        terms, wanted = contact_terms([self]), np.log(max(value, _LEAST))
+        # The least penetration would be lost beside a clearance. In logarithms a power is a line.
+        law, wanted = self.behind(0.0), np.log(max(force, _LEAST))
 
-        def excess(log_depth: float) -> float:
-            depth = float(side * np.exp(log_depth))
-            found = abs(sum(measure(term, depth) for term in terms))
-            return float(np.log(max(found, _LEAST)) - wanted)
+        def slope(side: float) -> float:
+            def excess(log_depth: float) -> float:
+                found = float(abs(law.force(np.array(side * np.exp(log_depth)))))
+                return float(np.log(max(found, _LEAST)) - wanted)
 
-        # In logarithms a power is a straight line, however deep or stiff.
-        high, up = 0.0, 1.0 if excess(0.0) < 0.0 else -1.0
-        while up * excess(high) < 0.0 and abs(high) < _DEEPEST:
-            high += up
-        depth = brentq(excess, high, high - up) if up * excess(high) > 0.0 else high
-        return float(self.slope(np.array(side * np.exp(depth))))
+            deepest = excess(_DEEPEST) > 0.0
+            depth = brentq(excess, -_DEEPEST, _DEEPEST) if deepest else _DEEPEST
+            return float(law.slope(np.array(side * np.exp(depth))))
+
+        return max(slope(side) for side in {term.side for term in law.terms})
 
     def _sum(self, of_term: OfTerm, y: Array) -> Array:
-        gaps, terms = np.asarray(y, dtype=np.float64), contact_terms([self])
-        if gaps.ndim == 0:
-            # One gap takes less time than numba does to compile the loop over many.
-            return np.array(sum(of_term(term, float(gaps)) for term in terms))
-        total = np.zeros(gaps.size)
-        from dynamics.kernels.terms import COMPILED, add_terms
-
-        add_terms(COMPILED[of_term], terms, gaps.ravel(), total)
-        return total.reshape(gaps.shape)
+        gaps = np.asarray(y, dtype=np.float64)
+        return np.asarray(sum(of_term(term, gaps) for term in contact_terms([self])))
 
 
 @dataclass(frozen=True, slots=True)

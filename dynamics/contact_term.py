@@ -9,7 +9,7 @@ contact simulation.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +18,9 @@ import numpy.typing as npt
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]
 
-# What a term says of a gap.
-OfTerm = Callable[[np.void, float], float]
+# A gap in a compiled loop, or an array of gaps; and a measure of a term there.
+Gap = Any
+OfTerm = Callable[[np.void, Gap], Gap]
 
 # A term of the law of a row.
 TERM = np.dtype(
@@ -54,29 +55,20 @@ class Term(NamedTuple):
     exponent: float
 
 
-def force_of(term: np.void, y: float) -> float:
-    """Force in N of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
+def force_of(term: np.void, y: Gap) -> Gap:
+    """Return the force in N of a term at gaps y in m."""
+    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
     power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
-    return float(term["side"] * term["stiffness"] * power)
+    return term["side"] * term["stiffness"] * power
 
 
-def energy_of(term: np.void, y: float) -> float:
-    """Potential in J of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
-    return float(term["stiffness"] * depth ** (n + 1.0) / (n + 1.0))
+def energy_of(term: np.void, y: Gap) -> Gap:
+    """Return the potential in J of a term at gaps y in m."""
+    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
+    return term["stiffness"] * depth ** (n + 1.0) / (n + 1.0)
 
 
-def slope_of(term: np.void, y: float) -> float:
-    """dF/dy in N/m of a term at the gap y in m."""
-    depth = term["side"] * y - term["onset"]
-    if depth <= 0.0:
-        return 0.0
-    n = term["exponent"]
-    return float(n * term["stiffness"] * depth ** (n - 1.0))
+def slope_of(term: np.void, y: Gap) -> Gap:
+    """Return dF/dy in N/m of a term at gaps y in m."""
+    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
+    return np.sign(depth) * n * term["stiffness"] * depth ** (n - 1.0)

@@ -46,7 +46,7 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     # or stiffer than another: L Lᵀ scales the unknowns.
     whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(pushed)))
     force = whole * np.sqrt(system.row_masses)
-    spring = np.array([w.slope_where(force_of, f) for w, f in zip(system.laws, force, strict=True)])
+    spring = np.array([law.slope_at(f) for law, f in zip(system.laws, force.tolist(), strict=True)])
     try:
         factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
     except LinAlgError:

@@ -167,11 +167,6 @@ class GapSystem:
         return self.omega2.size
 
     @property
-    def damped(self) -> bool:
-        """Whether anything but contacts and friction takes energy."""
-        return bool(self.damping.any() or self.dashpots.any())
-
-    @property
     def observes_rates(self) -> bool:
         """Whether velocities are read, and not coordinates alone."""
         return any(seen.derivative for seen in self.observers.values())
@@ -238,24 +233,33 @@ class GapSystem:
         )
 
     def in_own_modes(self) -> GapSystem:
-        """The same motion in the modes that axial forces besides leave it, which may move."""
+        """Return the same motion in the modes that the softening leaves, which may move."""
         if not self.softening.size:
             return self
-        omega2, turn = softened(self.omega2, self.softening)
+        return self.transformed(*softened(self.omega2, self.softening))
+
+    def transformed(self, omega2: Array, shapes: Array) -> GapSystem:
+        """Return the system in other coordinates b of a = Φ b, without travels and softening.
+
+        Args:
+            omega2: (num_shapes,) ω² of the coordinates.
+            shapes: (num_modes, num_shapes) Φ, mass-normalised.
+        """
         return replace(
             self,
             omega2=omega2,
-            load=self.load @ turn,
-            rows=self.rows @ turn,
+            load=self.load @ shapes,
+            rows=self.rows @ shapes,
             observers={
-                name: seen._replace(row=seen.row @ turn) for name, seen in self.observers.items()
+                name: seen._replace(row=seen.row @ shapes) for name, seen in self.observers.items()
             },
-            damping=np.einsum("ki,k,ki->i", turn, self.damping, turn),
-            dashpots=self.dashpots @ turn,
-            friction_rows=self.friction_rows @ turn,
-            excitations=[replace(x, load=x.load @ turn) for x in self.excitations],
-            released=self.released @ turn,
-            thrown=self.thrown @ turn,
+            damping=np.einsum("ki,k,ki->i", shapes, self.damping, shapes),
+            dashpots=self.dashpots @ shapes,
+            friction_rows=self.friction_rows @ shapes,
+            excitations=[replace(x, load=x.load @ shapes) for x in self.excitations],
+            released=self.released @ shapes,
+            thrown=self.thrown @ shapes,
+            travels=(),
             softening=np.zeros((0, 0)),
         )
 

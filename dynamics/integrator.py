@@ -14,7 +14,7 @@ from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.march import Output, State
 from dynamics.motion import MOST_STEPS, Motion
-from dynamics.time_step import Run, histories_of
+from dynamics.time_step import Integration, histories_of
 from dynamics.trajectory import Trajectory
 
 # Part of the range of the observed deflections by which the step may change them.
@@ -79,7 +79,7 @@ class StepSchedule:
         return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        run = Run.begin(_gathered(motion))
+        run = Integration.begin(_gathered(motion))
         for number, (first, last) in enumerate(_windows(motion, self.window)):
             substeps = self.substeps[min(number, len(self.substeps) - 1)]
             run.advance(first, last, substeps, run.state, run.part(first, last))
@@ -94,10 +94,6 @@ class StepSchedule:
     def finer(self) -> StepSchedule:
         """Return steps half as long, a quarter of the error."""
         return replace(self, substeps=tuple(2 * count for count in self.substeps))
-
-    def coarser(self) -> StepSchedule:
-        """Return steps twice as long."""
-        return replace(self, substeps=tuple(max(1, count // 2) for count in self.substeps))
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,10 +122,6 @@ class FixedStep:
     def finer(self) -> FixedStep:
         """Return half the step, a quarter of the error."""
         return FixedStep(0.5 * self.step)
-
-    def coarser(self) -> FixedStep:
-        """Return twice the step."""
-        return FixedStep(2.0 * self.step)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +156,7 @@ class AdaptiveStep:
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         motion = _gathered(motion)
-        run, error = Run.begin(motion), _WindowError.of(motion.system)
+        run, error = Integration.begin(motion), _WindowError.of(motion.system)
         outputs, output_step = motion.outputs, motion.output_step
         window = _whole_power(error.period / output_step, 1, _LONGEST)
         fastest = max((history.fastest for history in histories_of(motion.system)), default=0.0)
@@ -172,7 +164,7 @@ class AdaptiveStep:
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
         most = _whole_power(affordable, fewest, MOST_STEPS)
         # Few long steps tell the range.
-        pilot = Run.begin(motion)
+        pilot = Integration.begin(motion)
         pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
         scale = error.scale(pilot.output.states)
         substeps, made, total = min(max(_FIRST, fewest), most), list[int](), 0.0

@@ -50,7 +50,7 @@ _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class Integration:
     """A motion that is being computed.
 
     Args:
@@ -64,7 +64,7 @@ class Run:
     state: State
 
     @classmethod
-    def begin(cls, motion: Motion) -> Run:
+    def begin(cls, motion: Motion) -> Integration:
         """Return the run at t = 0."""
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)

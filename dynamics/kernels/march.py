@@ -148,8 +148,9 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
         state.tally[CHANGES] += 1.0
         if after != 0.0:
             bound = high if after > 0.0 else low
-            # Up to the contact the row goes as it would without.
-            closing = min(closing, time * (bound - state.y[j]) / (free[j] - state.y[j]))
+            # Up to the contact the row moves as it would without it.
+            passed = (bound - state.y[j]) / (free[j] - state.y[j])
+            closing = min(closing, time * min(max(passed, 0.0), 1.0))
     if np.isnan(state.tally[FIRST_CONTACT]) and closing < np.inf:
         state.tally[FIRST_CONTACT] = state.tally[TIME] + closing
 

@@ -10,13 +10,11 @@ statics is exact and the inertia of what gives way is right to the first orders 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.linalg import eigh
 
 from dynamics.arrays import Array, Indices
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 
 # Blocks Ω⁻²ᵏ Bᵀ of what is pushed.
 MOMENTS = 2
@@ -50,7 +48,7 @@ def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
     kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
     kept, rest = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
     omega2, shapes = fewer(system.omega2, pushes, kept, rest, moments)
-    return _projected(system, omega2, shapes), shapes
+    return system.transformed(omega2, shapes), shapes
 
 
 def fewer(
@@ -100,24 +98,3 @@ def _independent(block: Array) -> Array:
     kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
     basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
     return np.asarray(basis[:, values > _DEPENDENT * values.max(initial=0.0)])
-
-
-def _projected(system: GapSystem, omega2: Array, shapes: Array) -> GapSystem:
-    """The system in mass-normalised shapes (num_modes, num_shapes) of the frequencies given."""
-    nothing = np.zeros(omega2.size)
-    return replace(
-        system,
-        omega2=omega2,
-        load=system.load @ shapes,
-        rows=system.rows @ shapes,
-        friction_rows=system.friction_rows @ shapes,
-        dashpots=system.dashpots @ shapes,
-        damping=nothing,
-        released=system.released @ shapes,
-        thrown=system.thrown @ shapes,
-        excitations=[replace(x, load=x.load @ shapes) for x in system.excitations],
-        observers={
-            name: Observer(seen.row @ shapes, seen.unit, seen.derivative)
-            for name, seen in system.observers.items()
-        },
-    )

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 
 # ω_s/2π in Hz: the swing of a boom is slower by a factor of ten and more.
 SPRING_FREQUENCY = 400.0
@@ -68,26 +68,15 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     touching, rubbing, dragged = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])
     )
-    still = np.zeros(omega2.size)
-
-    def beside(row: Array) -> Array:
-        return np.concatenate([row, still])
-
+    wider = system.transformed(
+        np.concatenate([system.omega2, omega2]),
+        np.eye(system.num_modes, system.num_modes + omega2.size),
+    )
     return replace(
-        system,
-        omega2=np.concatenate([system.omega2, omega2]),
-        load=beside(system.load),
+        wider,
         rows=np.hstack([system.rows, touching]),
         friction_rows=np.hstack([system.friction_rows, rubbing]),
         dashpots=np.hstack([system.dashpots, dragged]),
-        damping=beside(system.damping),
-        released=beside(system.released),
-        thrown=beside(system.thrown),
-        excitations=[replace(x, load=beside(x.load)) for x in system.excitations],
-        observers={
-            name: Observer(beside(seen.row), seen.unit, seen.derivative)
-            for name, seen in system.observers.items()
-        },
     )
 
 

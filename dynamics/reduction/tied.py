@@ -50,30 +50,17 @@ def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, A
     basis = free @ shapes
     grounded = list(system.grounded)
     stays = np.flatnonzero(on_ground)
-    return (
-        replace(
-            system,
-            omega2=omega2,
-            load=system.load @ basis,
-            rows=system.rows[stays] @ basis,
-            laws=[system.laws[row] for row in stays],
-            station_of_row=np.array(
-                [grounded.index(system.station_of_row[row]) for row in stays], dtype=np.int64
-            ),
-            stations=[system.stations[station] for station in grounded],
-            station_directions=[system.station_directions[station] for station in grounded],
-            grounded=range(len(grounded)),
-            observers={
-                name: seen._replace(row=seen.row @ basis) for name, seen in system.observers.items()
-            },
-            damping=np.einsum("ki,k,ki->i", basis, system.damping, basis),
-            dashpots=system.dashpots @ basis,
-            friction_rows=np.zeros((0, omega2.size)),
-            frictions=(),
-            excitations=[replace(x, load=x.load @ basis) for x in system.excitations],
-            released=system.released @ basis,
-            thrown=system.thrown @ basis,
-            softening=np.zeros((0, 0)),
+    found = replace(
+        system.transformed(omega2, basis),
+        rows=system.rows[stays] @ basis,
+        laws=[system.laws[row] for row in stays],
+        station_of_row=np.array(
+            [grounded.index(system.station_of_row[row]) for row in stays], dtype=np.int64
         ),
-        basis,
+        stations=[system.stations[station] for station in grounded],
+        station_directions=[system.station_directions[station] for station in grounded],
+        grounded=range(len(grounded)),
+        friction_rows=np.zeros((0, omega2.size)),
+        frictions=(),
     )
+    return found, basis

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dynamics.contact_term import force_of
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Thrown
 from dynamics.failure import NumericsError
@@ -114,7 +113,7 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * _weight(inner)
-            stiffness = law.slope_where(force_of, force)
+            stiffness = law.slope_at(force)
             if stiffness < bending:
                 yield (
                     f"the contacts of {inner.name!r} in {model.name!r} give way by "
