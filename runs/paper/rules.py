@@ -320,8 +320,7 @@ def _s9(run: Run) -> Finding:
 
 def _s10(run: Run) -> Finding:
     """Measure: steps that the series needs, the larger of both, for its first three slow peaks:
-    the fewest of all step sizes and integrators tried that keep them within 1 % beyond the
-    ensemble's spread, with the energy in bound. A jump from contact to contact counts as one.
+    the fewest of all step sizes tried that keep them within 1 % beyond the ensemble's spread.
     Threshold: 2000; beam elements must take more than 4000. The paper's 2000 are for its whole
     interval, so that fewer for a part of it leave the statement possible, no more.
     """
@@ -336,8 +335,7 @@ def _s10(run: Run) -> Finding:
             "reproduced" if steps <= SERIES_STEPS else "contradicted",
             "reproduced" if of_elements > ELEMENT_STEPS else "contradicted",
         ),
-        f"Fewest steps that keep the first three peaks of the slow motion: {listed}. Each press of "
-        "the play takes some of any solver.",
+        f"Fewest steps that keep the first three peaks of the slow motion: {listed}.",
         steps,
         SERIES_STEPS,
         "steps",

@@ -119,7 +119,7 @@ def _growth_table(measured: Mapping[str, Predictability]) -> Table:
         "When runs whose data differ by so much of themselves are that part of the tip's range "
         "apart. They part like exp(growth · time): data a thousand times better buy "
         "6.9 / growth.",
-        "Finer step: when a run with half the step, or a hundredth of the tolerance, is as far "
+        "Finer step: when a run with half the step is as far "
         "from the run. Earlier than for the largest of these changes, the step is the limit and a "
         "finer one would help; later, the motion itself is: data are not known as well as that.",
     )
@@ -222,8 +222,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
             Column(f"rms\nto {end:g} s, %", rms, ".2f", TO_PERCENT),
         ]
     notes = (
-        "Parts of the larger range of both within that time. What is well above the change by "
-        "twice the step, in the table of steps, is the models' own.",
+        "Parts of the larger range of both within that time. What is well above the step error, "
+        "in the table of steps, is the models' own.",
     )
     return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole", ("S7",))
 
