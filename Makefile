@@ -33,11 +33,11 @@ READY := .venv/ready-$(RELEASE)
 SPHINX := .venv/sphinx-$(RELEASE)
 endif
 
-.PHONY: help verify snapshots gallery bench readings convergence validity test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help verify snapshots gallery bench readings convergence validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
 .DELETE_ON_ERROR:
 
 help: ## list these targets
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 12
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
 
 # As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
 verify: $(READY) ## run the cases where they are not up to date, print the verdicts
@@ -66,6 +66,8 @@ validity: $(READY) ## where a beam may stand for the shell, over friction, play 
 	    --vary joint.friction=0,0.2 --vary joint.play=0:0.02:5 --vary gravity.acceleration=1,2,5,10 \
 	    --out runs/out/validity
 
+other-codes: build/other-codes/ready ## OpenSees and sectionproperties, beside which tests hold results
+
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
@@ -87,8 +89,8 @@ docs: $(SPHINX) ## these texts, the formulas and the library's pages as a site, 
 	rm -rf docs/api build/docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --jobs auto docs build/docs
 
-matrix: ## `make verify`, `test` and `docs` on a Debian 13, the quick tests on unstable (needs root)
-	@$(MAKE) --no-print-directory --keep-going -j1 matrix-trixie matrix-sid
+matrix: ## `make verify`, `test` and `docs` on fresh Debian 12 and 13, the quick tests on unstable (needs root)
+	@$(MAKE) --no-print-directory --keep-going -j1 matrix-bookworm matrix-trixie matrix-sid
 
 matrix-%:
 	@.ci/matrix $*
@@ -128,6 +130,13 @@ $(THEN): runs/cases/paper.toml runs/cases/paper-friction.toml $(SOURCES) | $(REA
 
 .venv/sphinx-$(RELEASE): $(READY)
 	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[docs]'
+	@touch $@
+
+# In an environment of their own: DOLFINx is built against another numpy than they need.
+build/other-codes/ready: .ci/other-codes.txt | $(READY)
+	@echo "installing OpenSees and sectionproperties into $(@D) ..."
+	@$(BIN)/python -m venv --clear $(@D)
+	@$(@D)/bin/python -m pip install --quiet --requirement $<
 	@touch $@
 
 $(CONDA_PREFIX)/bin/protractile: pyproject.toml

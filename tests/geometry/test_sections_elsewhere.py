@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygons beside finite elements over the section (the program sectionproperties), if it is here.
-
-pip install '.[reference]'
-"""
+"""Polygons beside finite elements over the section, by the program sectionproperties."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -17,9 +15,35 @@ from geometry.polygon import PolygonSection
 from geometry.shear_flow import shear_centre
 from geometry.walls import trapezoids
 from tests.geometry.test_polygon import ALL
+from tests.other_codes import INSTALLED, run_elsewhere
 
-pytest.importorskip("sectionproperties", reason="sectionproperties is not installed")
+pytestmark = [pytest.mark.slow, INSTALLED]
 
+PROGRAM = """
+import json, sys
+from sectionproperties.analysis import Section
+from sectionproperties.pre import Geometry
+from shapely import Polygon
+
+outline, hole, size = json.load(sys.stdin)
+geometry = Geometry(Polygon(outline, [hole]))
+geometry.create_mesh([size])
+found = Section(geometry)
+found.calculate_geometric_properties()
+found.calculate_warping_properties()
+about_y, about_z, _ = found.get_ic()
+along_y, along_z = found.get_as()
+json.dump({
+    "area": found.get_area(),
+    "second_moment_of_area": about_y,
+    "lateral_second_moment_of_area": about_z,
+    "torsion_constant": found.get_j(),
+    "shear_area": along_z,
+    "lateral_shear_area": along_y,
+    "centroid": found.get_c(),
+    "shear_centre": found.get_sc(),
+}, sys.stdout)
+"""
 OF_WALLS = ("torsion_constant", "shear_area", "lateral_shear_area")
 
 
@@ -30,31 +54,12 @@ def thinner(section: PolygonSection, part: float) -> PolygonSection:
 @cache
 def elsewhere(section: PolygonSection) -> dict[str, Any]:
     """Of quadratic triangles, some of them across the thinnest wall, from the centroid."""
-    from sectionproperties.analysis import Section
-    from sectionproperties.pre import Geometry
-    from shapely import Polygon
-
     walls = trapezoids(section.plates)
-    geometry = Geometry(Polygon(walls[:, 0], [walls[:, 3]]))
-    geometry.create_mesh([0.5 * min(section.thicknesses) ** 2])
-    found = Section(geometry)
-    found.calculate_geometric_properties()
-    found.calculate_warping_properties()
-    about_y, about_z, _ = found.get_ic()
-    along_y, along_z = found.get_as()
-    return {
-        "area": found.get_area(),
-        "second_moment_of_area": about_y,
-        "lateral_second_moment_of_area": about_z,
-        "torsion_constant": found.get_j(),
-        "shear_area": along_z,
-        "lateral_shear_area": along_y,
-        "centroid": found.get_c(),
-        "shear_centre": found.get_sc(),
-    }
+    outline, hole = walls[:, 0].tolist(), walls[:, 3].tolist()
+    given = json.dumps([outline, hole, 0.5 * min(section.thicknesses) ** 2])
+    return json.loads(run_elsewhere("-c", PROGRAM, given=given))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_area_and_second_moments(name: str) -> None:
     """Reference: other code; both are exact for what is bounded by straight lines."""
@@ -65,7 +70,6 @@ def test_area_and_second_moments(name: str) -> None:
     assert found["centroid"] == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_torsion_shear_areas_and_shear_centre_of_thin_walls(name: str) -> None:
     """Reference: other code, extrapolated from half and a quarter of the thickness to none: what

@@ -3,12 +3,8 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -25,10 +21,8 @@ from runs.pipeline.models import build
 from runs.report.opensees import _points, write
 from runs.studies.motions import friction_case, model_of, move
 from runs.studies.pads import with_pads
+from tests.other_codes import INSTALLED, run_elsewhere
 
-ELSEWHERE = pytest.mark.skipif(
-    find_spec("openseespy") is None, reason="openseespy is not installed"
-)
 # A load that grows, a weight, a spring: what the paper's boom does not have.
 MORE = """
 [[load]]
@@ -54,17 +48,10 @@ contact = { stiffness = 1e9, exponent = 1.0 }
 
 
 def run(script: Path, *arguments: str) -> float:
-    """The number that it prints, in a process that knows nothing of this program."""
-    told = subprocess.run(
-        [sys.executable, "-I", script, *arguments],
-        capture_output=True,
-        text=True,
-        check=True,
-        cwd=script.parent,
-        env={"PATH": os.environ["PATH"]},
-    )
-    found = re.search(r": ([-\d.e]+) m", told.stdout)
-    assert found is not None, told.stdout
+    """The number that it prints in OpenSees."""
+    told = run_elsewhere(str(script), *arguments, folder=script.parent)
+    found = re.search(r": ([-\d.e]+) m", told)
+    assert found is not None, told
     return float(found[1])
 
 
@@ -79,7 +66,7 @@ def boom_with_more(folder: Path) -> Case:
     return case_file.load(str(path))
 
 
-@ELSEWHERE
+@INSTALLED
 @pytest.mark.slow
 def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     """Reference: other code, OpenSees, its elements, its Newton's method and its TR-BDF2."""
@@ -96,7 +83,7 @@ def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     assert peak == pytest.approx(tip.max(), rel=2e-3)
 
 
-@ELSEWHERE
+@INSTALLED
 @pytest.mark.slow
 def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Path) -> None:
     """Reference: other code, OpenSees; at rest what couples springs is less than a thousandth."""

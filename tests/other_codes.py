@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Programs beside which tests hold results; `make other-codes` installs them.
+
+They stand in an environment of their own: DOLFINx is built against another numpy than they need.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+PYTHON = Path(__file__).parents[1] / "build" / "other-codes" / "bin" / "python"
+INSTALLED = pytest.mark.skipif(
+    not PYTHON.exists(), reason="OpenSees and sectionproperties are missing: make other-codes"
+)
+
+
+def run_elsewhere(*arguments: str, given: str = "", folder: Path | None = None) -> str:
+    """What the other codes' Python prints, which knows nothing of this program.
+
+    Args:
+        arguments: of the interpreter.
+        given: what it reads.
+        folder: where it runs.
+
+    Raises:
+        CalledProcessError: it fails.
+    """
+    return subprocess.run(
+        [str(PYTHON), "-I", *arguments],
+        input=given,
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=folder,
+    ).stdout
