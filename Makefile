@@ -95,7 +95,7 @@ matrix: ## `make verify`, `test` and `docs` on fresh Debian 12 and 13, the quick
 matrix-%:
 	@.ci/matrix $*
 
-clean: ## remove outputs, root file systems and caches
+clean: ## remove outputs, other codes, root file systems and caches
 	rm -rf --one-file-system runs/out build docs/api *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find $(ROOMS) tests -name __pycache__ -prune -exec rm -rf {} +
 
