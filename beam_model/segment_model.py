@@ -19,6 +19,7 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
+from geometry.axial import pin_moments
 from geometry.boom import Boom, Direction
 from geometry.contact_places import Pad, pads
 from geometry.cylinder import ground_lines
@@ -87,7 +88,7 @@ def _standing(boom: Boom, modes: BoomModes, rows: GapBuilder[Array]) -> GapSyste
     return rows.system(
         lambda row: row,
         modes.omega2,
-        modes.load,
+        sum((push for _, push in pin_moments(boom.segments, boom.joints, members)), modes.load),
         boom.stations,
         _observed(boom, modes),
         [(load.push(members[load.segment]), load.history) for load in boom.loads],

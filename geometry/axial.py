@@ -17,6 +17,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.compression import UNPRESSED, Compression
 from geometry.joint import Joint
+from geometry.load import Body
 from geometry.segment import SAME_PLACE, Segment
 from geometry.taper import mean_area
 
@@ -113,6 +114,34 @@ def borne(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> 
     inner = joints[number].inner
     taken = _lock(joints, inner) is joints[number]
     return segments[inner].compression.handed if taken else 0.0
+
+
+def on_foot(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
+    """The axial force in N that a segment's foot bears; 0 where it has none or a joint takes it."""
+    segment = segments[number]
+    if segment.foot is None or _lock(joints, number) is not None:
+        return 0.0
+    return segment.compression.handed
+
+
+def pin_moments(
+    segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
+) -> Iterator[tuple[int, Array]]:
+    """What axial forces do about pins below the axis: the segment, and (num_dofs,) what is pushed.
+
+    The pin stays where it is. So the segment moves along x by −d w′(x_pin) as it turns, against
+    the axial forces N, which do N d w′ of work: a constant moment N d at the pin.
+
+    Args:
+        segments: with what they carry.
+        joints: between them.
+        bodies: of the segments.
+    """
+    for number, segment in enumerate(segments):
+        foot = segment.foot
+        if foot is not None and foot.depth != 0.0:
+            moment = foot.depth * on_foot(segments, joints, number)
+            yield number, moment * bodies[number].moment(foot.x, "z")
 
 
 def entry(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> Entry | None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.arrays import Array
+from geometry.axial import on_foot, pin_moments
 from geometry.cylinder import ground_lines
 from geometry.fault import BoomError
 from geometry.load import Member
@@ -74,7 +75,9 @@ def check_pressed(boom: Boom) -> None:
         return
     from scipy.optimize import nnls
 
-    load = sum((body.load for body in bodies), np.zeros(len(left))) @ left
+    pushes = [body.load for body in bodies]
+    pushes += [push for _, push in pin_moments(boom.segments, boom.joints, bodies)]
+    load = sum(pushes, np.zeros(len(left))) @ left
     _, unbalanced = nnls((np.array(_one_way(boom, bodies)) @ left).T, -load)
     if unbalanced > _ROUND_OFF * np.linalg.norm(load):
         body = next(_free(bodies, left))
@@ -164,14 +167,15 @@ class _RigidBody(Member):
 
 
 def _check_depths(boom: Boom) -> None:
-    feet = {number: boom.segments[number].foot for number in {c.segment for c in boom.cylinders}}
+    luffed = {cylinder.segment for cylinder in boom.cylinders}
     for number, segment in enumerate(boom.segments):
+        pushed = number in luffed or on_foot(boom.segments, boom.joints, number) != 0.0
         for k, support in enumerate(segment.supports, start=1):
-            if support.depth != 0.0 and support is not feet.get(number):
+            if support.depth != 0.0 and not (pushed and support is segment.foot):
                 raise BoomError(
                     f"segment[{number + 1}].supports[{k}].depth",
-                    "of no use: only the first support of a segment with a cylinder has a depth; "
-                    "leave it out",
+                    "of no use: only the first support of a segment has a depth, under a cylinder "
+                    "or axial forces; leave it out",
                 )
 
 

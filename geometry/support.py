@@ -30,7 +30,7 @@ class Support:
         lateral_kind: whether the slope along y is held; as that along z unless given.
         rotation_stiffness: against the slopes that are not held, in N·m/rad; none unless given.
         dashpot: beside ``stiffness`` in N·s/m, likewise along y and along z.
-        depth: of its pin below the axis in m, which the lines of cylinders heed.
+        depth: of its pin below the axis in m, about which cylinders and axial forces have moments.
     """
 
     x: float

@@ -15,6 +15,7 @@ from mpi4py import MPI
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
+from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
 from geometry.contact_places import ContactLine, pads
 from geometry.cylinder import GroundLine, ground_lines
@@ -109,6 +110,7 @@ class BoomShell:
         loads: those that follow a history, and (num_owned,) what they push.
         observed: what a motion records.
         lines: to the ground, (num_owned,) each.
+        pin_moments: of axial forces, see :func:`geometry.axial.pin_moments`.
     """
 
     comm: MPI.Comm
@@ -121,6 +123,7 @@ class BoomShell:
     loads: Sequence[tuple[Load, Array]]
     observed: Mapping[str, Observed[Reading]]
     lines: Sequence[GroundLine] = ()
+    pin_moments: Sequence[tuple[int, Array]] = ()
 
     @cached_property
     def foldings(self) -> Sequence[Folding]:
@@ -150,6 +153,7 @@ class BoomShell:
     def pushed(self, number: int) -> Array:
         """(num_owned, num_pushes) what acts on a segment in its own place."""
         own = [push for load, push in self.loads if load.segment == number]
+        own += [push for segment, push in self.pin_moments if segment == number]
         own += [line.push for line in self.lines if line.segment == number]
         return np.column_stack([self.own_loads[number], *own])
 
@@ -198,6 +202,7 @@ def assemble_boom(
             loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
             observed=observers(boom, shells),
             lines=list(ground_lines(boom, shells)),
+            pin_moments=list(pin_moments(boom.segments, boom.joints, shells)),
         )
 
 

@@ -64,7 +64,7 @@ def with_plays_and_loads(
             law.behind(law.clearance + more[station]) if more[station] else law
             for law, station in zip(system.laws, system.station_of_row.tolist(), strict=True)
         ],
-        load=factors @ shell.own_loads,
+        load=system.load - shell.own_loads.sum(axis=0) + factors @ shell.own_loads,
         excitations=[
             Excitation(load.magnitude * unit.load, load.history)
             for load, unit in zip(changing, system.excitations, strict=True)

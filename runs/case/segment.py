@@ -54,7 +54,7 @@ class SupportTable(Table):
     """the linear dashpot of an elastic support in N s/m, beside its stiffness"""
     depth: Annotated[Number, In("m")] = 0.0
     """how far in m its pin is below the segment's axis, of the first support of a segment with a
-    cylinder"""
+    cylinder or axial forces"""
 
 
 class MassTable(Table):

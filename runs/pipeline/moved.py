@@ -13,6 +13,7 @@ import xarray as xr
 from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
+from geometry.axial import on_foot
 from geometry.boom import Boom, Segment, Support
 from geometry.cylinder import forces
 from geometry.section import Direction
@@ -27,7 +28,7 @@ from runs.pipeline.answers import (
 )
 from runs.pipeline.fibres import Fibres
 from runs.pipeline.place_names import place_names
-from runs.pipeline.section_forces import borne_along, section_forces
+from runs.pipeline.section_forces import section_forces
 
 
 class _Plane(NamedTuple):
@@ -75,9 +76,13 @@ class Motions:
 
 
 class _Gone(NamedTuple):
-    """What a segment has gone through, (num_times, num_places), and at rest (num_rests, ...)."""
+    """What a segment has gone through, (num_times, num_places), and at rest (num_rests, ...).
+
+    ``on_foot`` is the axial force in N that its foot bears.
+    """
 
     segment: Segment
+    on_foot: float
     line: Line
     curves: Mapping[Quantity, Array]
     still: Mapping[Quantity, Array]
@@ -95,7 +100,8 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
             section_forces(motions.boom, number, line, *one)
             for one in zip(states, times, strict=True)
         )
-        gone = _Gone(segment, line, curves, still)
+        borne = on_foot(motions.boom.segments, motions.boom.joints, number)
+        gone = _Gone(segment, borne, line, curves, still)
         envelopes.append(_envelope(gone))
         if "moment" in curves:
             peaks += _section_peaks(motions, gone)
@@ -241,8 +247,7 @@ def _borne(motions: Motions, gone: _Gone, support: Support) -> Iterator[_Measure
         held = _jump(motions, line, "torque", support.x)
         yield _Measured("torque at the support", where, "N m", *held)
     if support is segment.foot and (segment.compression or "normal" in line.rows):
-        given = borne_along(segment, support)
-        along = [given + each for each in _jump(motions, line, "normal", support.x)]
+        along = [gone.on_foot + each for each in _jump(motions, line, "normal", support.x)]
         yield _Measured("reaction along the boom", where, "N", *along)
         whole = [np.linalg.norm(parts, axis=0) for parts in zip(*forces, along, strict=True)]
         yield _Measured("reaction, across and along", where, "N", *whole)

@@ -16,10 +16,8 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.axial import carried
-from geometry.boom import Boom, Segment
-from geometry.compression import Compression
+from geometry.boom import Boom
 from geometry.cylinder import force_name
-from geometry.support import Support
 
 # Part of a place's distance from the start by which a jump's two sides are told apart.
 _ASIDE = 1.0e-9
@@ -57,19 +55,6 @@ def section_forces(
     read = line.read(states)
     given = -carried(boom.segments, boom.joints, number, _on_their_sides(line.x), time)
     return {**read, "normal": given + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
-
-
-def normal_force(compression: Compression, x: Array) -> Array:
-    """(num_places,) N in N along a segment; of a place that stands twice from both its sides."""
-    return np.asarray(-compression(_on_their_sides(x)))
-
-
-def borne_along(segment: Segment, foot: Support) -> float:
-    """What a foot pushes along the boom in N to bear the axial forces."""
-    before, behind = normal_force(segment.compression, np.array([foot.x, foot.x]))
-    before *= foot.x > segment.start
-    behind *= foot.x < segment.end
-    return float(before - behind)
 
 
 def _on_their_sides(x: Array) -> Array:

@@ -15,6 +15,7 @@ from beam_model.statics import Elements, Hold, Rest, at_rest, handed_on
 from dynamics.contact import ContactLaw
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
+from geometry.axial import on_foot
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 from geometry.typography import TO_KILO, TO_MILLI
@@ -24,7 +25,6 @@ from runs.case.units import System
 from runs.pipeline.answers import Reaction
 from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.proportions import of_tip
-from runs.pipeline.section_forces import borne_along
 
 # A part of what others bear that is none.
 ROUND_OFF = 1.0e-9
@@ -122,7 +122,7 @@ def _along(rest: Rest) -> dict[tuple[int, float], float]:
     found: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
         if segment.foot is not None:
-            found[number, segment.foot.x] = borne_along(segment, segment.foot)
+            found[number, segment.foot.x] = on_foot(boom.segments, boom.joints, number)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         push = cylinder.direction[0] * cylinder_force(rest, number)
         foot = boom.segments[cylinder.segment].foot

@@ -183,13 +183,15 @@ FAULTS: Mapping[str, tuple[str, str, list[Support], Mapping[str, Any]]] = {
     ),
     "a depth that nothing reads": (
         "segment[1].supports[2].depth",
-        "of no use: only the first support of a segment with a cylinder has a depth; leave it out",
+        "of no use: only the first support of a segment has a depth, under a cylinder or axial "
+        "forces; leave it out",
         [HINGE, Support(2.0, depth=0.1)],
         {"cylinders": (ARM,)},
     ),
-    "a depth without a cylinder": (
+    "a depth under nothing": (
         "segment[1].supports[1].depth",
-        "of no use: only the first support of a segment with a cylinder has a depth; leave it out",
+        "of no use: only the first support of a segment has a depth, under a cylinder or axial "
+        "forces; leave it out",
         [replace(HINGE, depth=0.1), Support(2.0)],
         {},
     ),

@@ -9,12 +9,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from beam_model.statics import Rest, at_rest
+from beam_model.boom_modes import BoomModes
+from beam_model.statics import Elements, Rest, at_rest
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, joined
 from runs.case.schema import Case
+from runs.pipeline.statics import cylinder_force, reactions
 
 GRAVITY = 9.80665
 
@@ -115,6 +117,63 @@ def rest_of(case: Case, boom: Boom) -> tuple[Rest, list[float]]:
     found = joined(case, boom, model)
     stiffness = [law.terms[0].stiffness for law in found.laws]
     return at_rest(boom, found.laws, found.lateral_laws), stiffness
+
+
+# Those that ship with the depth of a lug, and may have one of their pin.
+LUFFED = [path.stem for path in sorted(CASES.glob("*.toml")) if "depth =" in path.read_text()]
+
+
+def second_order(boom: Boom, rest: Rest) -> float:
+    """∫ P w′ dx of all segments in N·m: what axial forces do about the foot as the boom bends."""
+    modes = BoomModes(boom, Elements(boom).segments)
+    found = 0.0
+    for number, segment in enumerate(boom.segments):
+        x = np.linspace(segment.start, segment.end, 401)
+        deflections = [modes.displacement(number, each, "z") @ rest.position for each in x.tolist()]
+        found += float(segment.compression(0.5 * (x[1:] + x[:-1])) @ np.diff(deflections))
+    return found
+
+
+@pytest.mark.parametrize("lowered", [0.0, 0.3])
+@pytest.mark.parametrize("name", LUFFED)
+def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None:
+    """Reference: analytic. Weights, loads, cylinder and second order about the pin within 0.1 %;
+    what pin and lug bear acts where they are.
+    """
+    case = case_file.load(str(CASES / f"{name}.toml"))
+    base, *others = case.segments
+    (pin,) = base.supports
+    lower = pin.model_copy(update={"depth": pin.depth + lowered})
+    base = base.model_copy(update={"supports": (lower,)})
+    case = case.model_copy(update={"segments": (base, *others)})
+    boom = build_boom(case)
+    (jack,), foot = boom.cylinders, boom.segments[0].foot
+    assert foot is not None
+    assert foot.depth == lowered
+    rest, _ = rest_of(case, boom)
+    at_pin, at_lug = reactions(rest)
+    assert case.gravity is not None
+    angle = np.radians(case.gravity.angle)
+    masses = [
+        (mass, x)
+        for segment in boom.segments
+        for mass, x in (
+            (segment.mass_per_length * segment.length, segment.mass_middle),
+            *((point.mass, point.x) for point in segment.carried),
+        )
+    ]
+    turning = sum(mass * (x - foot.x) for mass, x in masses) * GRAVITY * np.cos(angle)
+    # At t = 0 a load that ramps is none yet.
+    turning -= sum(load.magnitude for load in case.loads if load.ramp is None) * boom.tip
+    along = sum(mass for mass, _ in masses) * GRAVITY * np.sin(angle)
+    along += sum(axial.force or 0.0 for axial in case.axial)
+    turning -= along * foot.depth + second_order(boom, rest)
+    force = cylinder_force(rest, 1)
+    assert force * jack.arm(foot) == pytest.approx(turning, rel=1e-3)
+    assert at_pin.along + at_lug.along == pytest.approx(along, rel=1e-9)
+    assert at_pin.moment == pytest.approx(at_pin.along * foot.depth, rel=1e-6, abs=1.0)
+    assert at_lug.moment == pytest.approx(at_lug.along * jack.depth, rel=1e-6)
+    assert at_lug.along == pytest.approx(force * jack.direction[0], rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["crane", "inspection-arm", "lift"])

@@ -8,13 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dynamics.line import Line
+from geometry.boom import Boom, Material, Segment, Support
 from geometry.compression import Compression
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
-from runs.pipeline.section_forces import normal_force
+from runs.pipeline.section_forces import section_forces
+
+BOX = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 
 # A pin at 1 m, 100 kg/m under 30 degrees, and a cylinder of the triangle 3, 4, 5 at 4 m.
 CASE = """
@@ -52,8 +56,12 @@ element_length = 0.5
 
 def test_a_normal_force_has_both_sides_of_a_jump() -> None:
     pressed = Compression((0.0, 4.0, 10.0), ((9e3, 7e3), (2e3, 2e3)))
-    x = np.array([0.0, 4.0, 4.0, 10.0])
-    np.testing.assert_allclose(normal_force(pressed, x), [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
+    clamp = Support(0.0, "clamped")
+    steel = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    arm = Segment.of_section("arm", 0.0, 10.0, steel, BOX, supports=(clamp,), compression=pressed)
+    line = Line(np.array([0.0, 4.0, 4.0, 10.0]), {}, paired=True)
+    found = section_forces(Boom((arm,), ()), 0, line, np.zeros(1), np.zeros(()))
+    np.testing.assert_allclose(found["normal"], [-9e3, -7e3, -2e3, -2e3], rtol=1e-6)
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +114,13 @@ def test_the_pin_bears_what_goes_along(answers: Answers) -> None:
         assert borne[what].at_rest == pytest.approx(abs(force), rel=2e-3)
 
 
+def test_the_pin_bears_a_mass_that_sits_on_it(tmp_path: Path) -> None:
+    """Reference: by hand, as above with 200 kg at the pin, which turn nothing."""
+    text = CASE.replace("[[cylinder]]", "masses = [{ x = 1.0, mass = 200.0 }]\n[[cylinder]]")
+    pin, _ = answers_of(text, tmp_path).reactions
+    assert pin.along == pytest.approx(10.0 * ALONG + 1000.0 - 0.8 * FORCE, rel=1e-3)
+
+
 def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     """Reference: by hand, of the arm without what is before its pin."""
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
@@ -121,9 +136,8 @@ def test_the_fibre_feels_the_normal_force(answers: Answers) -> None:
     moved = answers.models["beam"].moved
     assert moved is not None
     (fibre,) = moved.fibres
-    box = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
-    bent = 0.5 * ACROSS * 6.0**2 * 0.204 / box.second_moment_of_area
-    pulled = (0.8 * FORCE - 6.0 * ALONG) / box.area
+    bent = 0.5 * ACROSS * 6.0**2 * 0.204 / BOX.second_moment_of_area
+    pulled = (0.8 * FORCE - 6.0 * ALONG) / BOX.area
     assert fibre.x == pytest.approx(4.0)
     assert fibre.stress == pytest.approx(bent + pulled, rel=2e-3)
     assert pulled > 0.05 * bent

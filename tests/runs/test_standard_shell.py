@@ -51,3 +51,44 @@ def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> No
     (gap,) = system.rows @ equilibrium(system, system.load)
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
     assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
+
+
+RAISED = f"""
+title = "A boom at 50 degrees, its pin 0.35 m below the axis"
+[time]
+duration = 0.1
+[gravity]
+angle = 50.0
+{STEEL.replace("7850.0", "1600.0")}
+{box("base", (0.0, 10.0), (0.6, 0.4, 0.025, 0.025), "supports = [{ x = 0.0, depth = 0.35 }]")}
+[payload]
+mass = 400.0
+[[load]]
+segment = "base"
+x = 8.0
+magnitude = -3000.0
+[[cylinder]]
+segment = "base"
+x = 2.6
+depth = 0.3
+ground = [0.9, -1.3]
+stiffness = 1e9
+[[model]]
+name = "shell"
+kind = "shell"
+mesh_size = 0.4
+contact_tolerance = "any"
+"""
+
+
+def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) -> None:
+    """Reference: analytic, moments about the pin of 80 kg/m, 400 kg and 3 kN: 55.89 kN."""
+    path = tmp_path / "raised.toml"
+    path.write_text(RAISED, encoding="utf-8")
+    case = load(str(path))
+    boom = build_boom(case)
+    assert boom.segments[0].mass_per_length == pytest.approx(80.0)
+    system = build(case, boom, case.models[0], workshop(MPI.COMM_SELF)).system.gathered()
+    position = equilibrium(system, system.load)
+    force = system.observers["cylinder_force"].row @ position
+    assert force == pytest.approx(55.89e3, rel=1e-3)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two booms whose pin lies 0.35 m below their axis, under axial forces, and statics by hand."""
+
+from __future__ import annotations
+
+from math import cos, hypot, radians, sin
+
+import pytest
+
+from dynamics.excitation import Step
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, Cylinder, Load, Material, PointMass, Segment, Support
+from geometry.section import BoxSection
+
+GRAVITY = 9.80665
+LENGTH, DEPTH = 10.0, 0.35
+BOX = BoxSection(height=0.6, width=0.4, flange=0.03, web=0.03)
+# 80 kg/m, and ten times as stiff as steel: deflections change moments by less than 0.03 %.
+LIGHT = Material(youngs_modulus=2.1e12, poissons_ratio=0.3, density=80.0 / 0.06)
+CYLINDER = Cylinder(0, x=2.6, depth=0.3, ground=(0.9, -1.3), stiffness=1.0e9)
+# Of the line from (0.9, −1.3) to (2.6, −0.3) m, about (0, −0.35) m.
+ARM = (2.6 * 1.0 - 0.05 * 1.7) / hypot(1.7, 1.0)
+
+
+def raised() -> tuple[Boom, float]:
+    """At 50° under 80 kg/m, 400 kg at the tip and 3 kN at 8 m; the cylinder's force in N.
+
+    All weights press the boom along itself, 0.35 m above the pin, and so help the cylinder.
+    """
+    across, along = GRAVITY * cos(radians(50.0)), GRAVITY * sin(radians(50.0))
+    segment = _segment(load=-80.0 * across, masses=(PointMass(LENGTH, 400.0),))
+    loads = (
+        Load(0, "z", -400.0 * across, LENGTH, Step()),
+        Load(0, "z", -3.0e3, 8.0, Step()),
+    )
+    moment = (800.0 * 5.0 + 400.0 * 10.0) * across + 3.0e3 * 8.0
+    force = (moment - 1200.0 * along * DEPTH) / ARM
+    assert force == pytest.approx(55.89e3, rel=1e-4)
+    return _boom(*with_compression([segment], [], [], along), *loads), force
+
+
+def level() -> tuple[Boom, float]:
+    """Level under 10 kN at the tip, with 50 kN along the boom; the cylinder's force in N."""
+    pressed = with_compression([_segment()], [], [Thrust(0, LENGTH, 50.0e3)])
+    force = (10.0e3 * LENGTH - 50.0e3 * DEPTH) / ARM
+    assert force == pytest.approx(64.7e3, rel=1e-4)
+    return _boom(*pressed, Load(0, "z", -10.0e3, LENGTH, Step())), force
+
+
+def _segment(load: float = 0.0, masses: tuple[PointMass, ...] = ()) -> Segment:
+    pin = Support(0.0, lateral_kind="clamped", depth=DEPTH)
+    return Segment.of_section(
+        "boom", 0.0, LENGTH, LIGHT, BOX, load=load, masses=masses, supports=(pin,)
+    )
+
+
+def _boom(segment: Segment, *loads: Load) -> Boom:
+    return Boom((segment,), (), loads, cylinders=(CYLINDER,))
