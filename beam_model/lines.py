@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of beams.
 
-The moment is that of the curvature, M = −E J θ′; the shear force of a piece between two places the
-mean slope of M there, which is exact for elements: under a load that is even on each, their moment
-is off by q h²/12 at the ends and by nothing in the mean slope.
+The moment is that of the curvature, M = −E J θ′. The shear force acts across the straight axis:
+under an axial force P it is M′ − P w′, whose mean over a piece is exact for elements. Under a load
+that is even on each, their moment is off by q h²/12 at the ends and by nothing in the mean slope.
+Between the middles of pieces the shear force goes on evenly, as far as nothing acts in between.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from itertools import pairwise
 from operator import attrgetter
 
 import numpy as np
+from scipy.interpolate import interp1d
 
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
@@ -41,7 +43,8 @@ def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
 
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
-    breaks = _breaks(boom, number, model.components["z"].breaks)
+    acting = _acting(boom, number)
+    breaks = _breaks(segment, acting, model.components["z"].breaks)
     rows: dict[Quantity, Array] = {}
     for direction in boom.directions:
         deflection, moment, shear = _NAMES[direction]
@@ -51,7 +54,9 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components[direction].curvature is not None:
             plane = segment if direction == "z" else segment.turned()
             rows[moment] = _at_ends(breaks, partial(_moment, modes, number, plane, direction))
-            rows[shear] = _slope(breaks, rows[moment])
+            pressed = segment.compression(0.5 * (breaks[1:] + breaks[:-1]))[:, None]
+            across = _slope(breaks, rows[moment]) - pressed * _slope(breaks, rows[deflection])
+            rows[shear] = _to_ends(breaks, across, acting)
     if boom.spatial:
         lateral = segment.lateral
         assert lateral is not None
@@ -59,8 +64,9 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
             middles = 0.5 * (breaks[1:] + breaks[:-1])
-            local = np.repeat(segment.relative(attrgetter("lateral.torsion_constant"), middles), 2)
-            rows["torque"] = stiffness * local[:, None] * _slope(breaks, rows["twist"])
+            local = segment.relative(attrgetter("lateral.torsion_constant"), middles)
+            twisted = stiffness * local[:, None] * _slope(breaks, rows["twist"])
+            rows["torque"] = _to_ends(breaks, twisted, acting)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
 
 
@@ -69,15 +75,20 @@ def _moment(modes: BoomModes, number: int, plane: Segment, direction: Direction,
     return -plane.local(x).bending_stiffness * modes.curvature(number, x, direction)
 
 
-def _breaks(boom: Boom, number: int, nodes: Array) -> Array:
-    """x in m of the ends of all pieces: those of the elements, or even ones between stations."""
+def _acting(boom: Boom, number: int) -> set[float]:
+    """x in m of the ends of a segment, and of where something acts on it."""
+    segment = boom.segments[number]
+    places = {*segment.ends, *boom.stations_of(number), *segment.compression.places}
+    places |= {support.x for support in segment.supports}
+    return places | {mass.x for mass in segment.carried}
+
+
+def _breaks(segment: Segment, acting: set[float], nodes: Array) -> Array:
+    """x in m of the ends of all pieces: those of the elements, or even ones between places."""
     if nodes.size:
         return nodes
-    segment = boom.segments[number]
-    places = {segment.start, segment.end, *boom.stations_of(number)}
-    places |= {support.x for support in segment.supports}
     even = np.linspace(segment.start, segment.end, _PIECES + 1)
-    return np.asarray(np.unique(np.concatenate([even, sorted(places)]).round(9)))
+    return np.asarray(np.unique(np.concatenate([even, sorted(acting)]).round(9)))
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
@@ -95,6 +106,18 @@ def _at_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
 
 
 def _slope(breaks: Array, rows: Array) -> Array:
-    """(2 num_pieces, num_modes) the mean slope of each piece, at both its ends."""
-    slopes = (rows[1::2] - rows[::2]) / np.diff(breaks)[:, None]
-    return np.asarray(np.repeat(slopes, 2, axis=0))
+    """(num_pieces, num_modes) the mean slope of each piece."""
+    return np.asarray((rows[1::2] - rows[::2]) / np.diff(breaks)[:, None])
+
+
+def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
+    """(2 num_pieces, num_modes) at both ends of each piece, straight between places that act."""
+    jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
+    ends = np.repeat(means, 2, axis=0)
+    for first, last in pairwise(np.unique(jumps).tolist()):
+        if last - first > 1:
+            nodes = breaks[first : last + 1]
+            middles = 0.5 * (nodes[1:] + nodes[:-1])
+            on = interp1d(middles, means[first:last], axis=0, fill_value="extrapolate")
+            ends[2 * first : 2 * last] = np.repeat(on(nodes), 2, axis=0)[1:-1]
+    return ends

@@ -11,9 +11,9 @@ import numpy as np
 
 from dynamics.arrays import Array
 
-# In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it, which
-# pull where they are normal; moments pull at larger z, lateral ones at larger y. So the slope of a
-# moment is its shear force.
+# In m, rad, N and N·m. Forces are those of the part beyond the section on the part before it, along
+# and across the straight axis. Normal forces pull; moments pull at larger z, lateral ones at larger
+# y. So the slope of a moment is the shear force less the normal force times that of the deflection.
 Quantity = Literal[
     "deflection",
     "normal",

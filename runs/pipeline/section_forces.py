@@ -22,6 +22,11 @@ from geometry.cylinder import force_name
 # Part of a place's distance from the start by which a jump's two sides are told apart.
 _ASIDE = 1.0e-9
 
+_ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
+    ("deflection", "shear"),
+    ("lateral", "lateral_shear"),
+)
+
 
 def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
     """Lines that read what cylinders push along the boom, too, as normal forces.
@@ -53,8 +58,22 @@ def section_forces(
         time: (...) of the states in s.
     """
     read = line.read(states)
-    given = -carried(boom.segments, boom.joints, number, _on_their_sides(line.x), time)
-    return {**read, "normal": given + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
+    x = _on_their_sides(line.x)
+    pressed = carried(boom.segments, boom.joints, number, x, time)
+    if boom.driven:
+        # Lines have the shear force of the axial forces at the start.
+        more = pressed - boom.segments[number].compression(x)
+        for deflection, shear in _ACROSS:
+            if shear in read:
+                read[shear] -= more * _slopes(line, read[deflection])
+    return {**read, "normal": -pressed + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
+
+
+def _slopes(line: Line, deflection: Array) -> Array:
+    """(..., num_places) of a deflection (..., num_places) along a line."""
+    x, index = np.unique(line.x, return_index=True)
+    slopes = np.gradient(deflection[..., index], x, axis=-1)
+    return np.asarray(slopes[..., np.searchsorted(x, line.x)])
 
 
 def _on_their_sides(x: Array) -> Array:

@@ -112,11 +112,8 @@ def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
 
 
 def read(diagram: Diagram, what: str, place: float) -> float:
-    """A curve at a place; the shear force of a piece is that of its middle."""
-    x, values = np.array(diagram.x), np.array(diagram.curves[what])
-    if what == "shear" and (np.diff(x) == 0.0).any():
-        x, values = 0.5 * (x[::2] + x[1::2]), values[::2]
-    return float(np.interp(place, x, values))
+    """A curve at a place in m."""
+    return float(np.interp(place, diagram.x, diagram.curves[what]))
 
 
 def _reactions(answers: Answers) -> Iterator[Proof]:

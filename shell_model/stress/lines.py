@@ -3,7 +3,8 @@
 
 A segment is cut where a line of its mesh goes all around it. Between two cuts its deflections are
 the means over the walls, its section forces the integrals of their membrane and bending stresses
-over the area, divided by the length.
+over the area, divided by the length. Across the straight axis walls under an axial force P carry
+P times their mean slope besides.
 """
 
 from __future__ import annotations
@@ -44,6 +45,12 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     reaches = _reaches(corners, part)
     forces = _forces(shell, number, triangles, band, part, np.diff(cuts), reaches)
     forces = forces @ fields[f"coordinates_{number + 1}"].values
+    segment = boom.segments[number]
+    if segment.compression:
+        pressed = segment.compression(0.5 * (cuts[1:] + cuts[:-1]))[:, None]
+        along_y, along_z = _slopes(shell, fields, triangles, band, cuts.size - 1)
+        forces[0] -= pressed * along_z
+        forces[2] -= pressed * along_y
     rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[0], "moment": forces[1]}
     if boom.spatial:
         rows |= {
@@ -100,6 +107,24 @@ def _moved(
         np.asarray(plain @ along_z, dtype=float),
         np.asarray(twist, dtype=float),
     )
+
+
+def _slopes(
+    shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
+) -> Array:
+    """(2, num_bands, num_modes) of deflections along y and z: mean of all walls by their volume."""
+    corners = fields["triangles"].values[triangles]
+    points = fields["points"].values[corners]
+    across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    # The gradient of a corner's linear function: the normal times the opposite edge over 2 A.
+    opposite = np.roll(points, 1, axis=1) - np.roll(points, -1, axis=1)
+    along = np.cross(across[:, None], opposite)[..., 0] / (across**2).sum(axis=1)[:, None]
+    volume = shell.areas[triangles] * shell.thickness[triangles]
+    weight = (volume / np.bincount(band, volume, num_bands)[band])[:, None] * along
+    indices = np.repeat(band, 3), corners.ravel()
+    mean = csr_matrix((weight.ravel(), indices), (num_bands, fields.sizes["point"]))
+    modes = fields["modes"].values
+    return np.array([mean @ modes[:, :, way].T for way in (1, 2)], dtype=float)
 
 
 def _reaches(corners: Array, part: Indices) -> tuple[Array, Array]:
