@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 import re
+import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from runpy import run_path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -64,6 +68,40 @@ def boom_with_more(folder: Path) -> Case:
     boom, _, _ = heavier.replace("[[joint]]", f"{MORE}\n[[joint]]", 1).partition("[[model]]")
     path.write_text(boom + MODEL, encoding="utf-8")
     return case_file.load(str(path))
+
+
+class _Sinking(ModuleType):
+    """An OpenSees whose nodes sink by 1 mm a step and then rise by as much."""
+
+    steps = 0
+
+    def analyze(self, *_: object) -> int:
+        self.steps += 1
+        return 0
+
+    def nodeDisp(self, *_: object) -> float:
+        return -1.0e-3 * min(self.steps, 10 - self.steps)
+
+    def nodeCoord(self, *_: object) -> tuple[float, float]:
+        return 0.0, 0.0
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        return lambda *_: None
+
+
+def test_the_largest_tip_may_be_a_downward_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: by hand, 5 mm down after five of ten steps."""
+    script = tmp_path / "boom.py"
+    write(boom_with_more(tmp_path), "", None, script, None)
+    package, program = ModuleType("openseespy"), _Sinking("openseespy.opensees")
+    monkeypatch.setattr(package, "opensees", program, raising=False)
+    monkeypatch.setitem(sys.modules, "openseespy", package)
+    monkeypatch.setitem(sys.modules, "openseespy.opensees", program)
+    monkeypatch.setattr(sys, "argv", [str(script), "--step", "1", "--duration", "10"])
+    run_path(str(script), run_name="__main__")
+    assert capsys.readouterr().out.startswith("largest tip: -0.005 m; written to ")
 
 
 @INSTALLED
