@@ -74,11 +74,13 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
     """The system with ζ = ``ratio`` in the first modes of the pressed boom, beside its own damping.
 
     These are ``DAMPED_MODES``, or as many as its segments can bend; pressed as at ``rest``, see
-    :func:`pressed_modes`.
+    :func:`pressed_modes`. Nothing damps rigid segments that no contact presses.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
     omega, shapes = (part[..., :count] for part in pressed_modes(system, rest))
+    if not omega.size:
+        return system
     own = np.where(rigid, 0.5 * omega[0], system.omega)
     bent = np.where(rigid[:, None], 0.0, shapes)
     asked = np.diag(omega) - (shapes - bent).T @ (own[:, None] * (shapes - bent))

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dynamics.contact import ContactLaw
 from dynamics.drive.stick_slip import FOLLOWED
 from dynamics.energy import DRAWN_ENERGIES
+from dynamics.excitation import Released, Thrown
 from dynamics.trajectory import OF_DRIVES, OF_STATIONS
 from geometry.axial import with_compression
 from geometry.boom import (
@@ -80,6 +81,38 @@ def build_boom(case: Case) -> Boom:
     check_pressed(boom)
     check_pulled(case, boom)
     return boom
+
+
+def check_varied(case: Case, boom: Boom) -> None:
+    """Whether there is what the members of an ensemble change.
+
+    Raises:
+        BoomError: there is not.
+    """
+    if case.ensemble is None or all(model.play_free for model in case.models):
+        return
+    vary = case.ensemble.vary
+    if vary == "load" and not _loaded(boom):
+        raise BoomError(
+            "ensemble.vary",
+            "no load acts from t = 0 on, of which members change a part; give vary = 'clearance', "
+            "or leave the ensemble out",
+        )
+    plays = [joint.clearance for joint in boom.joints] + [stop.clearance for stop in boom.stops]
+    if vary == "clearance" and not any(plays):
+        raise BoomError(
+            "ensemble.vary",
+            "there is no play, of which members change a part; give vary = 'load', or leave the "
+            "ensemble out",
+        )
+
+
+def _loaded(boom: Boom) -> bool:
+    """Whether a load acts from t = 0 on."""
+    own = [segment.load for segment in boom.segments]
+    own += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
+    lasting = [load for load in boom.loads if not isinstance(load.history, Released | Thrown)]
+    return any(own) or any(load.magnitude for load in lasting)
 
 
 def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation, ...]:

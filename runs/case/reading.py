@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from geometry.boom import BoomError
-from runs.case.build import build_boom, check_names
+from runs.case.build import build_boom, check_names, check_varied
 from runs.case.columns import Column, read_pairs
 from runs.case.contact import ContactTable, JointTable, table_law
 from runs.case.conversion import in_si
@@ -98,7 +98,7 @@ def select(
 
     Raises:
         BadInput: a name that the case does not know, a mesh size or modes that cannot be or that
-            nothing would use, a single member.
+            nothing would use, a single member, members of which nothing changes.
     """
     chosen = case.models
     if models is not None:
@@ -137,7 +137,13 @@ def select(
             )
         given = {} if ensemble is None else ensemble.model_dump()
         ensemble = EnsembleTable.model_validate({**given, "members": members}) if members else None
-    return case.model_copy(update={"models": chosen, "ensemble": ensemble})
+    selected = case.model_copy(update={"models": chosen, "ensemble": ensemble})
+    if members:
+        try:
+            check_varied(selected, build_boom(selected))
+        except BoomError as error:
+            raise BadInput(path, error.where, error.what) from None
+    return selected
 
 
 def _with_shells(
@@ -297,13 +303,14 @@ def _check_time(time: TimeTable) -> None:
 
 def _check_boom(found: Declared) -> None:
     """Whether there is such a boom, and whether its models suit it."""
-    case, _ = found.case, found.boom
+    case, boom = found.case, found.boom
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
         model.check(where, found.joined(model))
     _check_step("time.step", case.time.step, case.time)
+    check_varied(case, boom)
 
 
 def _check_step(where: str, step: float | None, time: TimeTable) -> None:

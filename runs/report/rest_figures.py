@@ -69,7 +69,7 @@ def at_rest(pen: Pen) -> list[Figure]:
     )
     far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
     title = f"At rest under the largest loads: the tip at {signed(f'{TO_MILLI * far:.1f}')} mm"
-    return [_stacked(pen, lines, "at-rest", title, caption)]
+    return _stacked(pen, lines, "at-rest", title, caption)
 
 
 def envelopes(pen: Pen) -> list[Figure]:
@@ -86,13 +86,11 @@ def envelopes(pen: Pen) -> list[Figure]:
         }
         for name, several in found.items()
     }
-    if not any(line for by_kind in lines.values() for line in by_kind.values()):
-        return []
     caption = (
         "Between what the section forces of each segment are over the run: the lowest and the "
         "highest at every place, whenever they are." + of_start(pen.case)
     )
-    return [_stacked(pen, lines, "envelopes", "Section forces in motion", caption)]
+    return _stacked(pen, lines, "envelopes", "Section forces in motion", caption)
 
 
 def mode_shapes(pen: Pen) -> list[Figure]:
@@ -154,12 +152,14 @@ def _stacked(
     stem: str,
     title: str,
     caption: str,
-) -> Figure:
-    """Panels of the quantities above one another, but those that are nothing."""
+) -> list[Figure]:
+    """Panels of the quantities that are not zero above one another; none where all are."""
     of = {
         what: [line for each in lines.values() for line in each.get(what, ())] for what in _PANELS
     }
     shown = [what for what, several in of.items() if any(line.values.any() for line in several)]
+    if not shown:
+        return []
     sheet, panels = new_sheet(len(shown), 1.2 + 1.4 * len(shown))
     curves = []
     for number, (axes, what) in enumerate(zip(panels, shown, strict=True)):
@@ -187,4 +187,4 @@ def _stacked(
         [_PANELS[what][0] for what in shown],
         along="x along the boom (m)",
     )
-    return pen.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)
+    return [pen.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]

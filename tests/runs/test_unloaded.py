@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms that nothing loads, that are thrown, or that are let go, from case to report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runs.pipeline.results import Results
+from tests.runs.case_texts import STEEL, box, joint
+from tests.system.run_folder import protractile
+
+CLAMP = 'supports = [{ x = 0.0, kind = "clamped" }]'
+UNLOADED = f"""
+title = "A boom that nothing loads"
+[time]
+duration = 0.1
+output_step = 1e-3
+{STEEL}
+[damping]
+modal = 0.01
+{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), CLAMP)}
+{box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
+{joint("fly", "base", 0.003, (5.3, 6.5))}
+[[model]]
+name = "elements"
+kind = "finite-element"
+[[model]]
+name = "rigid"
+kind = "rigid"
+[[model]]
+name = "tied"
+kind = "finite-element"
+tied = true
+"""
+
+# What is added, and whether the boom moves.
+ADDED = {
+    "nothing": ("", False),
+    "at rest": ('[start]\nstate = "equilibrium"\n', False),
+    "a load of nothing": (
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = 0.0\n',
+        False,
+    ),
+    "thrown": ("[start]\nvelocity = { fly = 0.1 }\n", True),
+    "let go": (
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -500.0\nreleased = true\n',
+        True,
+    ),
+}
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ADDED)
+def test_a_boom_without_loads_is_run_and_reported(kind: str) -> None:
+    """Reference: analytic. Without loads it rests straight, and moves only if it begins so."""
+    added, moves = ADDED[kind]
+    Path("case.toml").write_text(UNLOADED + added, encoding="utf-8")
+    assert protractile("check", "case.toml") == 0
+    assert protractile("run", "case.toml", "--no-pictures", "--out", "out") == 0
+    results = Results.load(Path("out"))
+    assert [rest.tip for rest in results.summary.answers.models["elements"].rests] == [0.0]
+    tips = results.trajectories["tip"].values
+    assert bool(np.abs(tips).max() > 1e-3) == moves
+    assert Path("out/report.html").is_file()
+    assert not Path("out/figures/at-rest.png").exists()
+    assert Path("out/figures/envelopes.png").exists() == moves
+    assert protractile("report", "out") == 0
+
+
+@pytest.mark.parametrize("kind", ADDED)
+def test_members_need_a_load_to_change(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    text = UNLOADED + ADDED[kind][0]
+    Path("plain.toml").write_text(text, encoding="utf-8")
+    Path("case.toml").write_text(f"{text}[ensemble]\nmembers = 4\n", encoding="utf-8")
+    for *command, file in (("check", "case.toml"), ("run", "--members", "4", "plain.toml")):
+        assert protractile(*command, file) == 2
+        assert capsys.readouterr().err == (
+            f"protractile: {file}: ensemble.vary: no load acts from t = 0 on, of which members "
+            "change a part; give vary = 'clearance', or leave the ensemble out\n"
+        )
+
+
+def test_members_need_a_play_to_change(capsys: pytest.CaptureFixture[str]) -> None:
+    text = UNLOADED.replace("play = 0.003", "play = 0.0")
+    ensemble = '[ensemble]\nmembers = 4\nvary = "clearance"\n'
+    Path("case.toml").write_text(text + ensemble, encoding="utf-8")
+    assert protractile("check", "case.toml") == 2
+    assert capsys.readouterr().err == (
+        "protractile: case.toml: ensemble.vary: there is no play, of which members change a part; "
+        "give vary = 'load', or leave the ensemble out\n"
+    )
