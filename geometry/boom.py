@@ -55,6 +55,10 @@ __all__ = [
 ]
 
 
+# Part of the inner segment's length below which an overlap is none.
+LEAST_OVERLAP = 1.0e-4
+
+
 @dataclass(frozen=True)
 class Boom:
     """Segments from the base to the tip, the joints between them, what acts on them, cylinders.
@@ -210,6 +214,11 @@ class Boom:
         """x in m between which both segments of a joint are."""
         return _overlap(joint, self.segments)
 
+    def overlap_left(self, joint: Joint) -> float:
+        """In m where a drive has drawn a joint out farthest; of one without a drive where it is."""
+        start, end = self.overlap(joint)
+        return end - start - (0.0 if joint.drive is None else joint.drive.reach[1])
+
     @property
     def observed(self) -> dict[str, tuple[int, float]]:
         """Places whose deflection every model reports: name → (segment, x).
@@ -246,14 +255,9 @@ class Boom:
                     f"must start and end beyond {before.name!r}; give the segments from the base "
                     "to the tip",
                 )
+        names = [segment.name for segment in self.segments]
         for number, joint in enumerate(self.joints, start=1):
-            if joint.outer > joint.inner:
-                inner, outer = self.segments[joint.inner], self.segments[joint.outer]
-                raise BoomError(
-                    f"joint[{number}]",
-                    f"{inner.name!r} is nearer to the base than {outer.name!r}; exchange inner and "
-                    "outer",
-                )
+            check_order(f"joint[{number}]", names[joint.outer], names[joint.inner], names)
 
     def _check_mirrors(self) -> None:
         """Bending along z is a motion of its own; in space that along y and the twist are, too."""
@@ -399,6 +403,12 @@ def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> Non
             f"{outer.name!r} ends at {outer.end:g} m before {inner.name!r} starts at "
             f"{inner.start:g} m; the segments of a joint must overlap",
         )
+    if end - start < LEAST_OVERLAP * inner.length:
+        raise BoomError(
+            where,
+            f"{inner.name!r} overlaps {outer.name!r} by {end - start:g} m; it must be at least "
+            f"{LEAST_OVERLAP * inner.length:.3g} m, usual is a tenth of its length",
+        )
     for x in joint.stations:
         if not (outer.holds(x) and inner.holds(x)):
             raise BoomError(
@@ -436,6 +446,23 @@ def _check_friction(where: str, joint: Joint, spatial: bool) -> None:
             f"{where}.normal_forces",
             f"must have one number for each of the {len(joint.stations)} stations, got "
             f"{len(joint.normal_forces)}",
+        )
+
+
+def check_order(where: str, outer: str, inner: str, names: Sequence[str]) -> None:
+    """Whether the outer segment of a joint is nearer to the base than the inner one.
+
+    Args:
+        where: the key of the joint.
+        outer, inner: the names of its segments.
+        names: of all segments, from the base to the tip.
+
+    Raises:
+        BoomError: it is not.
+    """
+    if names.index(outer) > names.index(inner):
+        raise BoomError(
+            where, f"{inner!r} is nearer to the base than {outer!r}; exchange inner and outer"
         )
 
 

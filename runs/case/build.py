@@ -23,6 +23,7 @@ from geometry.boom import (
     PointMass,
     Segment,
     Support,
+    check_order,
 )
 from geometry.holding import check_pressed
 from geometry.observation import Observation
@@ -177,6 +178,7 @@ def check_names(where: str, names: Sequence[str]) -> None:
 
 def _check_joined(case: Case) -> None:
     """Joints connect two segments each, and no two twice."""
+    names = [segment.name for segment in case.segments]
     for index, table in enumerate(case.joints):
         where = f"joint[{index + 1}]"
         for end in ("outer", "inner"):
@@ -190,6 +192,7 @@ def _check_joined(case: Case) -> None:
                     f"{table.outer!r} and {table.inner!r} are joined by joint[{number}] already; "
                     "give all their stations there",
                 )
+        check_order(where, table.outer, table.inner, names)
 
 
 def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint:

@@ -43,6 +43,11 @@ PADS_OF_SIDE = 2
 # Each is a term of every row in every step of the time loop.
 MOST_POINTS = 1000
 
+PAD_WITHOUT_STIFFNESS = (
+    "has no thickness; give the thickness in m, from which the joint's stiffness follows, or the "
+    "joint's stiffness"
+)
+
 _OF_POWER = ("stiffness", "stiffness_below", "exponent")
 
 
@@ -82,6 +87,9 @@ def _check_law(table: JointTable | ContactTable, of_power: Sequence[str]) -> Non
     pad = table.thick_pads if isinstance(table, JointTable) else None
     given = pad or next(iter(tables), None)
     if given is None:
+        if table.stiffness is None and getattr(table, "pad", None) is not None:
+            what = {"what": PAD_WITHOUT_STIFFNESS}
+            raise fault_at(table, PydanticCustomError("unsuitable", "{what}", what), "pad")
         if table.stiffness is None:
             raise fault_at(table, "missing", "stiffness")
         return

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from dynamics.drive.travel import SCurve, Stroke
-from dynamics.excitation import History
+from dynamics.excitation import History, followed
 from dynamics.excitation import Table as TimeTable
 from geometry.boom import BoomError
 from geometry.drive import Carrier, Drive
@@ -144,6 +144,12 @@ class DriveTable(Table):
         drive = Drive(history, carriers, self.least_overlap, locked)
         low, high = drive.reach
         return drive if high - low > _NOWHERE else None
+
+
+def fastest(drive: Drive) -> float:
+    """Its largest speed in m/s."""
+    times = followed([drive.history], max(drive.history.kinks))
+    return float(np.abs(np.diff(drive.history(times)) / np.diff(times)).max())
 
 
 def _said(key: str) -> str:

@@ -24,6 +24,7 @@ from runs.case.messages import BadInput, choices
 from runs.case.schema import Case, EnsembleTable, HistoryTable, Model, TimeTable
 from runs.case.units import System
 from runs.case.user_files import read_text
+from runs.case.usual import check_usual
 
 # More reported times than this would not fit in a netCDF file, or in anybody's patience.
 MOST_OUTPUTS = 10_000_000
@@ -34,6 +35,8 @@ Law = TypeVar("Law", JointTable, ContactTable)
 # What an option takes as a whole number: nobody means one of more digits.
 _WHOLE = re.compile(r"[0-9]{1,9}")
 
+# Behind the sign of equality no number goes on with a comma.
+_DECIMAL_COMMA = re.compile(r"=\s*([-+]?[0-9]+),([0-9]+)")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
 
@@ -156,8 +159,10 @@ def _with_shells(
 
 
 def _read(path: str) -> dict[str, object]:
+    text = ""
     try:
-        tables = tomllib.loads(read_text(Path(path)))
+        text = read_text(Path(path))
+        tables = tomllib.loads(text)
         _check_whole_numbers(tables, path)
         return tables
     except FileNotFoundError:
@@ -165,7 +170,7 @@ def _read(path: str) -> dict[str, object]:
     except IsADirectoryError:
         raise BadInput(path, "file", "is a directory; give the path of a case file") from None
     except (OSError, ValueError, RecursionError) as error:
-        raise BadInput(path, *_unreadable(error)) from None
+        raise BadInput(path, *_unreadable(error, text)) from None
 
 
 def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
@@ -266,8 +271,8 @@ def _check_columns(path: str, key: str, names: object, file: str | None) -> None
         raise BadInput(path, key, "there is no file whose columns these are; leave it out")
 
 
-def _unreadable(error: Exception) -> tuple[str, str]:
-    """Key and text for a file that is there and cannot be understood."""
+def _unreadable(error: Exception, text: str) -> tuple[str, str]:
+    """Key and message for a file that is there, with a text that cannot be understood."""
     if isinstance(error, OSError):
         return "file", f"cannot be read ({error.strerror}); give a case file that can"
     if isinstance(error, UnicodeDecodeError):
@@ -281,6 +286,10 @@ def _unreadable(error: Exception) -> tuple[str, str]:
     at_line, _, at_column = place.partition(", ")
     if not what or not at_line.startswith("line "):
         return "file", f"not TOML: {error}; see https://toml.io"
+    number = int(at_line.removeprefix("line "))
+    if comma := _DECIMAL_COMMA.search(text.split("\n")[number - 1]):
+        whole, part = comma.groups()
+        return at_line, f"not TOML: {whole},{part} has a decimal comma; give {whole}.{part}"
     return at_line, f"not TOML: {what} ({at_column}); see https://toml.io"
 
 
@@ -304,6 +313,7 @@ def _check_time(time: TimeTable) -> None:
 def _check_boom(found: Declared) -> None:
     """Whether there is such a boom, and whether its models suit it."""
     case, boom = found.case, found.boom
+    check_usual(case, boom)
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"

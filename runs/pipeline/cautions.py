@@ -13,7 +13,7 @@ from geometry.boom import Boom
 from geometry.typography import TO_PERCENT
 from runs.case.actions import series_notes
 from runs.case.schema import Case
-from runs.pipeline.proportions import of_buckling, of_tip, slips
+from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
 from runs.pipeline.slipping import Slipping, lag_cautions, slip_cautions, slippings
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[s
         *lag_cautions(boom, data, case.system),
         *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
         *_bent(models, boom),
+        *_short(summary, case),
         *_passed_by(models, boom),
         *_far(boom, data),
         *_poor(models),
@@ -60,6 +61,12 @@ def _bent(models: Mapping[str, ModelSummary], boom: Boom) -> Iterator[str]:
     for name, model in models.items():
         yield from of_buckling(name, model.critical_factor)
         yield from of_tip(f"in {name}", model.static_tip, boom)
+
+
+def _short(summary: Summary, case: Case) -> list[str]:
+    found = summary.answers.models.items()
+    slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
+    return of_period(f"in {slowest[1]}", slowest[0], case) if slowest else []
 
 
 def _passed_by(models: Mapping[str, ModelSummary], boom: Boom) -> Iterator[str]:

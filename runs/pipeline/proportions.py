@@ -8,28 +8,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Thrown
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from geometry.load import Load
 from geometry.segment import Segment
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.build import contact_laws
 from runs.case.schema import Case
+from runs.case.usual import usual_numbers
+from runs.pipeline.load_slips import load_slips
 
-# Of the solids that booms are made of, from plastics to tungsten, with room on either side.
-MODULI = 1.0e9, 1.0e12
-DENSITIES = 500.0, 2.5e4
-
-# Height over length of a segment above which it is no beam.
-DEEP = 0.2
-
-# Of the boom's weight: loads below it are not felt, loads beyond it no boom carries.
-LIGHT, HEAVY = 1.0e-3, 1.0e2
-
-# Of the boom's weight: loads upwards beyond it are weights of the wrong sign.
-LIFTING = 0.3
+# Degrees up to which a boom may well be called level.
+LEVEL = 0.1
 
 # Part of the critical force above which the second order is no small correction.
 CLOSE = 1.0 / 3.0
@@ -40,69 +30,41 @@ FAR = 0.05
 
 def slips(case: Case, boom: Boom) -> list[str]:
     """What to look at again, a line each."""
-    found = [*_materials(boom), *_sections(boom), *_loads(case, boom), *_pads(case, boom)]
-    return [f"caution: {line}" for line in [*found, *_meshes(case, boom)]]
+    unusual = (one for one in usual_numbers(case, boom) if one.unusual)
+    found = [f"{one.key}: {one.said(case.system)}" for one in unusual]
+    found += [*load_slips(case, boom), *_in_vain(case), *_pads(case, boom), *_meshes(case, boom)]
+    return [f"caution: {line}" for line in found]
 
 
-def _materials(boom: Boom) -> Iterator[str]:
-    told = set()
-    for segment in boom.segments:
-        for what, value, unit, (low, high) in (
-            ("Young's modulus", segment.material.youngs_modulus, "Pa", MODULI),
-            ("density", segment.material.density, "kg/m^3", DENSITIES),
-        ):
-            if not low <= value <= high and (what, value) not in told:
-                told.add((what, value))
-                yield (
-                    f"the {what} of {segment.name!r}, {value:g} {unit}, is outside what solids "
-                    f"have, {low:g} to {high:g} {unit}; check the units"
-                )
-
-
-def _sections(boom: Boom) -> Iterator[str]:
-    for segment in boom.segments:
-        if segment.section is None:
-            continue
-        height = max(segment.section_at(x).size("z") for x in segment.ends)
-        if height > DEEP * segment.length:
+def _in_vain(case: Case) -> Iterator[str]:
+    """What does nothing, or hardly what is meant."""
+    duration = case.time.duration
+    ramps = [(f"load[{i}].ramp", load.ramp) for i, load in enumerate(case.loads, start=1)]
+    ramps += [(f"base[{i}].ramp", base.ramp) for i, base in enumerate(case.base, start=1)]
+    for key, ramp in ramps:
+        if ramp is not None and ramp > duration:
             yield (
-                f"the section of {segment.name!r} is {height:g} m high, more than a fifth of its "
-                f"length of {segment.length:g} m: no beam, or another unit"
+                f"{key}: the run of {duration:g} s ends at {100.0 * duration / ramp:.3g} % of the "
+                f"ramp of {ramp:g} s; usual is a ramp that ends within the run"
             )
-
-
-def _weight(segment: Segment) -> float:
-    """In N, with what the segment carries."""
-    return STANDARD_GRAVITY * segment.mass
-
-
-def _loads(case: Case, boom: Boom) -> Iterator[str]:
-    weight = sum(map(_weight, boom.segments))
-    added = [load for load in boom.loads if load.direction == "z" and not _thrown(load)]
-    forces = [segment.load * segment.length for segment in boom.segments]
-    forces += [load.resultant(boom.segments[load.segment].length) for load in added]
-    payload = case.payload
-    if payload is not None and STANDARD_GRAVITY * payload.mass < LIGHT * weight:
+    for number, joint in enumerate(case.joints, start=1):
+        if any(joint.normal_forces) and "friction" not in joint.model_fields_set:
+            yield (
+                f"joint[{number}].normal_forces: they press for a friction that is not given, and "
+                "do nothing; give friction, usual is 0.05 to 0.3, or leave them out"
+            )
+    angle = 0.0 if case.gravity is None else case.gravity.angle
+    if LEVEL < abs(angle) <= 0.5 * np.pi:
         yield (
-            f"the payload of {payload.mass:g} kg is less than a thousandth of the boom's "
-            f"{weight / STANDARD_GRAVITY:.4g} kg; check the units"
+            f"gravity.angle: {angle:g} degrees is nearly level; if it is in radians, give "
+            f"{np.rad2deg(angle):.4g}"
         )
-    largest = max(map(abs, forces))
-    if largest > HEAVY * weight:
-        yield (
-            f"a load of {largest:.4g} N is more than a hundred times the boom's weight of "
-            f"{weight:.4g} N; check the units"
-        )
-    if min(forces) >= 0.0 and sum(forces) > LIFTING * weight:
-        yield (
-            f"all loads pull upwards, by {sum(forces):.4g} N; those that pull down, as weights do, "
-            "are negative"
-        )
-
-
-def _thrown(load: Load) -> bool:
-    """Whether it is but the impulse of an initial velocity."""
-    return isinstance(load.history, Thrown)
+    for number, cylinder in enumerate(case.cylinders, start=1):
+        if (height := cylinder.ground[1]) > -cylinder.depth:
+            yield (
+                f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
+                "cylinder would pull; usual is below, where heights are negative"
+            )
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
@@ -112,7 +74,7 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             joint = boom.joints[number]
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
-            force = 0.5 * _weight(inner)
+            force = 0.5 * STANDARD_GRAVITY * inner.mass
             stiffness = law.slope_at(force)
             if stiffness < bending:
                 yield (
@@ -139,6 +101,22 @@ def _narrowest(segment: Segment) -> float:
         return np.inf
     ends = (segment.section_at(x) for x in segment.ends)
     return min(plate.length for section in ends for plate in section.plates)
+
+
+def of_period(where: str, frequency: float, case: Case) -> list[str]:
+    """A caution against a run that ends before the boom has swung once.
+
+    Args:
+        where: ``in MODEL``, say.
+        frequency: the first one in Hz, with the joints pressed.
+        case: that says how long it runs.
+    """
+    if case.time.duration * frequency >= 1.0:
+        return []
+    return [
+        f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one swing "
+        f"{where}, {1.0 / frequency:.3g} s; usual are three at least"
+    ]
 
 
 def static_tip(system: GapSystem) -> float:

@@ -15,11 +15,11 @@ from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
+from runs.case.drive import fastest
 from runs.case.pulled import pulled_by, with_pulled
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import drawn_positions, instants, positions
-from runs.pipeline.drives import fastest, overlap_left
 from runs.pipeline.statics import laws, statics
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> list[str]:
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"
         if name in data:
-            lag, overlap = float(np.abs(data[name]).max()), overlap_left(boom, joint)
+            lag, overlap = float(np.abs(data[name]).max()), boom.overlap_left(joint)
             if lag > FAR_BEHIND * overlap:
                 found.append(
                     f"caution: {boom.segments[joint.inner].name!r} lags up to "

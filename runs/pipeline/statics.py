@@ -24,7 +24,7 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.answers import Reaction
 from runs.pipeline.at_rest import pressed, tilts
-from runs.pipeline.proportions import of_tip
+from runs.pipeline.proportions import of_period, of_tip
 
 # A part of what others bear that is none.
 ROUND_OFF = 1.0e-9
@@ -104,7 +104,8 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     console.print(_holds(found.played, case.system))
     if boom.cylinders:
         console.print(_cylinders(found.played, case.system))
-    console.print(_line(found), highlight=False)
+    hertz = [_first_frequency(rest) for rest in found]
+    console.print(_line(found, hertz), highlight=False)
     for tilt in tilts(found.played.boom, found.played.system, found.played.position):
         console.print(
             f"Play turns {tilt.inner!r} by {tilt.rotation * TO_MILLI:.4g} mrad in {tilt.outer!r}, "
@@ -112,7 +113,8 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
             highlight=False,
             markup=False,
         )
-    for caution in of_tip("as beam elements", found.played.tip, boom):
+    told = "as beam elements"
+    for caution in (*of_tip(told, found.played.tip, boom), *of_period(told, hertz[0], case)):
         console.print(caution, markup=False, highlight=False)
 
 
@@ -217,10 +219,12 @@ def cylinder_force(rest: Rest, number: int) -> float:
     return float(rest.system.observers[force_name(number)].row @ rest.position)
 
 
-def _line(found: Statics) -> str:
-    hertz = [
-        float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi) for rest in found
-    ]
+def _first_frequency(rest: Rest) -> float:
+    """In Hz, with the joints pressed."""
+    return float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi)
+
+
+def _line(found: Statics, hertz: Sequence[float]) -> str:
     return (
         f"At rest the tip is at {found.played.tip * TO_MILLI:.4g} mm, without play at "
         f"{found.tied.tip * TO_MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "

@@ -24,7 +24,6 @@ from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.drives import overlap_left
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.report.tables import Table
@@ -133,7 +132,7 @@ def _one_way(stiffness: float) -> list[float]:
     forces, tips = (
         [run.data[name].values for run in (asked, felt)] for name in ("contact_force", "tip")
     )
-    lag = float(np.abs(data["drive_lag"]).max()) / overlap_left(boom, boom.joints[0])
+    lag = float(np.abs(data["drive_lag"]).max()) / boom.overlap_left(boom.joints[0])
     return [
         stiffness, told.sticks, TO_MILLI * told.slip, TO_PERCENT * lag,
         TO_PERCENT * float(np.abs(forces[0] - forces[1]).max() / np.abs(forces[1]).max()),

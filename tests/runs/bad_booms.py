@@ -126,6 +126,17 @@ NUMBERS = {
         "joint[1]: 'outer' ends at 10 m before 'inner' starts at 11 m; the segments of a joint "
         "must overlap",
     ),
+    "hardly an overlap": (
+        "span = [9.0, 19.0]",
+        "span = [9.9999999, 19.0]",
+        "joint[1]: 'inner' overlaps 'outer' by 1e-07 m; it must be at least 0.0009 m, usual is a "
+        "tenth of its length",
+    ),
+    "outer and inner exchanged": (
+        'outer = "outer"\ninner = "inner"',
+        'outer = "inner"\ninner = "outer"',
+        "joint[1]: 'outer' is nearer to the base than 'inner'; exchange inner and outer",
+    ),
     "station outside the overlap": (
         "stations = [9.0, 10.0]",
         "stations = [9.0, 10.5]",

@@ -34,6 +34,18 @@ CALIBRATIONS = {
         "model[4].calibrated_by.mesh_size: 1e-05 m makes more than 2e+07 triangles; it must be at "
         "least 0.00176 m",
     ),
+    "calibrated by a shell that touches": (
+        _THEORY,
+        'calibrated_by = { name = "s", kind = "shell", contact = { force_file = "none.csv" } }\n',
+        "model[4].calibrated_by.contact: of no use: the shell does not move, the beam does; give "
+        "model[4].contact, or leave it out",
+    ),
+    "calibrated by a shell with a step": (
+        _THEORY,
+        'calibrated_by = { name = "s", kind = "shell", step = 1e-6 }\n',
+        "model[4].calibrated_by.step: of no use: the shell does not move, the beam does; give "
+        "model[4].step, or leave it out",
+    ),
     "fields of a section without a shell": (
         _THEORY,
         "section_fields = true\n",

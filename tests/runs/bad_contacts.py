@@ -46,6 +46,12 @@ CONTACTS = {
         "exponent = 2.0\ntied = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]\n",
         "joint[1].friction: the joint is tied, and nothing slides; leave it out",
     ),
+    "pads that say nothing of a stiffness": (
+        LAW,
+        "pad = { length = 0.1, width = 0.06 }\n",
+        "joint[1].pad: has no thickness; give the thickness in m, from which the joint's stiffness "
+        "follows, or the joint's stiffness",
+    ),
     "pads longer than the overlap": (
         "exponent = 2.0\n",
         "exponent = 2.0\npad = { length = 1.5, width = 0.06 }\n",

@@ -273,4 +273,14 @@ FORMS = {
         "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
         "https://toml.io",
     ),
+    "decimal comma": (
+        "play = 0.014",
+        "play = 0,014",
+        "line 39: not TOML: 0,014 has a decimal comma; give 0.014",
+    ),
+    "decimal comma in a table on one line": (
+        CONTACT,
+        "contact = { stiffness = 1e13, exponent = 1,5 }",
+        "line 61: not TOML: 1,5 has a decimal comma; give 1.5",
+    ),
 }

@@ -196,7 +196,9 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
         ('inner = "fly"', 'inner = "middle"',
          "joint[2].inner: must be another segment than the outer one"),
         ('outer = "middle"\ninner = "fly"', 'outer = "fly"\ninner = "middle"',
-         "joint[2].extension: 'middle' has its place by joint[1].extension; leave one of them out"),
+         "joint[2]: 'middle' is nearer to the base than 'fly'; exchange inner and outer"),
+        ('outer = "base"\ninner = "middle"', 'outer = "base"\ninner = "fly"',
+         "joint[2].extension: 'fly' has its place by joint[1].extension; leave one of them out"),
         ('["tail", { head = 0.1 }]', '["tail", { head = 1.6 }]',
          "joint[1].stations: 8.4 m lies outside the overlap of 'base' and 'middle'; it must be "
          "between 8.5 and 10 m"),

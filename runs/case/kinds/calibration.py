@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
+# What a shell that calibrates a beam has no use for, since the beam moves in its place.
+_OF_MOTION = ("contact", "step")
+
+
 class CalibratedTable(BeamTable):
     """A beam as it is, or with its stiffness and the springs of its stations read from a shell."""
 
@@ -56,7 +60,8 @@ class CalibratedTable(BeamTable):
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, ShellTable):
             return self
-        return self.model_copy(update={"calibrated_by": shell})
+        unused: dict[str, object] = dict.fromkeys(_OF_MOTION)
+        return self.model_copy(update={"calibrated_by": shell.model_copy(update=unused)})
 
     def check(self, where: str, joined: Joined) -> None:
         key = f"{where}.calibrated_by"
@@ -77,6 +82,13 @@ class CalibratedTable(BeamTable):
                 f"the shell touches by {self.calibrated_by.contact_line!r}, where a beam has no "
                 "springs; give one with contact_line = 'near webs'",
             )
+        for unused in _OF_MOTION:
+            if getattr(self.calibrated_by, unused) is not None:
+                raise BoomError(
+                    f"{key}.{unused}",
+                    f"of no use: the shell does not move, the beam does; give {where}.{unused}, or "
+                    "leave it out",
+                )
         self.calibrated_by.check(key, joined)
         super().check(where, joined)
 

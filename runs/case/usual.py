@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Numbers of a case beside what is usual: what is far from it is most often in another unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.boom import Boom, BoomError, Segment
+from runs.case.actions import STANDARD_GRAVITY
+from runs.case.contact import JointTable
+from runs.case.drive import fastest
+from runs.case.limits import Table
+from runs.case.schema import Case
+from runs.case.units import System, Unit
+
+# Units in which a number may have been given by mistake, the most likely first.
+_TAKEN_FOR = {
+    "Pa": ("MPa", "GPa", "kPa", "Pa"),
+    "m": ("mm", "cm", "m"),
+    "m/s": ("mm/s", "m/s"),
+    "m^4": ("cm^4", "mm^4", "m^4"),
+    "kg/m^3": ("t/m^3", "t/mm^3", "kg/m^3"),
+}
+
+# Height of a box over the radius of gyration of its section, which is between 2.2 and 2.8.
+_HEIGHT_OVER_GYRATION = 2.5
+
+
+class Usual(NamedTuple):
+    """A number of a case, and between which values such numbers usually are.
+
+    Args:
+        key: in the case file.
+        what: it is, ``friction of 'fly'`` say.
+        value: in SI units.
+        unit: of the SI, ``1`` for none.
+        least, most: usual values.
+        margin: factor beyond these from which on no boom can be meant.
+    """
+
+    key: str
+    what: str
+    value: float
+    unit: str
+    least: float
+    most: float
+    margin: float
+
+    @property
+    def unusual(self) -> bool:
+        """Whether it deserves a caution."""
+        return not self.least <= self.value <= self.most
+
+    @property
+    def impossible(self) -> bool:
+        """Whether no boom can be meant."""
+        return not self.least / self.margin <= self.value <= self.most * self.margin
+
+    def said(self, system: System) -> str:
+        """The number, what is usual, and the unit that may have been meant, in a system's units."""
+        limits = [
+            f"{word} {system.of(limit, self.unit):.3g}"
+            for word, limit in (("from", self.least), ("up to", self.most))
+            if 0.0 < limit < np.inf
+        ]
+        label = "" if self.unit == "1" else f" {system.label(self.unit)}"
+        given = system.of(self.value, self.unit)
+        said = f"{self.what} is {given:.5g}{label}, usual is {' '.join(limits)}{label}"
+        for name in _TAKEN_FOR.get(self.unit, ()):
+            meant = given * Unit.of(name).factor
+            if self.least <= meant <= self.most:
+                return f"{said}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
+        return f"{said}; check the number and its unit"
+
+
+def check_usual(case: Case, boom: Boom) -> None:
+    """Refuse a number that no boom has.
+
+    Raises:
+        BoomError: at the first one.
+    """
+    for one in usual_numbers(case, boom):
+        if one.impossible:
+            raise BoomError(one.key, one.said(case.system))
+
+
+def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
+    """All numbers of a case of which it is known what is usual."""
+    yield from _of_materials(case, boom)
+    for number, segment in enumerate(boom.segments):
+        yield from _of_section(f"segment[{number + 1}]", segment)
+    for number in range(len(boom.joints)):
+        yield from _of_joint(case, boom, number)
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        where, what = f"cylinder[{number}].ground", f"the length of cylinder {number}"
+        yield Usual(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
+    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
+    for number, axial in enumerate(case.axial, start=1):
+        if axial.force is not None:
+            where, what = f"axial[{number}].force", "the size of the force along the boom"
+            yield Usual(where, what, abs(axial.force), "N", 0.0, 100.0 * weight, 100.0)
+    if (category := case.life.detail_category) is not None:
+        what = "the detail category after EN 1993-1-9, in N/mm^2,"
+        yield Usual("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
+
+
+def _of_materials(case: Case, boom: Boom) -> Iterator[Usual]:
+    """Of the solids that booms are made of, from plastics to tungsten, with room on either side."""
+    tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
+    for where, table in {"material": case.material, **tables}.items():
+        if table is None:
+            continue
+        for key, what, unit, limits in (
+            ("youngs_modulus", "Young's modulus", "Pa", (1.0e9, 1.0e12, 3.0)),
+            ("density", "the density", "kg/m^3", (500.0, 2.5e4, 1000.0)),
+            ("yield_strength", "the yield strength", "Pa", (1.0e7, 4.0e9, 10.0)),
+        ):
+            if (value := getattr(table, key)) is not None:
+                yield Usual(f"{where}.{key}", what, value, unit, *limits)
+
+
+def _of_section(where: str, segment: Segment) -> Iterator[Usual]:
+    name, length, section = repr(segment.name), segment.length, segment.section
+    if section is None:
+        area = segment.mass_per_length / segment.material.density
+        height = _HEIGHT_OVER_GYRATION * float(np.sqrt(segment.second_moment_of_area / area))
+        where, what = f"{where}.second_moment_of_area", f"the height of a box as stiff as {name}"
+        yield Usual(where, what, height, "m", length / 500.0, length / 5.0, 5.0)
+        return
+    height = max(segment.section_at(x).size("z") for x in segment.ends)
+    what = f"the height of {name}"
+    yield Usual(f"{where}.section", what, height, "m", length / 500.0, length / 5.0, 5.0)
+    walls = [wall for x in segment.ends for wall in segment.section_at(x).plates]
+    wall = min(walls, key=lambda wall: wall.thickness / wall.length)
+    what = f"the {wall.name} of {name}"
+    yield Usual(f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0)
+    if segment.head_section is None:
+        own, given = section.second_moment_of_area, segment.second_moment_of_area
+        what, where = f"that beside the plates of {name}", f"{where}.second_moment_of_area"
+        yield Usual(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
+
+
+def _of_joint(case: Case, boom: Boom, number: int) -> Iterator[Usual]:
+    table, joint, where = case.joints[number], boom.joints[number], f"joint[{number + 1}]"
+    inner = boom.segments[joint.inner]
+    yield from _of_contacts(where, table)
+    if not joint.tied:
+        key = "" if table.extension is None else ".extension"
+        what, least = f"the overlap of {inner.name!r}", 0.03 * inner.length
+        if joint.drive is not None:
+            key, what = ".drive", f"{what} that the drive leaves"
+        yield Usual(where + key, what, boom.overlap_left(joint), "m", least, np.inf, 100.0)
+    if joint.drive is not None:
+        what = f"the largest speed at which {inner.name!r} is drawn"
+        yield Usual(f"{where}.drive", what, fastest(joint.drive), "m/s", 0.0, 5.0, 200.0)
+
+
+def _of_contacts(where: str, table: JointTable) -> Iterator[Usual]:
+    tables: dict[str, Table | None] = {where: table, f"{where}.pad": table.pad}
+    tables |= {f"{where}.pads[{i}]": pad for i, pad in enumerate(table.pads, start=1)}
+    tables[f"{where}.drive"] = table.drive
+    for key, what, unit, limits in (
+        ("friction", "the coefficient of friction", "1", (0.0, 1.0, 10.0)),
+        ("static_friction", "the coefficient of friction", "1", (0.0, 1.0, 10.0)),
+        ("interference", "the interference of shims", "m", (0.0, 0.005, 20.0)),
+        ("lateral_interference", "the interference of shims", "m", (0.0, 0.005, 20.0)),
+        ("shim", "the shim beyond the play", "m", (0.0, 0.02, 10.0)),
+        ("thickness", "the thickness of the pad", "m", (0.0005, 0.1, 10.0)),
+    ):
+        for path, part in tables.items():
+            if (value := getattr(part, key, None)) is not None:
+                yield Usual(f"{path}.{key}", what, value, unit, *limits)

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Slips of a unit or of a sign are told, or refused where no boom can be meant; booms have none."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.declared import Declared
+from runs.case.messages import BadInput
+from runs.pipeline.inferred import print_inferred
+from runs.pipeline.proportions import slips
+from tests.runs.case_texts import STEEL, box, joint
+
+LIFT = f"""
+title = "A lift"
+time = {{ duration = 3.0 }}
+gravity = {{ angle = 45.0 }}
+start = {{ state = "equilibrium" }}
+payload = {{ mass = 300.0 }}
+load = [{{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }}]
+cylinder = [{{ segment = "base", x = 2.4, depth = 0.25, ground = [0.7, -1.1], stiffness = 3e7 }}]
+{STEEL}
+{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005))}
+supports = [{{ x = 0.0, kind = "hinged" }}]
+{box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
+[[joint]]
+outer = "base"
+inner = "fly"
+stations = ["tail", "head"]
+play = 0.003
+pad = {{ length = 0.12, width = 0.05, thickness = 0.012 }}
+[[model]]
+name = "beam"
+kind = "finite-element"
+"""
+PLAY = "play = 0.003\npad = { length = 0.12, width = 0.05, thickness = 0.012 }\n"
+SHIMMED = """play = 0.003
+pads = [{ side = "above", length = 0.12, width = 0.05, thickness = 0.012 },
+        { side = "below", length = 0.12, width = 0.05, thickness = 0.012, shim = 0.5 }]
+"""
+PRESSED = "play = 0.0\nstiffness = 1e8\nexponent = 1.0\n"
+LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
+
+
+def written(folder: Path, old: str, new: str) -> str:
+    """The lift with something else in place of what it says."""
+    assert LIFT.count(old) == 1 or old == ""
+    (folder / "case.toml").write_text(LIFT.replace(old, new) if old else LIFT, encoding="utf-8")
+    return "case.toml"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("2.1e11", "2.1e5",
+         "material.youngs_modulus: Young's modulus is 2.1e+05 Pa, usual is from 1e+09 up to 1e+12 "
+         "Pa; if it is in MPa, give 2.1e+11 Pa"),
+        ("title", 'units = "N-mm"\ntitle',
+         "material.youngs_modulus: Young's modulus is 2.1e+11 MPa, usual is from 1e+03 up to 1e+06 "
+         "MPa; if it is in Pa, give 2.1e+05 MPa"),
+        ("7850.0", "7.85e-9",
+         "material.density: the density is 7.85e-09 kg/m³, usual is from 500 up to 2.5e+04 kg/m³; "
+         "if it is in t/mm^3, give 7850 kg/m³"),
+        ("7850.0", "7850.0\nyield_strength = 355.0",
+         "material.yield_strength: the yield strength is 355 Pa, usual is from 1e+07 up to 4e+09 "
+         "Pa; if it is in MPa, give 3.55e+08 Pa"),
+        ("height = 0.3, width = 0.22, flange = 0.006, web = 0.005",
+         "height = 300.0, width = 220.0, flange = 6.0, web = 5.0",
+         "segment[1].section: the height of 'base' is 300 m, usual is from 0.013 up to 1.3 m; if "
+         "it is in mm, give 0.3 m"),
+        ("flange = 0.005", "flange = 1e-9",
+         "segment[2].section: the bottom of 'fly' is 1e-09 m, usual is from 0.00018 m; check the "
+         "number and its unit"),
+        ("0.004 }", "0.004 }\nsecond_moment_of_area = 0.35",
+         "segment[2].second_moment_of_area: that beside the plates of 'fly' is 0.35 m⁴, usual is "
+         "from 2.03e-05 up to 8.14e-05 m⁴; check the number and its unit"),
+        ("section = { height = 0.256, width = 0.18, flange = 0.005, web = 0.004 }",
+         "mass_per_length = 32.0\nsecond_moment_of_area = 4000.0",
+         "segment[2].second_moment_of_area: the height of a box as stiff as 'fly' is 2476.5 m, "
+         "usual is from 0.012 up to 1.2 m; check the number and its unit"),
+        ("thickness = 0.012", "thickness = 12.0",
+         "joint[1].pad.thickness: the thickness of the pad is 12 m, usual is from 0.0005 up to 0.1 "
+         "m; if it is in mm, give 0.012 m"),
+        (PLAY, SHIMMED,
+         "joint[1].pads[2].shim: the shim beyond the play is 0.5 m, usual is up to 0.02 m; if it "
+         "is in mm, give 0.0005 m"),
+        (PLAY, f"{PRESSED}interference = 1.0\n",
+         "joint[1].interference: the interference of shims is 1 m, usual is up to 0.005 m; if it "
+         "is in mm, give 0.001 m"),
+        (PLAY, f"{PLAY}friction = 1e30\nnormal_forces = [1e3, 1e3]\n",
+         "joint[1].friction: the coefficient of friction is 1e+30, usual is up to 1; check the "
+         "number and its unit"),
+        (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1e-6 }}\n",
+         "joint[1].drive: the largest speed at which 'fly' is drawn is 8e+06 m/s, usual is "
+         "up to 5 m/s; check the number and its unit"),
+        (PLAY, f"{PLAY}drive = {{ table = [[0.0, 0.0], [1.0, 0.0], [1.000000001, -1.0]] }}\n",
+         "joint[1].drive: the largest speed at which 'fly' is drawn is 1e+09 m/s, usual is up to 5 "
+         "m/s; check the number and its unit"),
+        (PLAY, "play = 0.003\nstiffness = 1e8\ndrive = { travel = 1.199999999, time = 9.0 }\n",
+         "joint[1].drive: the overlap of 'fly' that the drive leaves is 1e-09 m, usual is from "
+         "0.18 m; check the number and its unit"),
+        ("[0.7, -1.1]", "[2.4, -0.250000001]",
+         "cylinder[1].ground: the length of cylinder 1 is 1e-09 m, usual is from 0.226 up to 11.3 "
+         "m; check the number and its unit"),
+        ("[0.7, -1.1]", "[0.7, -700.0]",
+         "cylinder[1].ground: the length of cylinder 1 is 699.75 m, usual is from 0.226 up to "
+         "11.3 m; if it is in mm, give 0.69975 m"),
+        ("[[model]]", "[[axial]]\nforce = -1e12\n[[model]]",
+         "axial[1].force: the size of the force along the boom is 1e+12 N, usual is up to 7.54e+05 "
+         "N; check the number and its unit"),
+        ("[[model]]", "[life]\ndetail_category = 7.1e7\n[[model]]",
+         "life.detail_category: the detail category after EN 1993-1-9, in N/mm^2, is 7.1e+07, "
+         "usual is from 36 up to 160; check the number and its unit"),
+    ],
+)  # fmt: skip
+def test_what_no_boom_has_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput) as refused:
+        case_file.load(written(tmp_path, old, new))
+    assert str(refused.value) == f"case.toml: {line}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("thickness = 0.012", "thickness = 0.2",
+         "joint[1].pad.thickness: the thickness of the pad is 0.2 m, usual is from 0.0005 up to "
+         "0.1 m; if it is in cm, give 0.002 m"),
+        (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1.0 }}\n",
+         "joint[1].drive: the largest speed at which 'fly' is drawn is 8 m/s, usual is up to 5 "
+         "m/s; if it is in mm/s, give 0.008 m/s"),
+        (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n",
+         "joint[1].normal_forces: they press for a friction that is not given, and do nothing; "
+         "give friction, usual is 0.05 to 0.3, or leave them out"),
+        ("[0.7, -1.1]", "[0.7, 1.1]",
+         "cylinder[1].ground: a height of 1.1 m is above the lug, and the cylinder would pull; "
+         "usual is below, where heights are negative"),
+        ("angle = 45.0", "angle = 0.785",
+         "gravity.angle: 0.785 degrees is nearly level; if it is in radians, give 44.98"),
+        ("gravity = { angle = 45.0 }", "",
+         "gravity: missing, so that the payload of 300 kg weighs and the 469 kg of the boom do "
+         "not; give the table gravity, or the payload its own"),
+        ("ramp = 0.1", "ramp = 100.0",
+         "load[1].ramp: the run of 3 s ends at 3 % of the ramp of 100 s; usual is a ramp that ends "
+         "within the run"),
+        ("-1595.0", "-300.0",
+         "load[1].magnitude: -300 N at the tip is a tenth of what the payload of 300 kg weighs; if "
+         "it is in kg, give -2942 N"),
+        ("-1595.0, ramp = 0.1", "-2942.0",
+         "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
+         "leave it out"),
+        (LOAD, f"{LOAD}, {LOAD}",
+         "load[2]: is load[1] once more; leave one of them out"),
+        ("0.004 }", "0.004 }\nload = -296.3",
+         "segment[2].load: -296.3 N/m is the weight of 'fly', which the table gravity adds "
+         "already; leave it out"),
+        ("-1595.0", "15950.0",
+         "the loads pull upwards, by 1.062e+04 N in all; those that pull down, as weights do, are "
+         "negative"),
+        ("-1595.0", "4500.0",
+         "the loads lift the boom: about its base they turn it up by 1.043e+04 N m more than "
+         "weights turn it down; those that pull down are negative"),
+    ],
+)  # fmt: skip
+def test_what_is_hardly_meant_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, old: str, new: str, line: str
+) -> None:
+    """Each on its slip alone."""
+    monkeypatch.chdir(tmp_path)
+    case = case_file.load(written(tmp_path, old, new))
+    assert slips(case, build_boom(case)) == [f"caution: {line}"]
+
+
+def test_a_run_shorter_than_a_swing_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: the frequency that stands above it."""
+    monkeypatch.chdir(tmp_path)
+    shown = io.StringIO()
+    declared = case_file.declared(written(tmp_path, "duration = 3.0", "duration = 0.2"))
+    print_inferred(declared, Console(file=shown, width=200))
+    line = (
+        "caution: time.duration: the run of 0.2 s is shorter than one swing as beam elements, "
+        "0.553 s; usual are three at least"
+    )
+    assert line in shown.getvalue().splitlines()
+    (frequency,) = re.findall(r"the first frequency is ([0-9.]+) Hz with", shown.getvalue())
+    assert 1.0 / float(frequency) == pytest.approx(0.553, rel=1e-3)
+
+
+LABORATORY = f"""
+title = "A boom on a table"
+time = {{ duration = 2.0 }}
+gravity = {{ angle = 10.0 }}
+payload = {{ mass = 0.2 }}
+[material]
+youngs_modulus = 7e10
+poissons_ratio = 0.33
+density = 2700.0
+yield_strength = 2e8
+{box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001))}
+supports = [{{ x = 0.0, kind = "clamped" }}]
+{box("inner", (0.5, 1.0), (0.017, 0.0125, 0.001, 0.001))}
+[[joint]]
+outer = "outer"
+inner = "inner"
+stations = [0.5, 0.6]
+play = 0.0002
+pad = {{ length = 0.01, width = 0.004, thickness = 0.0008 }}
+[[model]]
+name = "beam"
+kind = "finite-element"
+element_length = 0.05
+"""
+
+HINGED = 'supports = [{ x = 0.0, kind = "hinged" }]'
+RUBBING = "friction = 0.1\nnormal_forces = [0.0, 0.0]"
+CRANE = (
+    f"""
+title = "A crane of 60 m"
+time = {{ duration = 20.0 }}
+gravity = {{ angle = 70.0 }}
+payload = {{ mass = 5000.0 }}
+axial = [{{ falls = 4 }}]
+load = [{{ segment = "e", x = "head", magnitude = 1000.0, ramp = 2.0 }}]
+cylinder = [{{ segment = "a", x = 4.0, depth = 0.6, ground = [2.0, -3.5], stiffness = 2e8 }}]
+life = {{ detail_category = 71.0 }}
+{STEEL}
+yield_strength = 9.6e8
+{box("a", (0.0, 13.0), (1.2, 0.9, 0.010, 0.008), HINGED)}
+"""
+    + "".join(
+        box(inner, (11.8 * i, 11.8 * i + 13.0), (1.2 - 0.1 * i, 0.9 - 0.08 * i, 0.010, 0.008))
+        + joint(inner, outer, 0.006, (11.8 * i, 11.8 * i + 1.2), RUBBING)
+        for i, (outer, inner) in enumerate(["ab", "bc", "cd", "de"], start=1)
+    )
+    + """
+[[model]]
+name = "beam"
+kind = "finite-element"
+element_length = 1.0
+"""
+)
+
+
+@pytest.mark.parametrize("text", [LIFT, LABORATORY, CRANE], ids=["lift", "laboratory", "crane"])
+def test_booms_have_none(tmp_path: Path, text: str) -> None:
+    """Of 1 m and of 60 m, with all that is printed of them."""
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    shown = io.StringIO()
+    print_inferred(Declared(case_file.load(str(path))), Console(file=shown, width=200))
+    assert "caution" not in shown.getvalue()
