@@ -115,7 +115,7 @@ def of_period(where: str, frequency: float, case: Case) -> list[str]:
         return []
     return [
         f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one swing "
-        f"{where}, {1.0 / frequency:.3g} s; usual are three at least"
+        f"{where}, {1.0 / frequency:.3g} s; usual are three swings at least"
     ]
 
 

@@ -162,7 +162,7 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
         == short
         == (
             "caution: time.duration: the run of 0.05 s is shorter than one swing in kantorovich-4, "
-            "0.427 s; usual are three at least"
+            "0.427 s; usual are three swings at least"
         )
     )
     assert told == (

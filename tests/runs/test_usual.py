@@ -190,7 +190,7 @@ def test_a_run_shorter_than_a_swing_is_told(
     print_inferred(declared, Console(file=shown, width=200))
     line = (
         "caution: time.duration: the run of 0.2 s is shorter than one swing as beam elements, "
-        "0.553 s; usual are three at least"
+        "0.553 s; usual are three swings at least"
     )
     assert line in shown.getvalue().splitlines()
     (frequency,) = re.findall(r"the first frequency is ([0-9.]+) Hz with", shown.getvalue())
