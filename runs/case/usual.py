@@ -88,8 +88,11 @@ def check_usual(case: Case, boom: Boom) -> None:
 
 
 def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
-    """All numbers of a case of which it is known what is usual."""
-    yield from _of_materials(case, boom)
+    """All numbers of a case of which it is known what is usual.
+
+    The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
+    """
+    yield from _of_materials(case)
     for number, segment in enumerate(boom.segments):
         yield from _of_section(f"segment[{number + 1}]", segment)
     for number in range(len(boom.joints)):
@@ -107,7 +110,7 @@ def usual_numbers(case: Case, boom: Boom) -> Iterator[Usual]:
         yield Usual("life.detail_category", what, category, "1", 36.0, 160.0, 10.0)
 
 
-def _of_materials(case: Case, boom: Boom) -> Iterator[Usual]:
+def _of_materials(case: Case) -> Iterator[Usual]:
     """Of the solids that booms are made of, from plastics to tungsten, with room on either side."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
@@ -124,22 +127,23 @@ def _of_materials(case: Case, boom: Boom) -> Iterator[Usual]:
 
 def _of_section(where: str, segment: Segment) -> Iterator[Usual]:
     name, length, section = repr(segment.name), segment.length, segment.section
+    low, high = length / 500.0, length / 5.0
     if section is None:
         area = segment.mass_per_length / segment.material.density
-        height = _HEIGHT_OVER_GYRATION * float(np.sqrt(segment.second_moment_of_area / area))
-        where, what = f"{where}.second_moment_of_area", f"the height of a box as stiff as {name}"
-        yield Usual(where, what, height, "m", length / 500.0, length / 5.0, 5.0)
+        least, most = (area * (height / _HEIGHT_OVER_GYRATION) ** 2 for height in (low, high))
+        where, what = f"{where}.second_moment_of_area", f"the second moment of area of {name}"
+        yield Usual(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
         return
     height = max(segment.section_at(x).size("z") for x in segment.ends)
-    what = f"the height of {name}"
-    yield Usual(f"{where}.section", what, height, "m", length / 500.0, length / 5.0, 5.0)
+    yield Usual(f"{where}.section", f"the height of {name}", height, "m", low, high, 5.0)
     walls = [wall for x in segment.ends for wall in segment.section_at(x).plates]
     wall = min(walls, key=lambda wall: wall.thickness / wall.length)
-    what = f"the {wall.name} of {name}"
+    what = f"the thickness of the {wall.name} of {name}"
     yield Usual(f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0)
     if segment.head_section is None:
         own, given = section.second_moment_of_area, segment.second_moment_of_area
-        what, where = f"that beside the plates of {name}", f"{where}.second_moment_of_area"
+        where, what = f"{where}.second_moment_of_area", "the second moment of area"
+        what = f"{what} beside the plates of {name}"
         yield Usual(where, what, given, "m^4", 0.5 * own, 2.0 * own, 50.0)
 
 

@@ -76,15 +76,15 @@ def written(folder: Path, old: str, new: str) -> str:
          "segment[1].section: the height of 'base' is 300 m, usual is from 0.013 up to 1.3 m; if "
          "it is in mm, give 0.3 m"),
         ("flange = 0.005", "flange = 1e-9",
-         "segment[2].section: the bottom of 'fly' is 1e-09 m, usual is from 0.00018 m; check the "
-         "number and its unit"),
+         "segment[2].section: the thickness of the bottom of 'fly' is 1e-09 m, usual is from "
+         "0.00018 m; check the number and its unit"),
         ("0.004 }", "0.004 }\nsecond_moment_of_area = 0.35",
-         "segment[2].second_moment_of_area: that beside the plates of 'fly' is 0.35 m⁴, usual is "
-         "from 2.03e-05 up to 8.14e-05 m⁴; check the number and its unit"),
+         "segment[2].second_moment_of_area: the second moment of area beside the plates of 'fly' is "
+         "0.35 m⁴, usual is from 2.03e-05 up to 8.14e-05 m⁴; check the number and its unit"),
         ("section = { height = 0.256, width = 0.18, flange = 0.005, web = 0.004 }",
-         "mass_per_length = 32.0\nsecond_moment_of_area = 4000.0",
-         "segment[2].second_moment_of_area: the height of a box as stiff as 'fly' is 2476.5 m, "
-         "usual is from 0.012 up to 1.2 m; check the number and its unit"),
+         "mass_per_length = 32.0\nsecond_moment_of_area = 4069.0",
+         "segment[2].second_moment_of_area: the second moment of area of 'fly' is 4069 m⁴, usual "
+         "is from 9.39e-08 up to 0.000939 m⁴; if it is in cm^4, give 4.069e-05 m⁴"),
         ("thickness = 0.012", "thickness = 12.0",
          "joint[1].pad.thickness: the thickness of the pad is 12 m, usual is from 0.0005 up to 0.1 "
          "m; if it is in mm, give 0.012 m"),
