@@ -136,7 +136,6 @@ def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, ti
     """
     force = problem.force
     contacts, frictions = laws.limits.size, laws.friction.shape[1]
-    scale = 0.0
     for _ in range(_MOST_ITERATIONS):
         for k in range(frictions):
             normal = laws.friction[1, k]
@@ -144,7 +143,7 @@ def solve_rows(laws: Laws, problem: Problem, compliance: Array, start: Array, ti
                 normal += laws.pressing[k, i] * abs(force[i])
             problem.bound[k] = laws.friction[0, k] * normal
         count = 0
-        worst = 0.0
+        worst, scale = 0.0, 0.0
         for j in range(force.size):
             scale = max(scale, abs(force[j]))
         for j in range(force.size):
