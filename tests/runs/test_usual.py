@@ -79,8 +79,8 @@ def written(folder: Path, old: str, new: str) -> str:
          "segment[2].section: the thickness of the bottom of 'fly' is 1e-09 m, usual is from "
          "0.00018 m; check the number and its unit"),
         ("0.004 }", "0.004 }\nsecond_moment_of_area = 0.35",
-         "segment[2].second_moment_of_area: the second moment of area beside the plates of 'fly' is "
-         "0.35 m⁴, usual is from 2.03e-05 up to 8.14e-05 m⁴; check the number and its unit"),
+         "segment[2].second_moment_of_area: the second moment of area beside the plates of 'fly' "
+         "is 0.35 m⁴, usual is from 2.03e-05 up to 8.14e-05 m⁴; check the number and its unit"),
         ("section = { height = 0.256, width = 0.18, flange = 0.005, web = 0.004 }",
          "mass_per_length = 32.0\nsecond_moment_of_area = 4069.0",
          "segment[2].second_moment_of_area: the second moment of area of 'fly' is 4069 m⁴, usual "
