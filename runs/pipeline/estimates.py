@@ -32,8 +32,8 @@ _LIBRARIES, _SHELL_LIBRARIES = 1.3e9, 1.6e9
 _NUMBERS, _OF_COORDINATE, _OF_STATION = 160.0, 1.5, 12.0
 # s for each output and model: files and figures.
 _WRITING = 3.0e-5
-# Numbers for each output and member of an ensemble.
-_OF_MEMBER = 22.0
+# Numbers for each output and member of an ensemble, and for each step of an output interval.
+_OF_MEMBER, _OF_STEP = 22.0, 24.0
 
 # s for a step, for a coordinate in it, and for a row that reads a coordinate.
 _STEP, _OF_MODE, _OF_ROW = 0.4e-6, 1.0e-8, 1.0e-9
@@ -121,7 +121,8 @@ def _of_model(foreseen: Foreseen, model: Model) -> Cost:
     rows = len(system.laws) + len(system.frictions) + len(system.dashpots)
     each = _STEP + coordinates * (_OF_MODE + _OF_ROW * rows)
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
+    of_interval = _OF_STEP + 2 * len(system.excitations) + len(system.travels)
     return before + Cost(
-        8.0 * outputs * (numbers + _OF_MEMBER * members),
+        8.0 * (outputs * (numbers + _OF_MEMBER * members) + steps / outputs * of_interval),
         outputs * _WRITING + motions * steps * each,
     )

@@ -8,6 +8,7 @@ from geometry.typography import TO_KILO, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.case.build import contact_laws
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, Peak
+from runs.report.numerals import number
 from runs.report.tables import Cell, Column, Table
 
 
@@ -45,20 +46,29 @@ def model_table(results: Results) -> Table:
         Column("first tip peak\ns", [time for time, _ in peaks], ".3f"),
         Column("\nmm", [height for _, height in peaks], ".1f", TO_MILLI),
         *(horizon_column(models, share, duration) for share in shares),
-        Column(
-            "peak contact force\nkN",
-            [model.peak_contact_force for model in models],
-            ".3g",
-            TO_KILO,
-        ),
+        Column("peak contact force\nkN", [_peak_force(model) for model in models], ".3g", TO_KILO),
         Column("energy residual\nof the work", [model.energy_residual for model in models], ".1g"),
         Column("wall time\ns", [model.wall_time for model in models], ".1f"),
     )
-    meaning = (
-        "Horizon: when the members of a model's ensemble are that part of the tip's range around "
-        "one another; beyond it a single run is a sample."
-    )
-    return Table("What each model found", columns, (meaning,) if shares else (), "models")
+    notes = []
+    if shares:
+        notes.append(
+            "Horizon: when the members of a model's ensemble are that part of the tip's range "
+            "around one another; beyond it a single run is a sample."
+        )
+    if resolving := [model.resolving_step for model in models if model.resolving_step]:
+        notes.append(
+            "≥: the blow is shorter than six steps, and the force is the largest mean of a step; "
+            f"time.step = {min(resolving):.1e} would resolve it."
+        )
+    return Table("What each model found", columns, notes, "models")
+
+
+def _peak_force(model: ModelSummary) -> Cell:
+    """Return the peak contact force, marked where the step does not resolve the blow."""
+    if model.resolving_step is None or model.peak_contact_force is None:
+        return model.peak_contact_force
+    return f"≥ {number(TO_KILO * model.peak_contact_force)}"
 
 
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
