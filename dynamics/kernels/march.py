@@ -292,7 +292,8 @@ def march(
                 moved = now[j] * (y_end[j] - y[j])
                 if j < contacts:
                     mean[j] += share * now[j]
-                    if now[j] != 0.0 and laws.limits[j]["damping"] > 0.0:
+                    # A contact that lets go without a force loses what it has stored.
+                    if laws.limits[j]["damping"] > 0.0:
                         _, _, elastic = contact_response(laws, j, y[j], y_end[j], time)
                         tally[CONTACT] += moved - elastic * (y_end[j] - y[j])
                 elif j < contacts + frictions:

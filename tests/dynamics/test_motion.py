@@ -21,14 +21,6 @@ def test_rests_unless_told() -> None:
     assert Motion(CHAOTIC, 1.0e-3, 1.0).outputs == 1
 
 
-def test_what_is_made_at_once_is_bounded() -> None:
-    """Reference: analytic: 100 outputs, a hundredth of those made, 2¹⁷ steps, but one output."""
-    motion = Motion(CHAOTIC, 1.0, 1.0e-5)
-    assert [motion.until(0, steps) for steps in (1, 10_000, 10_000_000)] == [100, 13, 1]
-    assert [motion.until(50_000, steps) for steps in (1, 1000)] == [50_500, 50_131]
-    assert motion.until(99_990, 1) == 100_000
-
-
 @pytest.mark.parametrize(
     ("given", "message"),
     [

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Small systems, and how another code moves them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from dynamics.arrays import Array
+from dynamics.contact import PowerContact
+from dynamics.drive.travel import KINDS
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from dynamics.trajectory import Trajectory
+
+# Half the distance in s over which the speed of a drive is measured.
+_APART = 1.0e-6
+
+
+def two_modes(exponent: float = 2.0) -> GapSystem:
+    """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
+    return GapSystem(
+        omega2=np.array([9.0, 60.0]),
+        load=np.array([2.0, 5.0]),
+        rows=np.array([[1.0, 0.6]]),
+        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent, clearance=0.05).upper()],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"first": Observer(np.array([1.0, 0.0]))},
+    )
+
+
+def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
+    """Return the states (num_times, num_modes) by scipy's DOP853 (other code).
+
+    Friction rows must slide all the time: their law is smooth then.
+    """
+    system, n = motion.system, motion.system.num_modes
+    times = motion.output_step * np.arange(motion.outputs + 1)
+    parts = np.cumsum([len(system.rows), len(system.friction_rows)])
+
+    def rate(time: float, state: Array) -> Array:
+        a, v = state[:n], state[n:]
+        rows = {kind: getattr(system, kind).copy() for kind in KINDS}
+        drift = {kind: np.zeros(len(rows[kind])) for kind in KINDS}
+        for travel in system.travels:
+            ahead, behind = travel.history(np.array([time + _APART, abs(time - _APART)]))
+            way, speed = float(travel.history(np.array(time))), (ahead - behind) / (2.0 * _APART)
+            now, slopes = travel.table(way), travel.table.slope(way)
+            for (kind, j), row, slope in zip(travel.moving, now, slopes, strict=True):
+                rows[kind][j], drift[kind][j] = row, speed * (slope @ a)
+        stacked = np.concatenate([rows[kind] for kind in KINDS])
+        speeds = stacked @ v + np.concatenate([drift[kind] for kind in KINDS])
+        closing, sliding, dragged = np.split(speeds, parts)
+        pressed = np.array([
+            law.force(y) * max(0.0, 1.0 + law.damping * np.sign(y) * u)
+            for law, y, u in zip(system.laws, rows["rows"] @ a, closing, strict=True)
+        ])  # fmt: skip
+        normal = [f.normal_force + np.abs(pressed[list(f.pressed_by)]).sum()
+                  for f in system.frictions]  # fmt: skip
+        limits = np.array([f.coefficient for f in system.frictions]) * normal
+        forces = np.concatenate([pressed, limits * np.sign(sliding), dragged])
+        pull = system.load - system.omega2 * a - system.damping * v - stacked.T @ forces
+        for x in system.excitations:
+            pull = pull + x.load * x.history(np.array(time))
+        return np.concatenate([v, pull])
+
+    start = np.concatenate([motion.position, motion.velocity])
+    run = solve_ivp(
+        rate, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-14, max_step=max_step
+    )
+    return np.asarray(run.y[:n].T)
+
+
+def errors_in_the_step(motion: Motion, expected: Array, steps: Array) -> Array:
+    """Return the largest error of the states with each step, as a part of the largest state."""
+    size = np.abs(expected).max()
+    return np.array([np.abs(FixedStep(h)(motion).states - expected).max() / size for h in steps])
+
+
+def slopes(errors: Array) -> Array:
+    """Return the orders that errors of steps, each half the last one, show."""
+    return np.log2(errors[:-1] / errors[1:])
+
+
+def with_rates(system: GapSystem) -> GapSystem:
+    """Return the system with the velocities of all modes as observers."""
+    rates = {f"v{i}": Observer(row, "m/s", 1) for i, row in enumerate(np.eye(system.num_modes))}
+    return replace(system, observers={**system.observers, **rates})
+
+
+def end_of(run: Trajectory) -> tuple[Array, Array]:
+    """Return coordinates and velocities (num_modes,) at the end of a run :func:`with_rates`."""
+    a = run.states[-1]
+    return a, np.array([float(run.data[f"v{i}"][-1]) for i in range(a.size)])
