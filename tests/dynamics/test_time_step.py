@@ -1,0 +1,461 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The time step: its energy, order and symmetry, known contact problems, other codes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from scipy.special import gamma
+
+from dynamics.arrays import Array
+from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact_table import TableContact
+from dynamics.drive.travel import SCurve, Stroke
+from dynamics.energy import check_energy
+from dynamics.equilibrium import equilibrium
+from dynamics.excitation import Excitation, Sine, Table
+from dynamics.failure import NumericsError
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import AdaptiveStep, FixedStep
+from dynamics.motion import Motion
+from dynamics.sided_contact import SidedContact
+from tests.dynamics.reference import (
+    end_of,
+    errors_in_the_step,
+    runge_kutta,
+    slopes,
+    two_modes,
+    with_rates,
+)
+from tests.dynamics.test_drawn_out import lossy, rider
+from tests.dynamics.test_moving_thrust import pressed_along
+
+OneMass = Callable[..., GapSystem]
+
+THROWN = np.array([0.8, -0.5, 0.3, 0.4])
+POWER = PowerContact(1.0e6, 1.0, 1.0e-3)
+ROWS = np.array([[0.9, 0.5, -0.3, 0.2], [0.4, -0.8, 0.5, 0.3]])
+ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
+
+
+def boom(law: ContactLaw = POWER, **changes: Any) -> GapSystem:
+    """One rigid and three elastic modes with two contacts."""
+    numbers: dict[str, Any] = {
+        "omega2": np.array([0.0, 40.0, 900.0, 2.5e4]),
+        "load": np.array([-8.0, 3.0, 2.0, 1.0]),
+        "rows": ROWS,
+        "laws": [law, law],
+        "station_of_row": np.array([0, 1]),
+        "stations": [0.0, 1.0],
+        "observers": {"tip": Observer(np.array([1.0, 0.7, -0.4, 0.2]))},
+    }
+    return GapSystem(**numbers | changes)
+
+
+def rubbing(*frictions: DryFriction, **changes: Any) -> GapSystem:
+    return boom(friction_rows=ACROSS, frictions=frictions, **changes)
+
+
+DRAGGED = {"dashpots": 2.0 * ACROSS}
+# The second and third modes creep, the others swing.
+DAMPED = {"damping": np.array([0.5, 60.0, 200.0, 20.0])}
+PUSHED = np.array([30.0, -20.0, 10.0, 40.0])
+KINKED = Excitation(PUSHED, Table((0.0, 0.00037, 0.0101, 0.0733), (0.0, 1.0, -1.0, 2.0)))
+SHAKEN = Excitation(PUSHED[::-1], Sine(7.3, 0.4))
+PRESSED = DryFriction(0.4, 0, 0.0, (0, 1)), DryFriction(0.3, 1, 5.0, (1,))
+# What moves, and the energy that it has to exchange.
+MOVED: dict[str, tuple[GapSystem, str]] = {
+    "linear": (boom(), "contact_energy"),
+    "Hertz": (boom(PowerContact(1.0e8, 1.5, 1.0e-3)), "contact_energy"),
+    "quadratic": (boom(PowerContact(1.0e10, 2.0, 1.0e-3)), "contact_energy"),
+    "cubic": (boom(PowerContact(1.0e13, 3.0, 1.0e-3)), "contact_energy"),
+    "table": (boom(TableContact((1e-4, 1e-3), (200.0, 500.0), 1e-3)), "contact_energy"),
+    "unlike sides": (
+        boom(SidedContact(PowerContact(1e6, 1.0, 4e-4), PowerContact(2e9, 2.0, 1e-3))),
+        "contact_energy",
+    ),
+    "shims": (boom(PowerContact(1.0e6, 1.0, -1.0e-4)), "contact_energy"),
+    "Hunt-Crossley": (boom(PowerContact(1e8, 1.5, 1e-3, damping=0.5)), "contact_loss"),
+    "prescribed friction": (
+        rubbing(DryFriction(0.2, 0, 20.0), DryFriction(0.3, 1, 10.0)),
+        "friction_loss",
+    ),
+    "pressed friction": (rubbing(*PRESSED), "friction_loss"),
+    "dashpots": (boom(**DRAGGED), "damping_loss"),
+    "modal damping": (boom(**DAMPED), "damping_loss"),
+    "tipping": (boom(omega2=np.array([-9.0, 40.0, 900.0, 2.5e4])), "contact_energy"),
+    "kinked load": (boom(excitations=[KINKED]), "work"),
+    "sine": (boom(excitations=[SHAKEN]), "work"),
+    "everything": (
+        rubbing(*PRESSED, **DRAGGED, **DAMPED, excitations=[KINKED, SHAKEN]),
+        "friction_loss",
+    ),
+    "moving rows": (lossy(Stroke(5.0, 12.5)), "drive_work"),
+    "moving thrust": (pressed_along(Stroke(2.0, 2.0)), "drive_work"),
+}
+
+
+@pytest.mark.parametrize(
+    ("step", "duration"), [(1e-2, 1.0), (1e-3, 0.5), (1e-4, 0.1), (1e-5, 0.05), (1e-6, 0.02)]
+)
+@pytest.mark.parametrize("what", MOVED)
+def test_energy_balances_at_every_step(what: str, step: float, duration: float) -> None:
+    """Reference: analytic, energy is conserved: no part of the work is missing or too much."""
+    system, exchanged = MOVED[what]
+    velocity = THROWN if system.num_modes == 4 else np.zeros(0)
+    run = FixedStep(step)(Motion(system, duration, 1.0e-2, velocity=velocity))
+    assert run.energy_residual < 1e-11
+    energies = [np.abs(run.data[x]).max() for x in ("work", "kinetic_energy", exchanged)]
+    assert float(energies[2]) > 1e-5 * float(max(energies))
+    assert run.data.attrs["contact_changes"] > 0
+    for name in ("damping_loss", "friction_loss", "contact_loss"):
+        assert np.diff(run.data[name]).min() >= -1e-14 * float(max(energies))
+
+
+def pressed(exponent: float, **changes: Any) -> Motion:
+    """A boom pressed to its stops, thrown so gently that it stays there."""
+    law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent, 1.0e-3)
+    system = boom(law, load=np.array([-80.0, 30.0, 2.0, 1.0]), **changes)
+    held = replace(system, omega2=np.maximum(system.omega2, [0.0, 1.0, 1.0, 1.0]))
+    return Motion(system, 0.4, 0.04, equilibrium(held, system.load), 0.02 * THROWN)
+
+
+def sliding() -> Motion:
+    """A boom pressed to its stops, that slides along them too fast to come to rest."""
+    along = {"friction_rows": np.array([[0.1, -0.2, 0.3, 1.0]]), "frictions": [PRESSED[0]]}
+    omega2 = np.array([0.0, 40.0, 900.0, 0.0])
+    still = pressed(1.0, omega2=omega2, rows=ROWS * [1, 1, 1, 0], **along)
+    return replace(still, velocity=np.array([0.05, -0.02, 0.03, 40.0]))
+
+
+def telescoping() -> Motion:
+    law = PowerContact(1.0e6, 2.0, 0.0).lower()
+    system = rider(SCurve(5.0, 0.4), law, mass=20.0, weight=2.0e3, start=2.0, count=4, drag=30.0)
+    return Motion(system, 0.4, 0.04)
+
+
+def driven() -> Motion:
+    still = pressed(2.0)
+    loads = [Excitation(0.2 * PUSHED, Sine(3.0, 0.4)), Excitation(PUSHED, Table((0, 1), (0, 1)))]
+    return replace(still, system=replace(still.system, excitations=loads))
+
+
+def lossy_press() -> Motion:
+    motion = pressed(2.0, damping=np.array([0.5, 1.0, 2.0, 20.0]), **DRAGGED)
+    laws = [replace(POWER, stiffness=1e4, damping=5.0)] * 2
+    return replace(motion, system=replace(motion.system, laws=laws), velocity=0.05 * THROWN)
+
+
+@pytest.mark.parametrize(
+    ("motion", "bound"),
+    [
+        (pressed(1.0), 1e-5),
+        (pressed(2.0), 1e-4),
+        (lossy_press(), 5e-6),
+        (sliding(), 5e-7),
+        (telescoping(), 3e-4),
+        (driven(), 1e-4),
+        (Motion(two_modes(), 0.6, 0.04), 5e-6),
+    ],
+    ids=["linear", "quadratic", "losses", "sliding", "telescoping", "driven", "one blow"],
+)
+def test_second_order_in_the_step(motion: Motion, bound: float) -> None:
+    """Reference: other code, scipy's DOP853. Slope 2, and the error at 0.25 ms."""
+    errors = errors_in_the_step(motion, runge_kutta(motion), 2e-3 * 0.5 ** np.arange(4))
+    found = slopes(errors)
+    assert found[1:] == pytest.approx(2.0, abs=0.2)
+    assert errors[-1] < bound
+
+
+def test_a_pressed_boom_swings_in_its_pressed_modes() -> None:
+    """Reference: analytic, the eigenvalues of diag(ω²) + k Bᵀ B, at a step of a 50th of 1/ω."""
+    motion = pressed(1.0)
+    omega2, shapes = eigh(np.diag(motion.system.omega2) + 1.0e4 * ROWS.T @ ROWS)
+    assert (omega2 > 5.0 * motion.system.omega2).sum() >= 2
+    omega = np.sqrt(omega2)
+    run = FixedStep(0.02 / omega[-1])(motion)
+    swings = np.sin(omega * run.time[:, None]) / omega * (shapes.T @ motion.velocity)
+    expected = motion.position + swings @ shapes.T
+    assert run.data.attrs["contact_changes"] == 0
+    assert np.abs(run.states - expected).max() < 3e-4 * np.ptp(expected, axis=0).max()
+
+
+@pytest.mark.parametrize("damping", [0.0, 60.0])
+@pytest.mark.parametrize("step", [1e-4, 1e-2, 0.5])
+def test_free_flight_is_exact(step: float, damping: float) -> None:
+    """Reference: analytic, a parabola and swings about the rest, at any step."""
+    system = boom(rows=np.zeros((2, 4)), damping=np.array([0.0, damping, 0.0, 0.0]))
+    run = FixedStep(step)(Motion(system, 2.0, 0.5, velocity=THROWN))
+    time, omega, rest = run.time[:, None], system.omega[1:], system.load[1:] / system.omega2[1:]
+    decay = 0.5 * system.damping[1:]
+    beat = np.emath.sqrt(omega**2 - decay**2)
+    off = (THROWN[1:] - decay * rest) / beat
+    swings = np.exp(-decay * time) * (rest * np.cos(beat * time) - off * np.sin(beat * time))
+    fall = THROWN[0] * time + 0.5 * system.load[0] * time**2
+    expected = np.hstack([fall, rest - np.real(swings)])
+    np.testing.assert_allclose(run.states, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
+    """Reference: analytic, time reversibility; the load is the same both ways."""
+    start, system = np.array([0.02, -0.01]), with_rates(two_modes(exponent))
+    there = FixedStep(1e-3)(Motion(system, 1.8, 0.02, start))
+    place, speed = end_of(there)
+    back = FixedStep(1e-3)(Motion(system, 1.8, 0.02, place, -speed))
+    assert there.data.attrs["contact_changes"] == back.data.attrs["contact_changes"] >= 6
+    assert np.abs(back.states[::-1] - there.states).max() < 1e-9 * np.abs(there.states).max()
+    assert np.abs(end_of(back)[1]).max() < 1e-9 * np.abs(speed).max()
+
+
+def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
+    """Reference: external source, SDND101 of the Code_Aster validation manual.
+
+    100 kg on 1e4 N/m meet a stop of 1e6 N/m without gap at 1 m/s; analytic, the impulse.
+    """
+    stop = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=0.0).upper()
+    system = one_mass(100.0, stop, spring=1.0e4)
+    run = FixedStep(1e-4)(Motion(system, 0.04, 1.0e-3, velocity=np.array([10.0])))
+    assert float(run.data["contact_force_peak"].max()) == pytest.approx(9950.372, rel=1e-4)
+    impulse = 1.0e-3 * float(run.data["contact_force"].sum())
+    assert impulse == pytest.approx(200.0 * 1.0e6 / 1.01e6, rel=1e-4)
+
+
+def crossings(time: Array, y: Array, level: float) -> Array:
+    """Times at which y passes the level, by linear interpolation."""
+    (before,) = np.nonzero((y[:-1] > level) != (y[1:] > level))
+    part = (level - y[before]) / (y[before + 1] - y[before])
+    return np.asarray(time[before] + part * (time[before + 1] - time[before]))
+
+
+def test_falling_mass(one_mass: OneMass) -> None:
+    """Reference: external source, SDND108 of the Code_Aster validation manual.
+
+    1 kg falls from 0 at −1 m/s under 10 m/s² on a stop of 100 N/m at −2 m.
+    """
+    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
+    system = one_mass(1.0, stop, force=-10.0)
+    run = FixedStep(1e-3)(Motion(system, 1.2, 1.0e-3, velocity=np.array([-1.0])))
+    assert run.first_contact == pytest.approx(0.5403124, rel=1e-4)
+    passed = crossings(run.time, run.data["tip"].values, -2.0)
+    assert passed == pytest.approx([0.5403124, 0.8854562], rel=1e-4)
+    assert run.data.attrs["contact_changes"] == 2
+    assert float(run.data["contact_force"].max()) == 0.0
+
+
+def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
+    """Reference: analytic. Flights of 2Δ/v and presses of π √(m/k) on either side."""
+    law = PowerContact(stiffness=4.0e4, exponent=1.0, clearance=0.1, stiffness_below=9.0e4)
+    period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
+    motion = Motion(one_mass(1.0, law), 3.0 * period, period / 1e3, velocity=np.array([2.0]))
+    run = FixedStep(2e-5)(motion)
+    np.testing.assert_allclose(run.data["tip"][::1000], 0.0, atol=1e-5)
+    force = run.data["contact_force_peak"].values
+    assert force.max() == pytest.approx(2.0 * np.sqrt(4.0e4), rel=1e-4)
+    assert force.min() == pytest.approx(-2.0 * np.sqrt(9.0e4), rel=1e-4)
+    assert run.data.attrs["contact_changes"] == 12
+    assert run.first_contact == pytest.approx(0.05, rel=1e-6)
+    # Impulse: each press turns the momentum around.
+    impulse = np.maximum(run.data["contact_force"].values, 0.0).sum() * period / 1000.0
+    assert impulse == pytest.approx(3 * 4.0, rel=1e-6)
+
+
+def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
+    """Reference: analytic. A mass m at v sinks in by p = (3 m v² / 2 k)^⅓ under F = k p², after
+    Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, from energy and a Beta integral."""
+    stop = PowerContact(stiffness=1.0e6, exponent=2.0, clearance=0.0).upper()
+    depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
+    half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
+    motion = Motion(one_mass(100.0, stop), 2.0 * half, half, velocity=np.array([20.0]))
+    run = FixedStep(half / 1000.0)(motion)
+    assert run.data["tip"].values[1:] == pytest.approx([depth, 0.0], abs=1e-5 * depth)
+    assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 * depth**2, rel=1e-5)
+    np.testing.assert_allclose(half * run.data["contact_force"][1:, 0], 200.0, rtol=1e-5)
+
+
+@pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-5])
+@pytest.mark.parametrize(("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e13, 2.0)])
+def test_bouncing_ball_keeps_its_height(
+    one_mass: OneMass, stiffness: float, exponent: float, step: float
+) -> None:
+    """Reference: analytic. 1 kg falls 1 mm again and again on a hard floor, and comes up to where
+    it was, whether or not the step resolves the blow of 10 to 100 µs."""
+    floor = PowerContact(stiffness, exponent, clearance=1.0e-3).lower()
+    run = FixedStep(step)(Motion(one_mass(1.0, floor, force=-10.0), 3.0, 1e-3))
+    assert run.data.attrs["contact_changes"] > 60
+    tip = run.data["tip"].values
+    assert -1e-4 < tip[-200:].max() < 1e-12
+    assert tip.max() < 1e-12
+    flying = run.data["contact_energy"] == 0.0
+    total = run.data["kinetic_energy"] + 10.0 * (run.data["tip"])
+    assert np.abs(total.where(flying, drop=True)).max() < 1e-13
+
+
+@pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
+def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
+    """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
+    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
+    motion = Motion(one_mass(1.0, stop, force=-10.0), 1.0, 2.0e-2, velocity=np.array([-1.0]))
+    exact = (np.sqrt(41.0) - 1.0) / 10.0
+    found = FixedStep(step)(motion).first_contact
+    assert abs(found - exact) < 10.0 * step**2 / 8.0 / np.sqrt(41.0) + 1e-13
+
+
+def test_first_contact_is_that_of_the_first_row() -> None:
+    """Reference: analytic. Two rows close within one step; the second in the list does so first."""
+    system = replace(
+        boom(), laws=[POWER.behind(0.0105), POWER.behind(0.0102)], rows=np.eye(4)[[0, 0]],
+        load=np.zeros(4),
+    )  # fmt: skip
+    run = FixedStep(0.01)(Motion(system, 0.1, 0.01, velocity=np.eye(4)[0]))
+    assert run.first_contact == pytest.approx(0.0102, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("place", "speed", "first"), [(-0.1003, 1.0, 0.2003), (0.11, -0.1, 0.0), (0.0, 0.1, np.nan)]
+)
+def test_first_contact_late_at_once_or_never(
+    one_mass: OneMass, place: float, speed: float, first: float
+) -> None:
+    """Reference: analytic. A mass comes to a stop at 0.1 m, lets go of it, or stays away."""
+    system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0, clearance=0.1).upper())
+    run = FixedStep(3e-4)(Motion(system, 0.5, 0.01, np.array([place]), np.array([speed])))
+    assert run.first_contact == pytest.approx(first, rel=1e-6, nan_ok=True)
+    assert run.data.attrs["contact_changes"] == (0 if np.isnan(first) else 1)
+
+
+def test_units_do_not_matter() -> None:
+    """Reference: analytic. The same system in mm, t and s, before chaos sets in.
+
+    √t·mm are √1000 times as many as √kg·m; forces in N stay what they are.
+    """
+    si, scale = two_modes(), np.sqrt(1000.0)
+    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0, 1e3 * si.laws[0].clearance)
+    small = replace(
+        si, load=si.load * scale, rows=si.rows * scale, laws=[law.upper()],
+        observers={"first": Observer(np.array([scale, 0.0]))},
+    )  # fmt: skip
+    metres, millimetres = (AdaptiveStep()(Motion(s, 1.5, 0.01)) for s in (si, small))
+    assert metres.data.attrs["contact_changes"] >= 5
+    assert millimetres.data.attrs["substeps"] == metres.data.attrs["substeps"]
+    assert millimetres.first_contact == pytest.approx(metres.first_contact, rel=1e-9)
+    for name, factor in (("first", 1e3), ("gap", 1e3), ("contact_force", 1.0), ("work", 1e3)):
+        expected = factor * metres.data[name].values
+        error = np.abs(millimetres.data[name].values - expected).max()
+        assert error < 1e-9 * np.abs(expected).max(), name
+
+
+def test_damping_takes_what_the_ledger_says(one_mass: OneMass) -> None:
+    """Reference: analytic, the step response of a damped oscillator, at a step of a period."""
+    mass, spring, dashpot, force = 4.0, 100.0, 2.0, 30.0
+    decay, omega = dashpot / (2.0 * mass), np.sqrt(spring / mass - 0.0625)
+    system = one_mass(mass, spring=spring, dashpot=dashpot, force=force)
+    run = FixedStep(1.0)(Motion(system, 5.0, 1.0))
+    t, rest = run.time, force / spring
+    swing = np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
+    speed = rest * np.exp(-decay * t) * np.sin(omega * t) * (omega + decay**2 / omega)
+    place = rest * (1.0 - swing)
+    kinetic, strain, work = 0.5 * mass * speed**2, 0.5 * spring * place**2, force * place
+    found = {"tip": place, "kinetic_energy": kinetic, "strain_energy": strain, "work": work}
+    for name, expected in (found | {"damping_loss": work - kinetic - strain}).items():
+        np.testing.assert_allclose(run.data[name], expected, atol=1e-11)
+    assert run.data["damping_loss"].values[-1] > 3.0
+
+
+def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
+    """Reference: analytic. In the end all of the work not held at rest is dissipated."""
+    stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.1)
+    system = one_mass(4.0, stop, spring=100.0, dashpot=20.0, force=30.0)
+    run = AdaptiveStep()(Motion(system, 20.0, output_step=0.01))
+    depth = (30.0 - 10.0) / 1.01e4
+    end = run.data.isel(time=-1)
+    assert run.data.attrs["contact_changes"] >= 3
+    assert float(end["tip"]) == pytest.approx(0.1 + depth, rel=1e-6)
+    assert float(end["contact_force"][0]) == pytest.approx(1.0e4 * depth, rel=1e-6)
+    held = 0.5 * 100.0 * (0.1 + depth) ** 2 + 0.5 * 1.0e4 * depth**2
+    assert float(end["damping_loss"]) == pytest.approx(30.0 * (0.1 + depth) - held, rel=1e-6)
+
+
+def test_a_dashpot_hands_one_mode_the_speed_of_another() -> None:
+    """Reference: other code, Runge and Kutta's method. A mass at 1 m/s drags one at rest by a
+    dashpot across 0.02 mm to its stop, where it comes with 0.06 m/s.
+    """
+    system = GapSystem(
+        omega2=np.zeros(2),
+        load=np.zeros(2),
+        rows=np.array([[1.0, 0.0]]),
+        laws=[PowerContact(1.0e8, 1.0, clearance=2.0e-5)],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"tip": Observer(np.array([1.0, 0.0]))},
+        dashpots=10.0 * np.ones((1, 2)),
+    )
+    motion = Motion(system, 1.0e-3, 1.0e-5, velocity=np.array([0.0, 1.0]))
+    run, states = FixedStep(2e-6)(motion), runge_kutta(motion, 1e-6)
+    np.testing.assert_allclose(run.states, states, atol=1e-4 * np.abs(states[:, 0]).max())
+    assert run.first_contact > 5e-4
+
+
+def test_a_closed_contact_is_a_spring() -> None:
+    """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms, and
+    the impulse that momentum and loads ask for."""
+    weight, stiffness, rise, load = 10.0, 1.0e6, 0.0104, -5.0
+    ramp = Excitation(np.array([load]), Table((0.0, rise), (0.0, 1.0)))
+    system = GapSystem(
+        omega2=np.zeros(1),
+        load=np.array([-weight]),
+        rows=np.ones((1, 1)),
+        laws=[PowerContact(stiffness, 1.0, clearance=2.0e-3)],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)},
+        excitations=[ramp],
+    )
+    run = FixedStep(1e-5)(Motion(system, 0.2, 1.0e-3, equilibrium(system, system.load)))
+    time, omega = run.time, np.sqrt(stiffness)
+    since = np.maximum(time - rise, 0.0)
+    grown = (time - since - (np.sin(omega * time) - np.sin(omega * since)) / omega) / rise
+    rest = -2.0e-3 - weight / stiffness
+    np.testing.assert_allclose(run.data["tip"], rest + load / stiffness * grown, atol=1e-8)
+    impulse = np.where(time < rise, 0.5 * time**2 / rise, time - 0.5 * rise)
+    asked = 1.0e3 * (np.diff(load * impulse) - np.diff(run.data["speed"])) - weight
+    np.testing.assert_allclose(run.data["contact_force"][1:, 0], asked, atol=1e-8)
+
+
+def test_output_intervals_change_nothing() -> None:
+    """Reference: other code path, outputs ten times as far apart: means are of ten, peaks the
+    largest of them."""
+    motion = Motion(rubbing(*PRESSED, excitations=[SHAKEN]), 0.1, 1e-3, velocity=THROWN)
+    fine, coarse = (FixedStep(1e-3)(replace(motion, output_step=s)) for s in (1e-3, 1e-2))
+    np.testing.assert_allclose(fine.states[::10], coarse.states, atol=1e-11)
+    for name in ("contact_force", "friction_force"):
+        means = fine.data[name].values[1:].reshape(-1, 10, 2).mean(axis=1)
+        np.testing.assert_allclose(means, coarse.data[name][1:], rtol=1e-7, atol=1e-7)
+    peaks = np.abs(fine.data["contact_force_peak"].values[1:]).reshape(-1, 10, 2).max(axis=1)
+    np.testing.assert_allclose(peaks, np.abs(coarse.data["contact_force_peak"][1:]), rtol=1e-6)
+
+
+def test_complains_of_what_the_ledger_misses() -> None:
+    """Reference: by hand. 0.3 J of 2 J put in are not there."""
+    energies = np.array([np.zeros(7), [1.0, 0.5, 0.2, 2.0, 0.0, 0.0, 0.0]])
+    check_energy(energies, bound=0.16)
+    message = "the energy residual is 0.15 of the work done, above the bound of 1e-06"
+    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
+        check_energy(energies)
+    message = "the motion is not finite; check the loads and the stiffnesses"
+    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
+        check_energy(energies + np.inf)
+
+
+def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
+    """Reference: analytic. A boom may have segments without load, whose gaps close at no speed."""
+    run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1))
+    assert not run.states.any()
+    assert np.isnan(run.first_contact)
