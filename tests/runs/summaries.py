@@ -23,7 +23,6 @@ _MODEL = {
     "peak_contact_force": 441_005.9,
     "energy_residual": 5.6e-5,
     "seconds": {"build": 0.1, "motion": 0.2},
-    "refused_steps": [],
 }
 
 

@@ -119,7 +119,7 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
     table = printed.getvalue().partition("Distances from kantorovich-5")[2]
     first = [line.split()[0] for line in table.splitlines() if line.strip()]
     assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-tied"]
-    assert "twice the step moves the tip of kantorovich-5 by" in " ".join(table.split())
+    assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
 
 
 def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan) -> None:
@@ -128,9 +128,9 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     assert data["compared_until"].dims == ("joint.play",)
     assert data["compared_until"].values.tolist() == [0.9, 0.9]
     single = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[1:2]))
-    doubled = single.summary.models["kantorovich-5"].step_doubling
+    doubled = single.summary.models["kantorovich-5"].step_error
     assert doubled is not None
-    there = data["step_doubling"].sel({"joint.play": 0.014, "model": "kantorovich-5"})
+    there = data["step_error"].sel({"joint.play": 0.014, "model": "kantorovich-5"})
     assert float(there) == pytest.approx(doubled)
     console = Console(file=io.StringIO(), width=80, legacy_windows=False)
     output.show(data, "kantorovich-5", console)
@@ -138,7 +138,7 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     assert 0.0 < doubled < 5.0e-5
     assert console.file.getvalue().splitlines()[-2:] == [
         "tips are compared until 0.9 s",
-        "twice the step moves the tip of kantorovich-5 by 0 %",
+        "the time step changes the tip of kantorovich-5 by 0 %",
     ]
 
 

@@ -10,7 +10,6 @@ from time import sleep
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from beam_model.segment_model import gap_system
@@ -23,13 +22,14 @@ from runs.pipeline import run
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
-from tests.system.run_folder import protractile, trajectories
+from tests.system.run_folder import protractile
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
 RUN = "run", "case.toml", "--models", "kantorovich-4,kantorovich-5", "--out", "out"
-# Of kantorovich-4, whose contacts last for less.
-TOO_LONG, A_BIT_LONG = "1e-3", "5e-4"
+# Of kantorovich-4, which would take days.
+TOO_SHORT = "1e-12"
+WHY = "a step of 1e-12 s makes 3e+11 steps; make it longer"
 
 
 @pytest.fixture(autouse=True)
@@ -61,47 +61,27 @@ def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def test_the_others_are_written_and_it_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    write_case(TOO_LONG)
-    assert protractile(*RUN) == 3
+    write_case(TOO_SHORT)
+    assert protractile(*RUN, "--large") == 3
     out, err = capsys.readouterr()
-    assert err.startswith("protractile: case.toml: model[1]: the energy residual is ")
-    assert err.endswith(" at a step of 0.00025 s; halve the step\n")
-    assert err.count("\n") == 1
-    assert "failed: kantorovich-4: the energy residual is " in out
+    assert err == f"protractile: case.toml: model[1]: {WHY}\n"
+    assert f"failed: kantorovich-4: {WHY}" in out
     results = Results.load(Path("out"))
     assert results.trajectories["model"].values.tolist() == ["kantorovich-5"]
-    why = results.summary.failures["kantorovich-4"]
     first = judge(results)[0]
     assert (first.id, first.verdict) == ("S1", "undecided")
-    assert first.why == f"'kantorovich-4' failed: {why}."
+    assert first.why == f"'kantorovich-4' failed: {WHY}."
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert ">failed</td>" in page
     assert protractile("report", "out") == 0
 
 
 def test_nothing_is_written_where_all_fail(capsys: pytest.CaptureFixture[str]) -> None:
-    write_case(TOO_LONG)
-    assert protractile("run", "case.toml", "--models", "kantorovich-4", "--out", "out") == 3
+    write_case(TOO_SHORT)
+    run = "run", "case.toml", "--models", "kantorovich-4", "--out", "out", "--large"
+    assert protractile(*run) == 3
     assert capsys.readouterr().err.count("\n") == 1
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
-
-
-def test_a_step_that_loses_energy_is_halved(capsys: pytest.CaptureFixture[str]) -> None:
-    """Reference: the same with a quarter of the step from the beginning."""
-    write_case("1.25e-4")
-    assert protractile(*RUN[:-1], "expected") == 0
-    write_case(A_BIT_LONG)
-    capsys.readouterr()
-    assert protractile(*RUN) == 0
-    out, err = capsys.readouterr()
-    assert err.startswith(
-        "protractile: case.toml: model[1]: took 4 times as many steps, since the energy residual "
-    )
-    assert "caution: kantorovich-4 took 4 times as many steps as chosen: " in out
-    summary = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["models"]
-    assert summary["kantorovich-4"]["step"] == 1.25e-4
-    assert [len(model["refused_steps"]) for model in summary.values()] == [2, 0]
-    assert np.array_equal(trajectories(Path("out"))["tip"], trajectories(Path("expected"))["tip"])
 
 
 def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch) -> None:

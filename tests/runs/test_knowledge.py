@@ -168,7 +168,7 @@ def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
     assert plain.text.rows[0] == ("kantorovich-4", "4.2", steps, changes)
     assert statements(plain) == ("S10",)
     assert statements(step_table(results(friction=0.2))) == ("S8", "S10")
-    more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_doubling=0.0123))
+    more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123))
     assert [row[-2:] for row in more.text.rows] == [
         ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
     ]  # fmt: skip

@@ -43,7 +43,7 @@ def test_what_is_no_number_is_null() -> None:
     found = json.loads(str(summary_of({"boom": model})))["models"]["boom"]
     assert (found["first_contact"], found["first_peak"]["tip"]) == (None, [None, None])
     assert found["mesh_error"] is None
-    assert "step_doubling" not in found
+    assert "step_error" not in found
 
 
 @pytest.mark.parametrize(

@@ -259,7 +259,7 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
         "drive_speed": "m/s",
         "peak_contact_force": "N",
         "energy_residual": "1",
-        "step_doubling": "1",
+        "step_error": "1",
     }
     with open("out/sweep.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

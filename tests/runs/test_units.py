@@ -148,7 +148,7 @@ def test_beams_do_not_know_the_units(
     """Reference: this model in SI, to 1e-9 of the range, with friction and through presses."""
     boom = flat_boom(friction=0.2)
     runs = [
-        FixedStep(5.0e-6)(Motion(model(*data), 1.0))
+        FixedStep(1.0e-4)(Motion(model(*data), 1.0))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
     ]
     agree(*runs)
@@ -172,7 +172,7 @@ def test_shells_do_not_know_the_units(line: str) -> None:
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
     runs = [
-        FixedStep(2.0e-6)(Motion(_shell(line)(*data), 0.6))
+        FixedStep(1.0e-4)(Motion(_shell(line)(*data), 0.6))
         for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
     ]
     agree(*runs)
