@@ -135,11 +135,11 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
     console = Console(file=io.StringIO(), width=80, legacy_windows=False)
     output.show(data, "kantorovich-5", console)
     assert isinstance(console.file, io.StringIO)
-    assert 0.0 < doubled < 5.0e-5
-    assert console.file.getvalue().splitlines()[-2:] == [
-        "tips are compared until 0.9 s",
-        "the time step changes the tip of kantorovich-5 by 0 %",
-    ]
+    assert 0.0 < doubled < 1.0e-3
+    until, changes = console.file.getvalue().splitlines()[-2:]
+    assert until == "tips are compared until 0.9 s"
+    assert changes.startswith("the time step changes the tip of kantorovich-5 by 0.0")
+    assert changes.endswith(" % of its range")
 
 
 def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
