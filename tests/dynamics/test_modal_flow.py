@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Between contacts the motion of every mode is exact, whatever its damping and the step."""
+"""The motion of every mode is exact, whatever its damping and the step."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from dynamics.integrators.splitting import integrate
+from scipy.integrate import quad
 from scipy.linalg import expm
 
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.kernels.modal_flow import ModalFlow, tabulate
+from dynamics.integrator import FixedStep
+from dynamics.kernels.modal_flow import compliance, finish_flow, free_flow, modal_flow
 from dynamics.motion import Motion
 
 # ω² in rad²/s², c in 1/s, load in N/√kg
@@ -44,84 +45,76 @@ def modes() -> GapSystem:
     )
 
 
-def exact(omega2: float, damping: float, load: float, step: float) -> dict[str, float]:
-    """The entries of a flow of one mode, from scipy's matrix exponential.
-
-    Over (a, v, load, ramp / step, mean / step²), the last three the load, one that grows from 0 to
-    1, and the integral of that.
-    """
-    generator = np.zeros((5, 5))
-    generator[0, 1] = generator[2, 3] = generator[3, 4] = 1.0
-    generator[1] = [-omega2, -damping, 1.0, 0.0, 0.0]
-    (aa, av, rise, ramp, mean), (va, vv, _, _, _), _, _, _ = expm(generator * step)
-    return {
-        "aa": aa, "av": av, "ap": rise * load, "va": va, "vv": vv, "vp": av * load,
-        "rise": rise, "ramp": ramp / step, "mean": mean / step**2,
-    }  # fmt: skip
-
-
-def tabulated(system: GapSystem, step: float) -> ModalFlow:
-    flow = np.zeros((11, system.num_modes))
-    tabulate(flow, system.omega2, system.load, system.damping, step)
-    return ModalFlow(*flow[:9])
-
-
-@pytest.mark.parametrize("flow_over", [ModalFlow.over, tabulated])
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])
-def test_flow_is_the_matrix_exponential(
-    flow_over: Callable[[GapSystem, float], ModalFlow], step: float
-) -> None:
-    """Reference: other code, scipy.linalg.expm.
+def test_flow_is_the_matrix_exponential(step: float) -> None:
+    """Reference: other code, scipy.linalg.expm over (a, v, load, ramp, mean).
 
     Each entry is held against the size that it has without decay, so that those that are
     small because the step is small are not passed by.
     """
-    flow = flow_over(modes(), step)
-    for k, (name, numbers) in enumerate(MODES.items()):
-        omega = np.sqrt(abs(numbers[0]))
-        reach = min(step, 1.0 / omega) if omega > 0.0 else step
-        size = {
-            "aa": 1.0, "av": reach, "ap": 3.0 * reach**2, "va": omega**2 * reach, "vv": 1.0,
-            "vp": 3.0 * reach, "rise": reach**2, "ramp": reach**2, "mean": reach**2,
+    flow = modal_flow(modes(), np.array([2.0 * step, step]))
+    for k, (name, (omega2, damping, _)) in enumerate(MODES.items()):
+        generator = np.zeros((5, 5))
+        generator[0, 1] = generator[2, 3] = generator[3, 4] = 1.0
+        generator[1] = [-omega2, -damping, 1.0, 0.0, 0.0]
+        _, impulse, rise, ramp, drift = expm(generator * step)[0]
+        reach = min(step, 1.0 / np.sqrt(abs(omega2))) if omega2 else step
+        expected = {
+            "impulse": (impulse, reach), "rise": (rise, reach**2),
+            "ramp": (ramp / step, reach**2), "drift": (drift / step**2, reach**2),
         }  # fmt: skip
-        for entry, expected in exact(*numbers, step).items():
-            error = abs(getattr(flow, entry)[k] - expected)
-            assert error <= 1e-11 * size[entry], (name, entry)
+        for entry, (value, size) in expected.items():
+            assert abs(getattr(flow, entry)[1, k] - value) <= 1e-11 * size, (name, entry)
 
 
-@pytest.mark.parametrize("flow_over", [ModalFlow.over, tabulated])
 @pytest.mark.parametrize("omega2", [0.0, 40.0])
 @pytest.mark.parametrize("damping", [0.0, 1.0e-9, 0.7, 9.0])
 def test_load_response_of_the_shortest_steps(
-    one_mass: Callable[..., GapSystem],
-    omega2: float,
-    damping: float,
-    flow_over: Callable[[GapSystem, float], ModalFlow],
+    one_mass: Callable[..., GapSystem], omega2: float, damping: float
 ) -> None:
-    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of ap under a unit load,
-    h²/6 − c h³/24 + (c² − ω²) h⁴/120 under one that grows, and the mean of the latter.
+    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of r, h²/6 − c h³/24 +
+    (c² − ω²) h⁴/120 of p, and so on of u.
 
     At the steps that contacts need, a difference of two numbers near one leaves few digits of
     it, and a relative error of it acts as one of the load.
     """
-    mode = one_mass(1.0, spring=omega2, dashpot=damping, force=1.0)
-    for h in (1.0e-4, 1.0e-5, 1.0e-6):
-        series = h**2 / 2.0 - damping * h**3 / 6.0 + (damping**2 - omega2) * h**4 / 24.0
-        growing = h**2 / 6.0 - damping * h**3 / 24.0 + (damping**2 - omega2) * h**4 / 120.0
-        drift = h**2 / 24.0 - damping * h**3 / 120.0 + (damping**2 - omega2) * h**4 / 720.0
-        flow = flow_over(mode, h)
-        assert flow.ap == pytest.approx(series, rel=1e-9, abs=0.0)
-        assert flow.ramp == pytest.approx(growing, rel=1e-9, abs=0.0)
-        assert flow.mean == pytest.approx(drift, rel=1e-9, abs=0.0)
+    mode = one_mass(1.0, spring=omega2, dashpot=damping)
+    flow = modal_flow(mode, times := np.array([1.0e-4, 1.0e-5, 1.0e-6]))
+    for found, first in ((flow.rise, 2), (flow.ramp, 6), (flow.drift, 24)):
+        n = {2: 2, 6: 3, 24: 4}[first]
+        series = times**2 / first * (
+            1.0 - damping * times / (n + 1) + (damping**2 - omega2) * times**2 / (n + 1) / (n + 2)
+        )  # fmt: skip
+        np.testing.assert_allclose(found[:, 0], series, rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_work_and_loss_of_a_step(name: str) -> None:
+    """Reference: other code, scipy's quad over the exact motion; by energy, the two of them."""
+    omega2, c, load = MODES[name]
+    system, h, change = modes(), 0.3 if omega2 < 1e6 else 3e-4, np.full(len(MODES), 0.8)
+    start, speed, force = (np.full(len(MODES), x) for x in (0.2, -0.7, load))
+    flow, k = modal_flow(system, np.array([h])), list(MODES).index(name)
+    generator = np.array([[0, 1, 0, 0], [-omega2, -c, 1, 0], [0, 0, 0, 0.8 / h], np.zeros(4)])
+
+    def state(time: float) -> np.ndarray:
+        return np.asarray(expm(generator * time) @ [0.2, -0.7, load - 0.4, 1.0])
+
+    a, v, end = start.copy(), speed.copy(), np.zeros(len(MODES))
+    free_flow(a, v, flow, 0, force, change, end)
+    one = np.eye(len(MODES))[k]
+    a, v = 0.0 * start + one * start, one * speed
+    work, lost = finish_flow(a, v, flow, 0, one * force, one * change, one * end, one * force)
+    assert (end[k], v[k]) == pytest.approx(tuple(state(h)[:2]), rel=1e-9)
+    power = quad(lambda t: state(t)[1] * state(t)[2], 0.0, h, epsabs=1e-13)[0]
+    taken = quad(lambda t: c * state(t)[1] ** 2, 0.0, h, epsabs=1e-13)[0]
+    assert (work, lost) == pytest.approx((power, taken), rel=1e-7, abs=1e-11)
 
 
 def test_steps_add_up() -> None:
     """Reference: analytic, (flow over h)ⁿ = flow over n h; here by the integrator itself."""
-    one = integrate(Motion(modes(), 2.0, output_step=0.5))
-    many = integrate(Motion(modes(), 2.0, output_step=0.5), step=1.0e-4)
-    assert one.data.attrs["steps"] == 4
-    # 5000 steps an output, nothing to touch: 9 times 512, 6 times 64 and once 8 at once.
-    assert many.data.attrs["steps"] == 4 * (9 + 6 + 1)
+    one, many = (FixedStep(h)(Motion(modes(), 2.0, output_step=0.5)) for h in (0.5, 1.0e-4))
+    assert (one.data.attrs["steps"], many.data.attrs["steps"]) == (4, 20_000)
     for name in MODES:
         size = float(np.abs(one.data[name]).max())
         np.testing.assert_allclose(many.data[name], one.data[name], rtol=0.0, atol=1e-9 * size)
@@ -130,4 +123,13 @@ def test_steps_add_up() -> None:
 def test_heavily_damped_mode_creeps(one_mass: Callable[..., GapSystem]) -> None:
     """Reference: analytic. For c ≫ ω the mode creeps as exp(−ω²t/c)."""
     system = one_mass(1.0, spring=1.0e4, dashpot=1.0e5)
-    assert ModalFlow.over(system, 1.0).aa == pytest.approx(np.exp(-0.1), rel=1e-5)
+    run = FixedStep(1.0)(Motion(system, 1.0, 1.0, np.ones(1)))
+    assert run.states[-1, 0] == pytest.approx(np.exp(-0.1), rel=1e-5)
+
+
+def test_compliance_is_the_response_of_rows_to_forces() -> None:
+    """Reference: analytic, E diag(r) Rᵀ."""
+    random = np.random.default_rng(1)
+    ends, rows = random.normal(size=(2, 3, len(MODES)))
+    rise = modal_flow(modes(), np.array([0.1])).rise[0]
+    np.testing.assert_allclose(compliance(ends, rows, rise), ends * rise @ rows.T, rtol=1e-12)
