@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The forces of a step satisfy the laws of all rows; a step without such forces is halved."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics import time_step
+from dynamics.arrays import Array
+from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact_table import TableContact
+from dynamics.contact_term import TERM
+from dynamics.failure import NumericsError
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import FixedStep
+from dynamics.kernels.row_forces import row_laws, row_problem, solve_rows
+from dynamics.kernels.terms import discrete_gradient
+from dynamics.motion import Motion
+from dynamics.sided_contact import SidedContact
+
+# What round-off leaves of a law, as a part of the largest force.
+TOLERANCE = 1.0e-10
+
+LAWS: list[ContactLaw] = [
+    PowerContact(1.0e4, 1.0, 1.0e-3),
+    PowerContact(1.0e7, 2.0, 1.0e-3, damping=0.3),
+    PowerContact(1.0e5, 1.5, 0.0).upper(),
+    TableContact((1.0e-4, 1.0e-3), (20.0, 300.0), 1.0e-3),
+    SidedContact(PowerContact(1.0e4, 1.0, 1.0e-3), PowerContact(1.0e9, 3.0, 2.0e-3)),
+    PowerContact(1.0e4, 1.0, -1.0e-3),
+]
+
+
+def random_system(random: np.random.Generator) -> GapSystem:
+    """Contacts, friction rows and dashpots in any numbers, over fewer or more modes than rows."""
+    n, m, f, d = random.integers((3, 1, 0, 0), (20, 7, 7, 4))
+    pressing = [tuple(np.flatnonzero(random.random(m) < 0.5).tolist()) for _ in range(f)]
+    return GapSystem(
+        omega2=random.uniform(0.0, 1e4, n),
+        load=np.zeros(n),
+        rows=random.normal(size=(m, n)),
+        laws=[LAWS[k] for k in random.integers(0, len(LAWS), m)],
+        station_of_row=np.zeros(m, dtype=np.int64),
+        stations=[0.0],
+        observers={},
+        dashpots=random.normal(size=(d, n)) * 10.0 ** random.uniform(-1.0, 2.0),
+        friction_rows=random.normal(size=(f, n)),
+        frictions=[
+            DryFriction(random.uniform(0.0, 0.5), 0, random.choice([0.0, 5.0]), rows)
+            for rows in pressing
+        ],
+    )
+
+
+def contact_force(law: ContactLaw, before: float, after: float, time: float) -> float:
+    """The mean force of a step: the energy over the way, and damping at its rate."""
+    total = 0.0
+    for one in (law.one_sided(1), law.one_sided(-1)):
+        if one is not None and after != before:
+            gained = float(one.energy(np.array(after))) - float(one.energy(np.array(before)))
+            side = 1.0 if one.one_sided(1) is not None else -1.0
+            rate = side * (after - before) / time
+            total += gained / (after - before) * max(0.0, 1.0 + law.damping * rate)
+    return total
+
+
+def violations(
+    system: GapSystem, force: Array, start: Array, end: Array, slip_force: Array, time: float
+) -> Array:
+    """By how many N each row breaks its law. ``slip_force`` is the force that its way asks for."""
+    m, f = len(system.laws), len(system.frictions)
+    pressed, rubbed, dragged = np.split(force, [m, m + f])
+    contacts = [
+        contact_force(law, *ends, time) - found
+        for law, found, *ends in zip(system.laws, pressed, start, end, strict=False)
+    ]
+    found = [*contacts]
+    for friction, own, asked in zip(system.frictions, rubbed, slip_force[m:], strict=False):
+        bound = friction.coefficient * (
+            friction.normal_force + np.abs(pressed[list(friction.pressed_by)]).sum()
+        )
+        # Coulomb's law as a projection: f = P(f + s/C) onto what the bound allows.
+        found.append(own - np.clip(own + asked, -bound, bound))
+    return np.array([*found, *((end - start)[m + f :] / time - dragged)])
+
+
+def test_random_steps_meet_their_laws() -> None:
+    """Reference: analytic, each contact's energy difference, Coulomb's law and the dashpots' rate,
+    of 400 random systems, states and steps; nearly all steps are solved at once."""
+    random, solved = np.random.default_rng(5), 0
+    for _ in range(400):
+        system, time = random_system(random), 10.0 ** random.uniform(-5.0, -2.0)
+        stacked = np.concatenate([system.rows, system.friction_rows, system.dashpots])
+        compliance = 0.5 * time**2 * stacked @ stacked.T
+        start = 2.0e-3 * random.normal(size=len(stacked))
+        problem = row_problem(len(stacked), len(system.frictions))
+        problem.free[:] = start + time * stacked @ random.normal(size=system.num_modes)
+        if not solve_rows(row_laws(system), problem, compliance, start, time):
+            continue
+        solved += 1
+        end = problem.free - compliance @ problem.force
+        asked = (end - start) / np.diag(compliance)
+        off = violations(system, problem.force, start, end, asked, time)
+        # A way that round-off hides tells no force.
+        noise = 1e-15 * np.abs(problem.free).max() / np.diag(compliance).min()
+        assert np.abs(off).max() <= TOLERANCE * np.abs(problem.force).max() + noise
+    assert solved > 390
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0, 2.7])
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [(0.0, 3e-3), (3e-3, 0.0), (2e-3, 3e-3), (2e-3, 2.000000002e-3), (2e-3, 2e-3), (0.0, 5e-4)],
+)
+def test_the_discrete_gradient(exponent: float, before: float, after: float) -> None:
+    """Reference: analytic, ΔV/Δy, and the force itself where nothing moves; its slope by central
+    differences where it is exact."""
+    term = np.array([(0, -1.0, 1.0e6, 1.0e-3, exponent)], TERM)[0]
+    law = PowerContact(1.0e6, exponent, 1.0e-3).lower()
+    mean, slope = discrete_gradient(term, -before, -after)
+    if abs(after - before) > 1e-4:
+        gained = law.energy(np.array([-before, -after])) @ [-1.0, 1.0]
+        assert mean == pytest.approx(gained / (before - after), rel=1e-12)
+        h = 1e-8
+        near = [discrete_gradient(term, -before, -after + side * h)[0] for side in (-1, 1)]
+        assert slope == pytest.approx((near[1] - near[0]) / (2.0 * h), rel=1e-5, abs=1e-9)
+    else:
+        assert mean == pytest.approx(float(law.force(np.array(-before))), rel=3e-8)
+        assert slope > 0.0
+
+
+def wedge(friction: float) -> GapSystem:
+    """A block whose friction row also closes its contact: the more it rubs, the more it presses."""
+    rows = np.array([[1.0, 0.0], [0.0, 1.0]])
+    tilted = np.array([[-0.9, 1.0], [0.9, 1.0]])
+    return GapSystem(
+        omega2=np.array([0.0, 100.0]),
+        load=np.array([30.0, 50.0]),
+        rows=rows,
+        laws=[PowerContact(1.0e9, 1.0, 1.0e-4)] * 2,
+        station_of_row=np.array([0, 0]),
+        stations=[0.0],
+        observers={"tip": Observer(np.ones(2))},
+        friction_rows=tilted,
+        frictions=[DryFriction(friction, 0, 1.0, (0, 1))] * 2,
+    )
+
+
+@pytest.mark.parametrize("friction", [0.3, 2.0, 20.0])
+def test_steps_are_halved_until_their_forces_converge(friction: float) -> None:
+    """Reference: analytic, the balance of energy and Coulomb's bound, by some more steps."""
+    run = FixedStep(1e-2)(Motion(wedge(friction), 1.0, 1e-2, velocity=np.array([0.4, -0.7])))
+    assert 100 < run.data.attrs["steps"] < 150
+    assert run.energy_residual < 1e-11
+    force = np.abs(run.data["friction_force"].values[1:, 0])
+    bound = friction * 2.0 * (1.0 + 2.0 * np.abs(run.data["contact_force_peak"].values[1:, 0]))
+    assert (force <= bound * (1.0 + 1e-9)).all()
+
+
+def test_forces_that_never_converge_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: by hand, the step that is left, and what to do."""
+    monkeypatch.setattr(time_step, "_HALVINGS", 0)
+    message = (
+        "contact and friction forces do not converge even in steps of 0.01 s; make the contact "
+        "softer"
+    )
+    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
+        FixedStep(1e-2)(Motion(wedge(0.3), 1.0, 1e-2, velocity=np.array([0.4, -0.7])))
+
+
+def test_rows_that_depend_on_each_other_share_the_load() -> None:
+    """Reference: other code path, one row. Two equal contacts of half the stiffness, and two equal
+    friction rows of half the force, move as one of each."""
+    one = wedge(0.3)
+    one = replace(
+        one, rows=one.rows[1:], laws=one.laws[1:], station_of_row=np.array([0]),
+        friction_rows=one.friction_rows[:1], frictions=[DryFriction(0.3, 0, 8.0, (0,))],
+    )  # fmt: skip
+    two = replace(
+        one, rows=one.rows[[0, 0]], laws=[one.laws[0].shared(0.5)] * 2,
+        station_of_row=np.array([0, 0]), friction_rows=one.friction_rows[[0, 0]],
+        frictions=[DryFriction(0.3, 0, 4.0, (0,)), DryFriction(0.3, 0, 4.0, (1,))],
+    )  # fmt: skip
+    runs = [
+        FixedStep(1e-4)(Motion(s, 0.1, 1e-3, velocity=np.array([0.4, 0.7]))) for s in (one, two)
+    ]
+    for name in ("tip", "contact_force", "friction_force"):
+        expected = runs[0].data[name].values
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(runs[1].data[name], expected, atol=1e-8 * size)
+    assert runs[0].data["friction_loss"][-1] > 0.0
