@@ -11,6 +11,8 @@ section, which share the nodes of its outline with the walls: there an edge has 
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -162,12 +164,27 @@ def _merge_places(values: Iterable[float]) -> list[float]:
 @contextmanager
 def _gmsh_model() -> Iterator[None]:
     gmsh.initialize(interruptible=False)
+    _restore_signal_handlers()
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.add("segment")
         yield
     finally:
         gmsh.finalize()
+
+
+def _restore_signal_handlers() -> None:
+    """Install Python's signal handlers again: gmsh starts PETSc, which resets them.
+
+    Without them SIGTERM and a reader of the output that leaves early would kill the process.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        # Python sets handlers in its main thread alone.
+        return
+    for number in signal.valid_signals():
+        handler = signal.getsignal(number)
+        if handler not in (None, signal.SIG_DFL):
+            signal.signal(number, handler)
 
 
 class _Ring(NamedTuple):

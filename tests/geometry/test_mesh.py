@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import resource
+import signal
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -322,3 +323,22 @@ def test_refuses_a_segment_without_length(breaks: dict[str, float]) -> None:
     message = "a segment needs breaks at two places at least, its ends"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         mesh_segment(BOX, breaks, 0.2)
+
+
+def _signals(name: str) -> int:
+    """A mask of this process's signals, as Linux shows it."""
+    status = Path("/proc/self/status").read_text(encoding="utf-8")
+    (line,) = (line for line in status.splitlines() if line.startswith(f"{name}:"))
+    return int(line.split()[1], 16)
+
+
+def test_meshing_keeps_signal_handlers() -> None:
+    """Reference: by construction. gmsh starts PETSc, which resets SIGTERM and SIGPIPE."""
+    terminate, pipe = (1 << (number - 1) for number in (signal.SIGTERM, signal.SIGPIPE))
+    before = signal.signal(signal.SIGTERM, lambda *_: None)
+    try:
+        mesh_segment(BOX, BREAKS, 1.0)
+        assert _signals("SigCgt") & terminate
+        assert _signals("SigIgn") & pipe
+    finally:
+        signal.signal(signal.SIGTERM, before)
