@@ -89,6 +89,24 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
     assert list(tmp_path.iterdir()) == []
 
 
+def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
+    """Whether the next line that a process says of its progress is of a stage."""
+    return lambda process: stage in (process.stderr.readline() if process.stderr else "")
+
+
+def test_sigterm_ends_a_run_that_has_meshed_a_shell(tmp_path: Path) -> None:
+    """Reference: by construction. gmsh resets the handler of SIGTERM."""
+    process = start(
+        tmp_path, "run", COARSE, "--models", "shell", "--no-cache", "--mesh-size", "0.05"
+    )
+    wait_until(tells("shell (1 of 1): "), process)
+    process.terminate()
+    out, err = process.communicate(timeout=60)
+    assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
+    assert process.returncode == 128 + signal.SIGTERM
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("number", "all_hear_it"), [(signal.SIGINT, True), (signal.SIGTERM, False)]
 )

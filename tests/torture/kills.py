@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Commands killed at random moments, with all their processes, and run again.
+"""Commands killed at random moments, with all their processes, and run again; SIGTERM to others.
 
 What was there before stays, or all is there that is new. The next run leaves what an undisturbed
 one leaves, to the last byte, and nothing else beside it.
@@ -20,7 +20,9 @@ from pathlib import Path
 import numpy as np
 
 from runs import CASES
+from tests.fuzz.contract import PROGRESS
 from tests.torture.shared_cache import COMMAND
+from tests.unprinted import ONE_BLANK_FIGURE
 
 Row = tuple[str, int, int, str]
 
@@ -34,6 +36,10 @@ _COMMAND = sys.executable, "-c", COMMAND
 _RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
 
 # Models and what is varied of each command.
+_COLD_SHELL = (
+    *(sys.executable, "-c", f"{ONE_BLANK_FIGURE}\nfrom protractile.__main__ import main\nmain()\n"),
+    *("run", "case.toml", "--models", "shell", "--mesh-size", "0.1"),
+)
 _BEAMS = "kantorovich-4,beam-fe-tied"
 COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
     ("run", (*_COMMAND, "run", "case.toml", "--models", _BEAMS)),
@@ -48,8 +54,16 @@ COMMANDS: Sequence[tuple[str, Sequence[str]]] = (
 )
 
 
-def rows(
-    folder: Path, tries: int = 20, commands: Sequence[tuple[str, Sequence[str]]] = COMMANDS
+def rows(folder: Path, tries: int = 20) -> Iterator[Row]:
+    """All rows of this campaign, see :func:`killed` and :func:`terminated`."""
+    yield from killed(folder, tries)
+    place = folder / "terminated"
+    place.mkdir()
+    yield terminated(place, tries)
+
+
+def killed(
+    folder: Path, tries: int, commands: Sequence[tuple[str, Sequence[str]]] = COMMANDS
 ) -> Iterator[Row]:
     """What killed commands leave; a breach is a loss, a rest or a difference.
 
@@ -88,6 +102,58 @@ def rows(
         yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
 
 
+def terminated(place: Path, tries: int) -> Row:
+    """SIGTERM to runs that mesh and reduce a shell; a breach leaves something, or says other words.
+
+    Args:
+        place: an empty folder.
+        tries: number of runs.
+    """
+    random = np.random.default_rng(_SEED)
+    _write_case(place, 0.1)
+    # The first one compiles besides.
+    assert _start(place, _COLD_SHELL).wait() == 0
+    process, begin = _cold_shell(place), time.monotonic()
+    assert process.communicate()
+    assert process.returncode == 0
+    lasts = time.monotonic() - begin
+    breaches = 0
+    for moment in random.uniform(0.0, lasts, tries):
+        process = _cold_shell(place)
+        time.sleep(moment)
+        process.terminate()
+        lines = process.communicate()[1].decode().splitlines()
+        said = [line for line in lines if not PROGRESS.fullmatch(line)]
+        rests = [path for path in place.rglob("*") if _IN_THE_MAKING in path.name]
+        interrupted = (128 + signal.SIGTERM, ["protractile: interrupted"])
+        # A run that has written everything may end, by itself or while Python takes leave.
+        whole = (place / "out").exists() and (process.returncode, said) in (
+            (0, []),
+            (-signal.SIGTERM, []),
+        )
+        breaches += not (whole or (process.returncode, said) == interrupted) or bool(rests)
+    return "a cold shell run, SIGTERM", tries, breaches, "one line, exit 143, nothing left"
+
+
+def _cold_shell(place: Path) -> subprocess.Popen[bytes]:
+    """A run of a shell that nothing is known of, from when it listens to SIGTERM on."""
+    for name in ("out", "cache"):
+        shutil.rmtree(place / name, ignore_errors=True)
+    process = _start(place, _COLD_SHELL, subprocess.PIPE)
+    while process.poll() is None and not _listens(process.pid):
+        time.sleep(0.005)
+    return process
+
+
+def _listens(pid: int) -> bool:
+    """Whether a process has a handler for SIGTERM."""
+    with suppress(OSError):
+        status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+        (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
+        return bool(int(caught.split()[1], 16) & 1 << (signal.SIGTERM - 1))
+    return False
+
+
 def _write_case(place: Path, duration: float) -> None:
     """The coarse case for as long."""
     text = _COARSE.read_text(encoding="utf-8")
@@ -95,7 +161,9 @@ def _write_case(place: Path, duration: float) -> None:
     (place / "case.toml").write_text(text, encoding="utf-8")
 
 
-def _start(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
+def _start(
+    place: Path, command: Sequence[str], err: int = subprocess.DEVNULL
+) -> subprocess.Popen[bytes]:
     """A command in a session of its own."""
     (place / "tmp").mkdir(exist_ok=True)
     own = {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
@@ -106,7 +174,7 @@ def _start(place: Path, command: Sequence[str]) -> subprocess.Popen[bytes]:
         cwd=place,
         env=outside | own,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=err,
         start_new_session=True,
     )
 
