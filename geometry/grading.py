@@ -60,6 +60,19 @@ class Spot:
         distance = max((size - self.size) / self.growth, 0.0)
         return self.low[0] - distance, self.high[0] + distance
 
+    def squares(self, size: float) -> float:
+        """Number of squares of the allowed edge length around it, where that is below ``size``.
+
+        On a flat wall without end: the spot itself, the stretches along its sides, its corners.
+        """
+        if self.size >= size:
+            return 0.0
+        length, *across = (high - low for low, high in zip(self.low, self.high, strict=True))
+        width, ratio = sum(across), size / self.size
+        sides = 2.0 * (length + width) / self.growth * (1.0 / self.size - 1.0 / size)
+        corners = 2.0 * np.pi / self.growth**2 * (np.log(ratio) + 1.0 / ratio - 1.0)
+        return float(length * width / self.size**2 + sides + corners)
+
 
 def graded_mesh(
     section: Section,

@@ -47,10 +47,9 @@ def spots(
         rests, pads: of the boom.
     """
     finer = float(np.sqrt(tolerance / MEASURED_AT))
-    return [
-        Spot(low, high, finer * size, finer * growth)
-        for low, high, size, growth in _measured(boom, number, line, rests, pads)
-    ]
+    # What presses from several sides, or in mirror images, is one spot.
+    measured = dict.fromkeys(_measured(boom, number, line, rests, pads))
+    return [Spot(low, high, finer * size, finer * growth) for low, high, size, growth in measured]
 
 
 _Place = tuple[float, float, float]

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 
 from geometry.boom import Boom, BoomError
+from geometry.contact_places import pads
+from geometry.rests import rests
+from geometry.spots import spots
 from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
@@ -25,10 +28,10 @@ MOST_POINTS = 256
 
 # Coordinates for each segment unless given, in the plane and in space.
 _FLAT, _SPATIAL = 60, 210
-# Dofs for each square of the mesh size; bytes for a dof, for a coordinate of it; s. Measured.
-_DOFS, _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 21.0, 2000.0, 5.0, 1.0e-4
-# How many times as many dofs a graded mesh has, at corners and at pads.
-_GRADED, _PADDED = 3.0, 6.0
+# Dofs for each square of the mesh size, of a uniform mesh and of a graded one far from its spots,
+# and of the smaller sizes near them; bytes for a dof, for a coordinate of it; s. Measured.
+_DOFS, _GRADED_DOFS, _DOFS_AT_SPOTS = 21.0, 42.0, 35.0
+_OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
 # Elements of the longest segment of the beam that stands for it.
 _ELEMENTS = 20
 
@@ -142,9 +145,7 @@ class ShellTable(ModelTable):
     def stand_in(self, boom: Boom) -> StandIn:
         from runs.case.kinds.finite_element import FiniteElementTable
 
-        padded = any(joint.padded for joint in boom.joints)
-        graded = 1.0 if self.contact_tolerance == "any" else _PADDED if padded else _GRADED
-        dofs = graded * _DOFS * _surface(boom) / self.mesh_size**2
+        dofs = self.estimated_dofs(boom)
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
         if isinstance(self.modes, int):
             coordinates = min(coordinates, self.modes * len(boom.segments))
@@ -162,6 +163,19 @@ class ShellTable(ModelTable):
         )
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
         return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
+
+    def estimated_dofs(self, boom: Boom) -> float:
+        """Number of dofs of the meshes of all segments, about, without making them."""
+        squares = _surface(boom) / self.mesh_size**2
+        if self.contact_tolerance == "any" or self.contact_line == "surface":
+            return _DOFS * squares
+        pressed = self.contact_line, rests(boom), pads(boom)
+        return _GRADED_DOFS * squares + _DOFS_AT_SPOTS * sum(
+            (1 << len(segment.section.mirrors)) * spot.squares(self.mesh_size)
+            for number, segment in enumerate(boom.segments)
+            if segment.section is not None
+            for spot in spots(boom, number, self.contact_tolerance, *pressed)
+        )
 
     def _krylov(self) -> KrylovOptions:
         from shell_model.reduction.krylov import KrylovOptions
