@@ -10,12 +10,13 @@ without end, and its error goes with the square of the size.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.contact_places import ContactLine, Pad, Stretch
-from geometry.grading import Spot
 from geometry.rests import Rest
 from geometry.section import Direction, Face, Section
 
@@ -27,6 +28,45 @@ MEASURED_AT = 0.01
 _CORNER, _CORNER_GROWTH = 0.2, 0.5
 _PAD, _PAD_GROWTH = 0.18, 0.3
 _WALLS, _WALLS_GROWTH = 0.1, 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where a segment's mesh is to be fine, there and in all mirror images.
+
+    Args:
+        low, high: (x, y, z) in m between which it lies, on the positive side of the mirrors.
+        size: edge length there in m.
+        growth: how much longer edges may be for each unit of distance from it.
+    """
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    size: float
+    growth: float
+
+    def allowed(self, places: Array) -> Array:
+        """(num_places,) edge length in m at places (num_places, 3) on that side."""
+        outside = np.maximum(np.maximum(self.low - places, places - self.high), 0.0)
+        return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
+
+    def reach(self, size: float) -> tuple[float, float]:
+        """x in m between which edges of a size are too long for it."""
+        distance = max((size - self.size) / self.growth, 0.0)
+        return self.low[0] - distance, self.high[0] + distance
+
+    def squares(self, size: float) -> float:
+        """Number of squares of the allowed edge length around it, where that is below ``size``.
+
+        On a flat wall without end: the spot itself, the stretches along its sides, its corners.
+        """
+        if self.size >= size:
+            return 0.0
+        length, *across = (high - low for low, high in zip(self.low, self.high, strict=True))
+        width, ratio = sum(across), size / self.size
+        sides = 2.0 * (length + width) / self.growth * (1.0 / self.size - 1.0 / size)
+        corners = 2.0 * np.pi / self.growth**2 * (np.log(ratio) + 1.0 / ratio - 1.0)
+        return float(length * width / self.size**2 + sides + corners)
 
 
 def spots(

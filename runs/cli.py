@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryFile, gettempdir
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -27,6 +29,9 @@ if TYPE_CHECKING:
     from runs.report.verdict import Verdict
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
+
+# Bytes that Open MPI takes of the temporary folder, which are 8.2 MB, and some more.
+_ROOM_OF_MPI = 16_000_000
 
 app = typer.Typer(
     add_completion=False,
@@ -350,6 +355,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit; whatever the user can mend is one line on stderr."""
     terminal.prepare()
     notices.show()
+    # Figures are drawn into files, whatever shows them to those who started this process.
+    os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)
     try:
         with terminal.flushed():
@@ -364,6 +371,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _explain(error: Exception) -> tuple[str, int] | None:
     """The line and the exit status for what is not a fault of the program."""
+    # Without memory nothing more can be imported; the loader of libraries has an error of its own.
+    if isinstance(error, MemoryError) or "failed to map segment" in str(error):
+        return message(f"out of memory ({error}); make the models or the output smaller"), 3
     from dynamics.failure import NumericsError
     from runs.case.messages import BadInput
 
@@ -371,8 +381,6 @@ def _explain(error: Exception) -> tuple[str, int] | None:
         return message(str(error)), 2
     if isinstance(error, NumericsError):
         return message(str(error)), 3
-    if isinstance(error, MemoryError):
-        return message(f"out of memory ({error}); make the models or the output smaller"), 3
     # A usage error of typer's, whose class has no public name.
     if hasattr(error, "format_message"):
         return message(f"{error.format_message()} (protractile --help tells more)"), 2
@@ -412,6 +420,7 @@ def _enter_mpi(
 
     for number, model in enumerate(case.models, start=1):
         if model.needs_shell:
+            _check_temporary_folder(file)
             try:
                 import_module("shell_model.boom_shell")
                 from mpi4py import MPI
@@ -424,6 +433,28 @@ def _enter_mpi(
                 ) from None
             return MPI.COMM_WORLD
     return None
+
+
+def _check_temporary_folder(file: str) -> None:
+    """Refuse a temporary folder without room for MPI, which would end the process in many lines.
+
+    Raises:
+        BadInput: it has none, or cannot be written.
+    """
+    from runs.case.messages import BadInput
+
+    # Of Open MPI, which takes it as given where Python would look for another one.
+    folder = os.environ.get("TMPDIR") or gettempdir()
+    try:
+        with TemporaryFile(dir=folder) as probe:
+            os.posix_fallocate(probe.fileno(), 0, _ROOM_OF_MPI)
+    except OSError as error:
+        raise BadInput(
+            file,
+            "TMPDIR",
+            f"a shell needs {_ROOM_OF_MPI / 1e6:.0f} MB in {shown(folder)!r} ({error.strerror}); "
+            "make room there, or set TMPDIR to another folder",
+        ) from None
 
 
 def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]) -> int:

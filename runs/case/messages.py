@@ -137,7 +137,7 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
     steps = list(location)
     if len(steps) > 2 and steps[0] == "model":
         del steps[2]
-    for key in ("section", "head_section"):
+    for key in ("section", "head_section", "calibrated_by"):
         if key in steps[:-1]:
             del steps[steps.index(key) + 1]
     return steps

@@ -10,6 +10,7 @@ import stat
 from pathlib import Path
 
 from runs.case.messages import BadInput
+from runs.folder.files import real
 
 # Bytes of a text: a case of as many tabulated times as are allowed has less.
 LARGEST = 16_000_000
@@ -38,7 +39,7 @@ def check_left(folder: Path, file: str, key: str) -> None:
     Raises:
         BadInput: this process has been started in it.
     """
-    if Path.cwd().is_relative_to(folder.resolve()):
+    if Path.cwd().is_relative_to(real(folder)):
         raise BadInput(
             file, key, "is where you are, and will be replaced; start from another folder"
         )

@@ -11,18 +11,18 @@ goes.
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from runs.folder import records
-from runs.folder.files import beside, in_turn
+from runs.folder.files import beside, checksum, in_turn
 from runs.process.notices import NOTICES
 from runs.process.shown import shown
 
@@ -44,11 +44,7 @@ def key(*content: Any) -> str:
     Raises:
         TypeError: something cannot be a record's, see :func:`runs.folder.records.pack`.
     """
-    digest = hashlib.sha256()
-    for parts in records.pack(content).values():
-        for part in parts:
-            digest.update(part)
-    return digest.hexdigest()
+    return checksum(chain.from_iterable(records.pack(content).values()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,10 +178,5 @@ def _content(path: Path) -> memoryview:
 
 def _sums(key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> bytes:
     """A line for each file of an entry."""
-    lines = []
-    for name, content in sorted(files.items()):
-        digest = hashlib.sha256()
-        for part in content:
-            digest.update(part)
-        lines.append(f"{digest.hexdigest()}  {key}/{name}\n")
+    lines = [f"{checksum(content)}  {key}/{name}\n" for name, content in sorted(files.items())]
     return "".join(lines).encode()

@@ -3,8 +3,8 @@
 
 What is being written lies in a hidden folder beside its place, which is locked as long as its
 process lives: who writes there next takes away what a killed process has left. A folder that takes
-another's place has a manifest of the files that came with it. All others in it are the user's, and
-are carried over.
+another's place has a manifest of the files that came with it, with their checksums as ``sha256sum
+-c`` reads them. All others in it are the user's, and are carried over.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import ctypes
 import errno
 import fcntl
 import filecmp
+import hashlib
 import os
 import shutil
 from collections.abc import Collection, Iterable, Iterator
@@ -32,8 +33,25 @@ MANIFEST = ".manifest"
 _AWAY = ".away"
 # renameat2(2): paths are seen from the current folder; what it is to do.
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
+# In place of the checksum of a link or a folder; begins a comment for sha256sum.
+_NONE = "#"
+# Bytes of a file that are read at a time.
+_PART = 1 << 20
 # What a disk without locks says, some of clusters.
 _NO_LOCKS = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
+
+
+def real(path: Path) -> Path:
+    """A path without links.
+
+    Raises:
+        OSError: its links go round in a loop, where :meth:`pathlib.Path.resolve` raises
+            RuntimeError, or from Python 3.13 on nothing.
+    """
+    found = Path(os.path.realpath(path))
+    if found.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
+    return found
 
 
 @contextmanager
@@ -63,7 +81,7 @@ def whole_folder(folder: Path, own: Collection[str] = ()) -> Iterator[Path]:
     with beside(folder) as part:
         yield part
         with alone(folder):
-            _take_the_place(part, folder.resolve(), own)
+            _take_the_place(part, real(folder), own)
 
 
 @contextmanager
@@ -76,13 +94,13 @@ def changed_folder(folder: Path) -> Iterator[Path]:
     with beside(folder) as part:
         _carry(folder, part, _entries(folder))
         yield part
-        _take_the_place(part, folder.resolve())
+        _take_the_place(part, real(folder))
 
 
 @contextmanager
 def alone(folder: Path) -> Iterator[None]:
     """Nobody else puts another folder in the place of this one meanwhile."""
-    _clear(folder.resolve())
+    _clear(real(folder))
     while True:
         try:
             manifest = (folder / MANIFEST).open("r+", encoding="utf-8")
@@ -121,7 +139,7 @@ def in_turn(path: Path) -> Iterator[None]:
 @contextmanager
 def beside(path: Path) -> Iterator[Path]:
     """An empty folder to work in beside a path; it goes in the end, and so do earlier ones."""
-    path = path.resolve()
+    path = real(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
     try:
         if not path.parent.exists():
@@ -214,7 +232,9 @@ def _take_the_place(part: Path, folder: Path, own: Collection[str] = ()) -> None
     _carry(folder, part, carried)
     if folder.is_dir():
         shutil.copymode(folder, part)
-    (part / MANIFEST).write_text("".join(f"{name}\n" for name in sorted(brought)), "utf-8")
+    sums = {name: _checksum(part / name) if _is_file(part / name) else _NONE for name in brought}
+    lines = [f"{sums[name]}  {name}\n" for name in sorted(brought)]
+    (part / MANIFEST).write_text("".join(lines), "utf-8")
     try:
         os.rename(part, folder)
     except OSError as error:
@@ -254,11 +274,49 @@ def _entries(folder: Path) -> set[Path]:
 
 def _theirs(folder: Path, own: Collection[str]) -> set[Path]:
     """Of those, what the user has put there."""
+    return _entries(folder) - {Path(name) for name in (*_listed(folder), *own)}
+
+
+def damaged(folder: Path) -> str | None:
+    """The first file that is not as it came with a folder; None where there is none.
+
+    Files that are missing, and files of the user, count as none.
+    """
+    for name, sums in _listed(folder).items():
+        path = folder / name
+        if sums != _NONE and _is_file(path) and sums != _checksum(path):
+            return name
+    return None
+
+
+def checksum(parts: Iterable[bytes | memoryview]) -> str:
+    """SHA-256 of a file's content."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _listed(folder: Path) -> dict[str, str]:
+    """Checksums of what came with a folder, by paths in it; ``#`` of what has none."""
+    manifest = folder / MANIFEST
     try:
-        listed = (folder / MANIFEST).read_text("utf-8").splitlines()
+        # A pipe in its place would wait for its writer.
+        lines = manifest.read_text("utf-8").splitlines() if manifest.is_file() else []
     except (OSError, UnicodeDecodeError):
-        listed = []
-    return _entries(folder) - {Path(name) for name in (*listed, *own)}
+        lines = []
+    # Lines of earlier versions are names alone.
+    parts = (line.partition("  ") if "  " in line else (_NONE, "", line) for line in lines)
+    return {name: sums for sums, _, name in parts}
+
+
+def _checksum(path: Path) -> str:
+    with path.open("rb") as file:
+        return checksum(iter(partial(file.read, _PART), b""))
+
+
+def _is_file(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink()
 
 
 def _same(one: Path, other: Path) -> bool:

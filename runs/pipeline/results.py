@@ -23,7 +23,8 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
-from runs.folder.files import write_whole
+from runs.case.user_files import check_regular
+from runs.folder.files import MANIFEST, damaged, write_whole
 from runs.pipeline.answers import Moved, PlayAdds
 from runs.pipeline.cautions import of_run
 from runs.pipeline.comparisons import leading, reference_of
@@ -68,16 +69,19 @@ class Results:
     ensembles: xr.Dataset | None = None
 
     @classmethod
-    def load(cls, folder: Path) -> Results:
+    def load(cls, folder: Path | str) -> Results:
         """Read a run's folder.
 
         Raises:
             BadInput: it is not a run's folder, or not a whole one.
         """
+        folder = Path(folder)
         if not folder.is_dir():
             what = "is a file" if folder.exists() else "does not exist"
             raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
-
+        if name := damaged(folder):
+            what = f"is damaged, its SHA-256 is not that of {MANIFEST}; remove it, or run the case"
+            raise BadInput(str(folder), name, f"{what} again")
         trajectories = _read(folder / TRAJECTORIES, read_netcdf)
         if "station" not in trajectories.dims:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
@@ -112,14 +116,17 @@ class Results:
         summary.pads = list(pressed_pads(case, boom, data))
         summary.cautions = of_run(case, boom, data, summary)
 
-    def save(self, folder: Path) -> None:
-        """All but the summary, which goes on changing, into a run's folder."""
+    def save(self, folder: Path | str) -> None:
+        """Write what :meth:`load` reads to a folder, which is made if it is missing."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
         # netCDF 3 has no empty dimension: a boom without joints leaves out its stations.
         empty = [name for name, size in self.trajectories.sizes.items() if size == 0]
         self.trajectories.drop_dims(empty).to_netcdf(folder / TRAJECTORIES, engine="scipy")
         if self.ensembles is not None:
             self.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
         write_whole(folder / CASE, toml.dumps(self.case))
+        write_whole(folder / SUMMARY, str(self.summary))
 
     @property
     def ran(self) -> list[Model]:
@@ -238,6 +245,7 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
         BadInput: it is missing, damaged, or another version's.
     """
     try:
+        check_regular(path)
         return how(path)
     except FileNotFoundError:
         what = "missing; give the folder of a run that has finished"

@@ -36,7 +36,7 @@ from runs.pipeline.motion import Plan
 from runs.pipeline.proportions import static_tip
 from runs.pipeline.results import CONVENTIONS, Results, label
 from runs.pipeline.shell_output import ShellOutput
-from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary
+from runs.pipeline.summary import Ensembles, ModelSummary, Peak, Summary, check_finite
 
 
 class Stages:
@@ -94,6 +94,9 @@ class Run:
         """Put what a designer asks, answered, and what the results are not worth, into the summary.
 
         A model that has moved and cannot be answered for is in ``failures``, too.
+
+        Raises:
+            NumericsError: what models share, such as their comparisons, is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         answers = {}
@@ -104,12 +107,14 @@ class Run:
                     answers[name] = of_model(
                         boom, case, ran.model, ran.built, ran.moved.trajectory, ran.shell
                     )
+                    check_finite(answers[name])
                 except NUMERICS as error:
                     summary.failures[name], answers[name] = _reason(error), ModelAnswers()
             own.seconds = ran.stages.seconds
             own.wall_time = (own.wall_time or 0.0) + own.seconds["answers"]
         summary.answers = of_run(boom, case, summary, answers)
         self.results.conclude()
+        check_finite(summary)
 
 
 def run_case(case: Case, file: str, means: Means) -> Run | None:
@@ -141,6 +146,8 @@ def run_case(case: Case, file: str, means: Means) -> Run | None:
     for number, model in enumerate(case.models, start=1):
         try:
             outcome = runs[model.name]()
+            if outcome is not None:
+                check_finite(outcome.moved.summary)
         except NUMERICS as error:
             failures[model.name] = why = _reason(error)
             first_failure = first_failure or NumericsError(f"{file}: model[{number}]: {why}")

@@ -14,8 +14,10 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from pydantic import AliasChoices, AliasGenerator, BaseModel, BeforeValidator, ConfigDict
+from pydantic_core import to_jsonable_python
 
 from dynamics.drive.stick_slip import StickSlip
+from dynamics.failure import NumericsError
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
 from shell_model.stress.summary import StressSummary
@@ -310,3 +312,18 @@ class Summary(Entry):
         """The file's content."""
         content = self.model_dump(exclude_unset=True)
         return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def check_finite(part: object) -> None:
+    """Refuse a part of a summary with numbers that no file of it could hold.
+
+    Raises:
+        NumericsError: a number is infinite, or none.
+    """
+    try:
+        json.dumps(to_jsonable_python(part), allow_nan=False)
+    except ValueError:
+        raise NumericsError(
+            "a result is not finite; look for a number of the case that is out of proportion, in "
+            "another unit say"
+        ) from None

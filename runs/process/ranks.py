@@ -35,12 +35,18 @@ _LOOK = 1.0e-3
 
 def launched() -> bool:
     """Whether a launcher has started this process."""
-    return any(name in os.environ for name in _LAUNCHERS)
+    return bool(_told())
 
 
 def launched_rank() -> int:
     """This process's rank, 0 without a launcher."""
-    return next((int(os.environ[name]) for name in _LAUNCHERS if name in os.environ), 0)
+    return next(iter(_told()), 0)
+
+
+def _told() -> list[int]:
+    """This process's rank as each launcher tells it; what is no number is none's."""
+    said = (os.environ.get(name, "") for name in _LAUNCHERS)
+    return [int(number) for number in said if number.isdecimal()]
 
 
 def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:

@@ -11,7 +11,7 @@ from typing import Any
 
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
-from runs.folder.files import beside, write_whole
+from runs.folder.files import beside, real, write_whole
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
@@ -45,7 +45,7 @@ def prepare(out: str, file: str) -> Path:
     key = f"--out {out}"
     if folder.exists() and not folder.is_dir():
         raise BadInput(file, key, "is a file; give a folder")
-    if folder.resolve().is_mount():
+    if real(folder).is_mount():
         raise BadInput(
             file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
         )

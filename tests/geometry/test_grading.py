@@ -12,10 +12,10 @@ import pytest
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize
 from geometry.contact_places import pads
-from geometry.grading import Spot, graded_mesh
+from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.section import BoxSection
-from geometry.spots import spots
+from geometry.spots import Spot, spots
 
 BOX = BoxSection(height=0.4, width=0.3, flange=0.006, web=0.005)
 BREAKS = {"start": 0.0, "middle": 2.0, "end": 5.0}

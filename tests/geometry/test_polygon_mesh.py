@@ -10,10 +10,11 @@ import pytest
 from scipy.spatial import cKDTree
 
 from geometry.arrays import Array
-from geometry.grading import Spot, graded_mesh
+from geometry.grading import graded_mesh
 from geometry.mesh import SegmentMesh, mesh_segment
 from geometry.plating import plain_thickness
 from geometry.section import COMPONENT, Section
+from geometry.spots import Spot
 from tests.geometry.test_polygon import ALL, regular
 
 SECTIONS = ALL | {"regular": regular(6, 0.25, 0.006)}

@@ -105,6 +105,11 @@ NUMBERS = {
         'inner = "outer"',
         "joint[1].inner: must be another segment than the outer one",
     ),
+    "terms of no segment": (
+        "terms = [2, 3]",
+        "terms = []",
+        "model[2].terms: must have one number for each of the 2 segments, got []",
+    ),
     "terms for a third segment": (
         "terms = [2, 3]",
         "terms = [2, 3, 1]",

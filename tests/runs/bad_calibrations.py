@@ -46,6 +46,21 @@ CALIBRATIONS = {
         "model[4].calibrated_by.step: of no use: the shell does not move, the beam does; give "
         "model[4].step, or leave it out",
     ),
+    "misspelled key of a shell that calibrates": (
+        _THEORY,
+        'calibrated_by = { name = "fine", kind = "shell", mesh_siz = 0.1 }\n',
+        "model[4].calibrated_by.mesh_siz: unknown key; the nearest known one is mesh_size",
+    ),
+    "missing key of a shell that calibrates": (
+        _THEORY,
+        'calibrated_by = { kind = "shell" }\n',
+        "model[4].calibrated_by.name: missing; it is what the results call the model",
+    ),
+    "calibrated by a number": (
+        _THEORY,
+        "calibrated_by = 5\n",
+        "model[4].calibrated_by: must be a table, got 5",
+    ),
     "fields of a section without a shell": (
         _THEORY,
         "section_fields = true\n",

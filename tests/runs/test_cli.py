@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import resource
 import subprocess
 import sys
 from collections.abc import Callable
@@ -20,6 +22,7 @@ pytestmark = pytest.mark.usefixtures("few_figures")
 
 ROOT = Path(__file__).parents[2]
 COARSE = (ROOT / "runs" / "cases" / "coarse.toml").read_text(encoding="utf-8")
+SHORT = "duration = 0.02"
 SERIES = "--models", "kantorovich-4,kantorovich-5"
 
 
@@ -188,6 +191,96 @@ def test_numerics_that_fail_are_one_line_and_no_results(protractile: Protractile
     assert err.endswith(" at a step of 0.00025 s; halve the step\n")
     assert err.count("\n") == 1
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
+
+
+def test_results_beyond_all_numbers_are_one_line(protractile: Protractile) -> None:
+    """The tip's deflection is finite, its energy is not."""
+    edit("load = 83.16", "load = 1e150")
+    edited = Path("case.toml").read_text(encoding="utf-8").replace("duration = 0.6", SHORT)
+    Path("case.toml").write_text(edited, encoding="utf-8")
+    status, _, err = protractile("run", "case.toml", "--models", "beam-fe-tied", "--out", "out")
+    assert (status, err) == (
+        3,
+        "protractile: case.toml: model[1]: a result is not finite; look for a number of the case "
+        "that is out of proportion, in another unit say\n",
+    )
+
+
+@pytest.mark.parametrize("command", ["run", "report", "export", "sweep"])
+def test_a_loop_of_links_is_one_line(protractile: Protractile, command: str) -> None:
+    Path("loop").symlink_to("loop")
+    arguments = {
+        "run": ("case.toml", *SERIES, "--out", "loop"),
+        "report": ("loop",),
+        "export": ("case.toml", "--to", "opensees", "--model", "beam-fe", "--out", "loop"),
+        "sweep": ("case.toml", *SERIES, "--vary", "joint.play=0.01,0.02", "--out", "loop"),
+    }
+    answer = protractile(command, *arguments[command])
+    why = "file: cannot be used (Too many levels of symbolic links)"
+    assert answer == (2, "", f"protractile: loop: {why}\n")
+    assert Path("loop").is_symlink()
+
+
+def test_a_temporary_folder_without_room_is_one_line(
+    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """MPI would say so in many lines, and end the process."""
+
+    def fill(*_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setenv("TMPDIR", "full")
+    Path("full").mkdir()
+    monkeypatch.setattr(os, "posix_fallocate", fill)
+    assert protractile("run", "case.toml", "--models", "shell", "--out", "out") == (
+        2,
+        "",
+        "protractile: case.toml: TMPDIR: a shell needs 16 MB in 'full' (No space left on device); "
+        "make room there, or set TMPDIR to another folder\n",
+    )
+    assert sorted(path.name for path in Path.cwd().iterdir()) == ["case.toml", "full"]
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"),
+    [
+        ("MPLBACKEND", "module://matplotlib_inline.backend_inline"),
+        ("MPLBACKEND", "none"),
+        ("OMPI_COMM_WORLD_RANK", "abc"),
+    ],
+)
+def test_what_others_leave_in_the_environment_counts_for_nothing(
+    tmp_path: Path, variable: str, value: str
+) -> None:
+    """A notebook's backend, which is installed where the notebook is, and a rank that is none."""
+    (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
+    # It imports matplotlib, and then, as whoever shares a shell, asks for the rank.
+    drawn = "check", "case.toml", "--picture", "boom.png"
+    export = "export", "case.toml", "--to", "opensees", "--model", "beam-fe"
+    ended = subprocess.run(
+        [sys.executable, "-m", "protractile", *(drawn if variable == "MPLBACKEND" else export)],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT), variable: value},
+        capture_output=True,
+        text=True,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
+    """In 250 MB of address space no library of linear algebra can be loaded."""
+    (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
+    room = 250_000 * 1024
+    ended = subprocess.run(
+        [sys.executable, "-m", "protractile", "check", "case.toml"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (room, room)),
+    )
+    assert (ended.returncode, ended.stderr.count("\n")) == (3, 1)
+    assert ended.stderr.startswith("protractile: out of memory (")
 
 
 def test_a_contact_that_would_take_for_ever_is_one_line(protractile: Protractile) -> None:

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
 from hashlib import sha256
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from protractile import run_case
 from runs.case.reading import load
 from runs.paper.rules import judge
 from runs.pipeline.results import Results
@@ -85,6 +88,7 @@ def test_a_report_is_rendered_again_from_the_data(series: Path, tmp_path: Path) 
 def test_figures_are_drawn_again_of_other_numbers_alone(series: Path, tmp_path: Path) -> None:
     again = tmp_path / "out"
     shutil.copytree(series, again)
+    (again / ".manifest").unlink()
     tip, other = (again / "figures" / name for name in ("tip.png", "head.png"))
     drawn = tip.read_bytes()
     shutil.copy(other, tip)
@@ -100,6 +104,7 @@ def test_files_of_two_runs_are_not_mixed(
 ) -> None:
     again = tmp_path / "out"
     shutil.copytree(series, again)
+    (again / ".manifest").unlink()
     case = (again / "case.toml").read_text(encoding="utf-8")
     (again / "case.toml").write_text(case.replace("play = 0.014", "play = 0.013"))
     assert protractile("report", again) == 2
@@ -115,6 +120,7 @@ def test_a_run_of_another_version_is_told_from_a_mixed_one(
     """Reference: a folder as a version has written it that did not know one of today's keys."""
     again = tmp_path / "out"
     shutil.copytree(series, again)
+    (again / ".manifest").unlink()
     case, summary = again / "case.toml", again / "summary.json"
     now = case.read_bytes()
     assert b"\ndemand = []\n" in now
@@ -126,6 +132,60 @@ def test_a_run_of_another_version_is_told_from_a_mixed_one(
         f"protractile: {again}: case.toml: is another version's, which had other keys; run the "
         "case again\n"
     )
+
+
+@pytest.mark.parametrize("command", ["report", "snapshot"])
+@pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "viewer.html"])
+def test_a_flipped_bit_is_one_line(
+    series: Path, tmp_path: Path, name: str, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The file reads as before; ``sha256sum -c .manifest`` finds it, too."""
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    content = bytearray((again / name).read_bytes())
+    content[-40] ^= 1
+    (again / name).write_bytes(content)
+    assert protractile(command, again) == 2
+    assert capsys.readouterr() == (
+        "",
+        f"protractile: {again}: {name}: is damaged, its SHA-256 is not that of .manifest; remove "
+        "it, or run the case again\n",
+    )
+    told = subprocess.run(
+        ["sha256sum", "--quiet", "-c", ".manifest"], cwd=again, capture_output=True, text=True
+    )
+    assert told.stdout == f"{name}: FAILED\n"
+
+
+@pytest.mark.parametrize("name", ["trajectories.nc", ".manifest"])
+def test_a_pipe_in_place_of_a_file_is_one_line(
+    series: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Who reads it would wait for its writer for ever."""
+    again = tmp_path / "out"
+    shutil.copytree(series, again)
+    (again / name).unlink()
+    os.mkfifo(again / name)
+    status, (_, err) = protractile("report", again), capsys.readouterr()
+    if name == ".manifest":
+        assert (status, err) == (0, "")
+    else:
+        assert (status, err) == (
+            2,
+            f"protractile: {again}: {name}: cannot be understood ([Errno 22] not a regular file: "
+            f"'{again / name}'); run the case again\n",
+        )
+
+
+def test_results_of_python_read_back(tmp_path: Path) -> None:
+    """Reference: by construction."""
+    case = load(COARSE)
+    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.02})})
+    results = run_case(case, ["beam-fe-tied"])
+    results.save(str(tmp_path / "kept"))
+    again = Results.load(str(tmp_path / "kept"))
+    assert (again.case, again.summary) == (results.case, results.summary)
+    xr.testing.assert_identical(again.trajectories, results.trajectories)
 
 
 @pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "case.toml"])
@@ -155,6 +215,7 @@ def test_a_summary_of_another_version_is_one_line(
     """Reference: a folder as a version has written it that did not know one of today's keys."""
     again = tmp_path / "out"
     shutil.copytree(series, again)
+    (again / ".manifest").unlink()
     summary = json.loads((series / "summary.json").read_text(encoding="utf-8"))
     del summary["models"]["kantorovich-5"]["step_error"]
     (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")

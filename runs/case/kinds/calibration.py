@@ -7,9 +7,10 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
+from pydantic import Discriminator, Tag
 
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
@@ -26,10 +27,21 @@ if TYPE_CHECKING:
 _OF_MOTION = ("contact", "step")
 
 
+def _named_or_table(given: Any) -> str:
+    return "name" if isinstance(given, str) else "shell"
+
+
+# The tag of the table is its kind, by which messages know its keys.
+_Shell = Annotated[
+    Annotated[Name, Tag("name")] | Annotated[ShellTable, Tag("shell")],
+    Discriminator(_named_or_table),
+]
+
+
 class CalibratedTable(BeamTable):
     """A beam as it is, or with its stiffness and the springs of its stations read from a shell."""
 
-    calibrated_by: ShellTable | Name | None = None
+    calibrated_by: _Shell | None = None
     """the name of a shell of the case, or the table of another one, from which the stiffness of the
     segments and the springs of the stations are read; the beam is as it is unless given"""
 

@@ -33,17 +33,17 @@ class KantorovichTable(CalibratedTable):
 
     def check(self, where: str, joined: Joined) -> None:
         segments = joined.boom.segments
-        if max(self.terms) > MOST_TERMS:
-            raise BoomError(
-                f"{where}.terms",
-                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
-                f"{list(self.terms)}; use finite elements",
-            )
         if len(self.terms) != len(segments):
             raise BoomError(
                 f"{where}.terms",
                 f"must have one number for each of the {len(segments)} segments, got "
                 f"{list(self.terms)}",
+            )
+        if max(self.terms) > MOST_TERMS:
+            raise BoomError(
+                f"{where}.terms",
+                f"must not be above {MOST_TERMS}, where the polynomials lose their digits, got "
+                f"{list(self.terms)}; use finite elements",
             )
         try:
             check_base(joined.boom, self.base)
