@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from runs.case.limits import MOST_TIMES
-from runs.case.messages import BadInput, choices
+from runs.case.messages import BadInput
 from runs.case.units import Unit
 from runs.case.user_files import read_any_text
 from runs.process.shown import shown
@@ -83,42 +83,86 @@ def read_pairs(
     try:
         rows = _rows(read_any_text(place))
         if len(rows) > MOST_TIMES:
-            raise _Unfit(f"has {len(rows)} lines; give {MOST_TIMES} at most")
-        headings = [rows.pop(0) for _ in range(2) if rows and not any(map(_is_number, rows[0]))]
+            raise _Unfit(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
+        headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
         chosen, scales, measured = _chosen(headings, names, columns)
-        pairs = np.array([[_number(row[i]) for i in chosen] for row in rows])
+        for row in rows:
+            row.check_columns(chosen, names)
+        pairs = np.array([[row.number(i) for i in chosen] for row in rows])
+        if len(rows) < 2:
+            raise _Unfit("has fewer than two lines of numbers")
+        falls = np.flatnonzero(np.diff(pairs[:, 0]) <= 0.0)
+        if falls.size:
+            line = rows[falls[0] + 1].line
+            raise _Unfit(f"has a {columns[0].name} in line {line} that does not rise", "sort them")
     except OSError as error:
         what = f"'{shown(str(place))}' cannot be read ({error.strerror}); {remedy}"
         raise BadInput(path, key, what) from None
-    except _Unfit as reason:
-        raise BadInput(path, key, f"{name} {reason}") from None
+    except _Unfit as unfit:
+        what = f"{name} {unfit.what}; {unfit.remedy or remedy}"
+        raise BadInput(path, key, what) from None
     except (ValueError, csv.Error):
-        raise BadInput(path, key, f"{name} holds other than numbers; {remedy}") from None
-    except IndexError:
-        pairs = np.empty((0, 2))
-    of_two = names is not None or all(len(row) == 2 for row in (*headings, *rows))
-    if len(pairs) < 2 or not of_two or not np.isfinite(pairs).all():
-        raise BadInput(path, key, f"{name} has other columns, or one line alone; {remedy}")
-    if (np.diff(pairs[:, 0]) <= 0.0).any():
-        raise BadInput(path, key, f"the {columns[0].name}s in {name} must rise")
+        raise BadInput(path, key, f"{name} is no text; {remedy}") from None
     return Pairs(tuple((float(x), float(y)) for x, y in pairs * scales), measured)
 
 
 class _Unfit(Exception):
-    """What is wrong with a file, behind its name."""
+    """What is wrong with a file, behind its name: where, and nothing of what stands there.
+
+    The file may be another one than the user meant, whose content is nobody's business.
+
+    Args:
+        what: the fault.
+        remedy: of its own; else to give the right file.
+    """
+
+    def __init__(self, what: str, remedy: str = "") -> None:
+        super().__init__(what)
+        self.what, self.remedy = what, remedy
 
 
-def _rows(text: str) -> list[list[str]]:
-    """The cells of all lines but empty ones and comments."""
-    lines = [line.partition("#")[0].strip() for line in text.splitlines()]
-    lines = [line for line in lines if line]
-    if lines and (said := _SEPARATOR.fullmatch(lines[0])):
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """The cells of a line that is neither empty nor a comment."""
+
+    line: int  #: counted from 1
+    cells: list[str]
+
+    @property
+    def has_number(self) -> bool:
+        return any(map(_is_number, self.cells))
+
+    def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
+        """Whether the chosen columns are there, and no other ones unless these have names."""
+        count = len(self.cells)
+        if count <= max(chosen) or (names is None and count != len(chosen)):
+            columns = "1 column" if count == 1 else f"{count} columns"
+            raise _Unfit(f"has {columns} in line {self.line}")
+
+    def number(self, column: int) -> float:
+        """Of a cell; raises :class:`_Unfit`."""
+        with suppress(ValueError):
+            number = _number(self.cells[column])
+            if np.isfinite(number):
+                return number
+        raise _Unfit(f"has no finite number in line {self.line}, column {column + 1}")
+
+
+def _rows(text: str) -> list[_Row]:
+    """All lines but empty ones and comments."""
+    numbered = enumerate(text.splitlines(), start=1)
+    lines = [(number, line.partition("#")[0].strip()) for number, line in numbered]
+    lines = [(number, line) for number, line in lines if line]
+    if lines and (said := _SEPARATOR.fullmatch(lines[0][1])):
         separator = said[1]
         del lines[0]
     else:
-        separator = next((mark for mark in ";\t" if lines and mark in lines[0]), ",")
-    whole = (line.rstrip(separator) for line in lines)
-    return [[cell.strip() for cell in row] for row in csv.reader(whole, delimiter=separator)]
+        separator = next((mark for mark in ";\t" if lines and mark in lines[0][1]), ",")
+    return [
+        _Row(number, [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))])
+        for number, line in lines
+        if (cut := line.rstrip(separator))
+    ]
 
 
 def _number(cell: str) -> float:
@@ -133,36 +177,44 @@ def _is_number(cell: str) -> bool:
 
 
 def _chosen(
-    headings: Sequence[Sequence[str]], names: Sequence[str] | None, columns: Sequence[Column]
+    headings: Sequence[_Row], names: Sequence[str] | None, columns: Sequence[Column]
 ) -> tuple[list[int], list[float], bool]:
     """The positions of the two columns, what makes their own units of them, as of :class:`Pairs`.
 
     Raises:
         _Unfit: a name that is not there, too many columns, a unit that does not fit.
-        IndexError: fewer columns than names.
     """
     if not headings:
         if names is not None:
-            raise _Unfit("has no heading; leave the names of columns out")
+            raise _Unfit("has no heading", "leave the names of columns out")
         return [0, 1], [1.0, 1.0], False
-    cells = [_split(cell) for cell in headings[0]]
+    heading = headings[0]
+    cells = [_split(cell) for cell in heading.cells]
     known = [name for name, _ in cells]
-    if names is None and len(known) > 2:
-        raise _Unfit(f"has {len(known)} columns; name two of them, of {choices(known)}")
-    wanted = known[:2] if names is None else [_split(name)[0] for name in names]
-    for name in wanted:
-        if known.count(name) != 1:
-            raise _Unfit(f"has not one column {name!r}; give {choices(known)}")
-    chosen = [known.index(name) for name in wanted]
-    units = [headings[1][i] if len(headings) > 1 else cells[i][1] for i in chosen]
+    if names is None:
+        if len(known) > 2:
+            what = f"has {len(known)} columns in line {heading.line}"
+            raise _Unfit(what, "name two of them")
+        chosen = [0, 1]
+    else:
+        wanted = [_split(name)[0] for name in names]
+        for name in wanted:
+            if (count := known.count(name)) != 1:
+                what = f"has {count} columns {shown(name)!r} in line {heading.line}"
+                raise _Unfit(what, "name columns that it has once")
+        chosen = [known.index(name) for name in wanted]
+    for row in headings:
+        row.check_columns(chosen, names)
+    of_units = headings[-1]
+    units = [cells[i][1] if of_units is heading else of_units.cells[i] for i in chosen]
     scales = []
-    for name, unit, column in zip(wanted, units, columns, strict=True):
+    for i, unit, column in zip(chosen, units, columns, strict=True):
         try:
             scales.append(1.0 if unit is None else column.scale(unit.strip("[]()")))
         except ValueError as error:
             raise _Unfit(
-                f"has {name!r} in {unit}, which is {error}; give it in {column.unit} or another "
-                "unit of the kind"
+                f"has a unit in line {of_units.line}, column {i + 1} that is {error}",
+                f"give {column.unit} or another unit of the kind",
             ) from None
     measured = columns[1].factor and any(Unit.of(units[1] or "1").dimension)
     return chosen, scales, measured

@@ -246,17 +246,17 @@ def test_histories_are_what_the_case_says(tmp_path: Path) -> None:
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "words.csv"',
-            "base[1].file: 'words.csv' holds other than numbers; give a CSV file of two columns, "
-            "time in s and factor; a heading may say other units",
+            "base[1].file: 'words.csv' has no finite number in line 2, column 2; give a CSV file "
+            "of two columns, time in s and factor; a heading may say other units",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "three.csv"',
-            "base[1].file: 'three.csv' has other columns, or one line alone; give a CSV file of "
-            "two columns, time in s and factor; a heading may say other units",
+            "base[1].file: 'three.csv' has 3 columns in line 1; give a CSV file of two columns, "
+            "time in s and factor; a heading may say other units",
         ),
         (
             '[[base]]\nacceleration = 1.0\nfile = "back.csv"',
-            "base[1].file: the times in 'back.csv' must rise",
+            "base[1].file: 'back.csv' has a time in line 3 that does not rise; sort them",
         ),
         (
             '[[base]]\nacceleration = 1.0\ndirection = "y"',

@@ -102,17 +102,17 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
         (
             "t;F;v\n0;1;2\n1;1;2\n",
             "magnitude = 1.0",
-            "file: 'gust.csv' has 3 columns; name two of them, of 't', 'F' or 'v'",
+            "file: 'gust.csv' has 3 columns in line 1; name two of them",
         ),
         (
             "t;F;v\n0;1;2\n1;1;2\n",
             'magnitude = 1.0\ncolumns = ["t", "G"]',
-            "file: 'gust.csv' has not one column 'G'; give 't', 'F' or 'v'",
+            "file: 'gust.csv' has 0 columns 'G' in line 1; name columns that it has once",
         ),
         (
             "t;F;F\n0;1;2\n1;1;2\n",
             'magnitude = 1.0\ncolumns = ["t", "F"]',
-            "file: 'gust.csv' has not one column 'F'; give 't', 'F' or 'F'",
+            "file: 'gust.csv' has 2 columns 'F' in line 1; name columns that it has once",
         ),
         (
             "0;1\n1;1\n",
@@ -122,20 +122,20 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
         (
             "t (s);F (V)\n0;1\n1;1\n",
             "",
-            "file: 'gust.csv' has 'F' in V, which is no unit that is known; give it in N/m or "
-            "another unit of the kind",
+            "file: 'gust.csv' has a unit in line 1, column 2 that is no unit that is known; "
+            "give N/m or another unit of the kind",
         ),
         (
             "t (s);F (kN)\n0;1\n1;1\n",
             "",
-            "file: 'gust.csv' has 'F' in kN, which is another quantity; give it in N/m or another "
-            "unit of the kind",
+            "file: 'gust.csv' has a unit in line 1, column 2 that is another quantity; "
+            "give N/m or another unit of the kind",
         ),
         (
             "t (m);F (kN/m)\n0;1\n1;1\n",
             "",
-            "file: 'gust.csv' has 't' in m, which is another quantity; give it in s or another "
-            "unit of the kind",
+            "file: 'gust.csv' has a unit in line 1, column 1 that is another quantity; "
+            "give s or another unit of the kind",
         ),
         (
             "t (s);F\n0;1\n1;1\n",
@@ -146,25 +146,31 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
         (
             "t (s);F\n0;1,5\n1;1.234,5\n",
             "magnitude = 1.0",
-            "file: 'gust.csv' holds other than numbers; give a CSV file of two columns, time in s "
-            "and factor; a heading may say other units",
+            "file: 'gust.csv' has no finite number in line 3, column 2; give a CSV file of two "
+            "columns, time in s and factor; a heading may say other units",
         ),
         (
             "t (s);F\n0;1,5\n1\n",
             "magnitude = 1.0",
-            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "file: 'gust.csv' has 1 column in line 3; give a CSV file of two "
             "columns, time in s and factor; a heading may say other units",
+        ),
+        (
+            "root:*:1:0:99\nsecret:$y$j9T$Xa:1:0:99\n",
+            "magnitude = 1.0",
+            "file: 'gust.csv' has 1 column in line 1; give a CSV file of two columns, time in s "
+            "and factor; a heading may say other units",
         ),
         (
             "0,5,1,2\n0,6,1,3\n",
             "magnitude = 1.0",
-            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "file: 'gust.csv' has 4 columns in line 1; give a CSV file of two "
             "columns, time in s and factor; a heading may say other units",
         ),
         (
             "t,F\n",
             "magnitude = 1.0",
-            "file: 'gust.csv' has other columns, or one line alone; give a CSV file of two "
+            "file: 'gust.csv' has fewer than two lines of numbers; give a CSV file of two "
             "columns, time in s and factor; a heading may say other units",
         ),
         (

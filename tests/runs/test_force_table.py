@@ -116,11 +116,12 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
          "joint[1].force_table: forces must be positive, and must not fall at the end"),
         ("force_table = [[1e-3]]",
          "joint[1].force_table[1]: must be a list of two numbers, got [0.001]"),
-        ('force_file = "words.csv"', "joint[1].force_file: 'words.csv' holds other than numbers; "
-         "give a CSV file of two columns, penetration in m and force in N; a heading may say other "
-         "units"),
+        ('force_file = "words.csv"',
+         "joint[1].force_file: 'words.csv' has no finite number in line 2, column 2; give a CSV "
+         "file of two columns, penetration in m and force in N; a heading may say other units"),
         ('force_file = "back.csv"',
-         "joint[1].force_file: the penetrations in 'back.csv' must rise"),
+         "joint[1].force_file: 'back.csv' has a penetration in line 2 that does not rise; sort "
+         "them"),
         ('force_file = "pulls.csv"',
          "joint[1].force_file: forces must be positive, and must not fall at the end"),
     ],
