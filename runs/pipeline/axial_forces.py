@@ -31,7 +31,7 @@ def print_axial_forces(declared: Declared, console: Console) -> None:
     for model in declared.case.models:
         # A shell would have to be computed first.
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        factor = model.critical_factor(declared.joined(model))
+        factor = model.coarsened(declared.boom).critical_factor(declared.joined(model))
         cautions += of_buckling(name, factor)
         row = "unknown", "unknown"
         if factor is not None:

@@ -168,7 +168,7 @@ def _damping_ratios(foreseen: Foreseen) -> Table:
     given += [support.dashpot for segment in boom.segments for support in segment.supports]
     for model in case.models if any(given) else ():
         # A shell would have to be computed first.
-        beam = model.stand_in(boom).beam if model.needs_shell else model
+        beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
         table.add_row(name, *islice(_ratios(foreseen, model, beam), SHOWN_MODES))
     return table

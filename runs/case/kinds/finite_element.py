@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -29,7 +29,7 @@ FIELDS = 40
 
 # Of a dense eigenproblem of n coordinates: s for each n³, numbers for each n². Measured.
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
-# A beam of more coordinates is estimated by a coarser one.
+# A beam of more coordinates is estimated and checked by a coarser one.
 _BUILT = 400
 
 
@@ -106,16 +106,22 @@ class FiniteElementTable(CalibratedTable):
             along = [line.on(shapes) for line in lines(shell.fields, boom)]
         return replace(built, system=system, num_dofs=system.num_modes, along=along)
 
+    def coarsened(self, boom: Boom) -> Self:
+        length = self.element_length * max(1.0, self._coordinates(boom) / _BUILT)
+        return self.model_copy(update={"element_length": length})
+
     def beam_stand_in(self, boom: Boom) -> StandIn:
-        nodes = sum(
-            np.ceil(segment.length / self.element_length) + 1 + len(boom.stations_of(number))
-            for number, segment in enumerate(boom.segments)
-        )
-        coordinates = int((5 if boom.spatial else 2) * nodes)
-        coarser = max(1.0, coordinates / _BUILT)
+        coordinates = self._coordinates(boom)
         return StandIn(
-            self.model_copy(update={"element_length": coarser * self.element_length}),
+            self.coarsened(boom),
             coordinates,
             memory=8.0 * _EIGEN_ROOM * coordinates**2,
             seconds=_EIGEN_TIME * coordinates**3,
         )
+
+    def _coordinates(self, boom: Boom) -> int:
+        nodes = sum(
+            np.ceil(segment.length / self.element_length) + 1 + len(boom.stations_of(number))
+            for number, segment in enumerate(boom.segments)
+        )
+        return int((5 if boom.spatial else 2) * nodes)

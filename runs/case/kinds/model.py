@@ -153,6 +153,14 @@ class ModelTable(Table):
         """
         return self
 
+    def coarsened(self, boom: Boom) -> Self:
+        """The model, or a coarser one that answers what is checked as well, and soon.
+
+        Args:
+            boom: of its case.
+        """
+        return self
+
     @property
     def play_free(self) -> bool:
         """Whether its segments are joined without play."""
@@ -182,7 +190,7 @@ class ModelTable(Table):
                     f"missing, and {self.name!r} needs it; give section or height_to_width",
                 )
         self._check_drives(where, joined.boom)
-        factor = self.critical_factor(joined)
+        factor = self.coarsened(joined.boom).critical_factor(joined)
         if factor is not None and factor <= 1.0:
             raise BoomError(
                 where,
