@@ -37,6 +37,19 @@ _TABLES = (
     '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\nmoment = true\n',
     '[[model]]\nname = "more"\nkind = "rigid"\ncontact = {{ force_table = [[0.001, {}]] }}\n',
     '[[model]]\nname = "more"\nkind = "shell"\ncontact_tolerance = {}\n',
+    '[[model]]\nname = "more"\nkind = "kantorovich"\nterms = {}\n',
+    '[[model]]\nname = "more"\nkind = "finite-element"\nelement_length = {}\n',
+    '[[model]]\nname = "more"\nkind = "finite-element"\ncalibrated_by = {}\n',
+    '[[model]]\nname = "more"\nkind = "finite-element"\n'
+    'calibrated_by = {{ name = "by", kind = "shell", {key} = {} }}\n',
+    '[[model]]\nname = "more"\nkind = "finite-element"\n'
+    'calibrated_by = {{ name = "by", kind = "shell", contact = {{ {key} = {} }} }}\n',
+    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = -100.0\n'
+    "table = [[0.0, {}], [{}, 1.0]]\n",
+    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\nramp = {}\nreleased = {}\n',
+    "[[axial]]\nforce = {}\nsegment = {}\n", "[life]\ndetail_category = {}\n",
+    '[[base]]\nacceleration = 1.0\nfile = {}\n',
+    '[[cylinder]]\nsegment = "outer"\nx = {}\ndepth = {}\nground = [{}, {}]\n',
 )  # fmt: skip
 
 
@@ -91,7 +104,9 @@ def _one_more_key(text: str, random: Random) -> str:
 
 
 def _one_more_table(text: str, random: Random) -> str:
-    table = random.choice(_TABLES).format(any_value(random, "1.0"))
+    table = random.choice(_TABLES)
+    values = [any_value(random, "1.0") for _ in range(table.count("{}"))]
+    table = table.format(*values, key=random.choice(_KEYS))
     return text.replace("[[model]]", f"{table}\n[[model]]", 1)
 
 
