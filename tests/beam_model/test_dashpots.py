@@ -21,7 +21,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Cylinder, Joint, Segment, Support
+from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, Segment, Support
 
 Models = Callable[..., list[SegmentModel]]
 
@@ -90,6 +90,27 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     assert found == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=2e-4)
     hertz, ratios = pressed_ratios(system)
     assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
+
+
+def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(
+    beam: Callable[..., Segment],
+) -> None:
+    """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Its bending is a thousand times faster,
+    and the default step must not turn that into damping."""
+    arm, damping, spring = 10.0, 1.0e3, 2.0e5
+    stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
+    supports = (Support(0.0), Support(arm, stiffness=spring, dashpot=damping))
+    segment = replace(beam(start=0.0, end=arm, supports=supports), material=stiff)
+    boom = Boom((segment,), ())
+    system = gap_system(boom, finite_element_segments(boom, 1.0, "timoshenko", True), [])
+    mass = segment.mass_per_length * arm
+    inertia = mass * arm**2 / 3.0 + segment.rotary_inertia * arm
+    omega, ratio = arm * np.sqrt(spring / inertia), 0.5 * damping * arm / np.sqrt(spring * inertia)
+    assert 0.02 < ratio < 0.06
+    first = np.eye(system.num_modes)[np.argmin(system.omega2)]
+    found = decrements(system, first, 8.5 * 2.0 * np.pi / omega, "tip")
+    assert found.size > 5
+    assert found == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=2e-3)
 
 
 @pytest.mark.parametrize("spatial", [False, True], ids=["flat", "in space"])

@@ -65,6 +65,16 @@ def test_friction_takes_energy_and_the_ledger_closes(five_terms: GapSystem) -> N
     assert (np.median(force, axis=0) < np.array([899.9, 999.9])).all()
 
 
+@pytest.mark.slow
+def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> None:
+    """Reference: analytic. Energy is conserved over 40 s of friction and Rayleigh damping."""
+    damped = replace(five_terms, damping=0.2 + 1.0e-4 * np.maximum(five_terms.omega2, 0.0))
+    run = AdaptiveStep()(Motion(damped, 40.0, 1.0e-2))
+    losses = [float(run.data[name][-1]) for name in ("friction_loss", "damping_loss")]
+    assert min(losses) > 0.05 * float(run.data["work"][-1])
+    assert run.energy_residual < 1e-9
+
+
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
     """Reference: a finer step, 4e-6 s. A quarter of the step leaves well below half the error."""
     tips = [
