@@ -10,6 +10,7 @@ VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes
 ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
 SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
+STUDIES := $(shell find studies -name '*.py')
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 READINGS := runs/out/readings/readings.json
 SWINGS := runs/out/drawn-out-sweep/sweep.csv
@@ -53,13 +54,13 @@ gallery: $(REPORTS) $(SWINGS) ## the pictures of docs/gallery.md, from the verif
 	$(BIN)/python -m runs.report.gallery
 
 bench: $(READY) ## what integrators and reductions cost, into runs/out/bench
-	$(BIN)/python -m runs.studies.cost.bench
+	$(BIN)/python -m studies.cost.bench
 
 readings: $(READY) ## which readings of the data the paper's statements exclude, into runs/out/readings
 	$(BIN)/python -m runs.paper.readings
 
 convergence: $(READY) ## what proves the models: benchmarks, refinements, other codes; into runs/out/convergence
-	$(BIN)/python -m runs.studies.convergence
+	$(BIN)/python -m studies.convergence
 
 validity: $(READY) ## where a beam may stand for the shell, over friction, play and load, into runs/out/validity
 	$(BIN)/protractile sweep runs/cases/beam-or-shell.toml --against shell --large \
@@ -97,7 +98,7 @@ matrix-%:
 
 clean: ## remove outputs, other codes, root file systems and caches
 	rm -rf --one-file-system runs/out build docs/api *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	find $(ROOMS) tests -name __pycache__ -prune -exec rm -rf {} +
+	find $(ROOMS) studies tests -name __pycache__ -prune -exec rm -rf {} +
 
 distclean: clean ## remove .venv too
 	rm -rf .venv
@@ -118,9 +119,9 @@ $(SWINGS): runs/cases/drawn-out.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko \
 	    --vary joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
 
-$(THEN): runs/cases/paper.toml runs/cases/paper-friction.toml $(SOURCES) | $(READY)
+$(THEN): runs/cases/paper.toml runs/cases/paper-friction.toml $(SOURCES) $(STUDIES) | $(READY)
 	@echo "solving $< as it was solved in 1997 ..."
-	@$(BIN)/python -m runs.studies.as_computed_then >/dev/null
+	@$(BIN)/python -m studies.as_computed_then >/dev/null
 
 .venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
 	@echo "installing Python packages into .venv (a minute or two) ..."

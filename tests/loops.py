@@ -10,8 +10,8 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
-from runs.studies.then.modal_integrators import NEWMARK
-from runs.studies.then.scheme_errors import own_root
+from studies.then.modal_integrators import NEWMARK
+from studies.then.scheme_errors import own_root
 from tests import rubbing
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """What numerics of the paper's own time show of its statements, beside the verdicts on a run.
 
-``python -m runs.studies.as_computed_then`` finds it; a run's folder may hold a copy.
+``python -m studies.as_computed_then`` finds it; a run's folder may hold a copy.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from runs.case.schema import Case
 from runs.report.verdict import Verdict
 
 FILE = "then.json"
-MODULE = "runs.studies.as_computed_then"
+MODULE = "studies.as_computed_then"
 
 
 class Outcome(BaseModel):

@@ -3,7 +3,7 @@
 
 Estimates are to be high by a factor of up to about four rather than low. Steps of beams are those
 that they will make; a shell has not been meshed yet, and its steps follow from a beam's. The
-constants were measured on one core of an AMD EPYC (``python -m runs.studies.cost.bench``, and
+constants were measured on one core of an AMD EPYC (``python -m studies.cost.bench``, and
 tests/runs/test_estimates.py for the memory).
 """
 

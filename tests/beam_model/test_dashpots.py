@@ -95,8 +95,8 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
 def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(
     beam: Callable[..., Segment],
 ) -> None:
-    """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Its bending is a thousand times faster,
-    and the default step must not turn that into damping."""
+    """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Its bending is much faster, and the
+    default step must not turn that into damping."""
     arm, damping, spring = 10.0, 1.0e3, 2.0e5
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     supports = (Support(0.0), Support(arm, stiffness=spring, dashpot=damping))

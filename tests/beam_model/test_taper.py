@@ -24,7 +24,7 @@ from geometry.load import Load
 from geometry.section import BoxSection
 from geometry.unequal_box import UnequalBox
 from runs.case.kinds.finite_element import FiniteElementTable
-from runs.studies import taper
+from studies import taper
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 ROOT = BoxSection(height=0.8, width=0.5, flange=0.02, web=0.012)

@@ -16,7 +16,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from runs.case import reading as case_file
 from runs.report import figures
-from runs.studies.cost.bench import (
+from studies.cost.bench import (
     COMPILED,
     LEVELS,
     NUMPY,
@@ -27,7 +27,7 @@ from runs.studies.cost.bench import (
     five_terms,
     pressed_system,
 )
-from runs.studies.cost.generic_solvers import (
+from studies.cost.generic_solvers import (
     SOLVERS,
     array_rates,
     compiled_rates,

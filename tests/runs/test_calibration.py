@@ -28,8 +28,8 @@ from runs.pipeline.means import Means
 from runs.pipeline.models import build, workshop
 from runs.pipeline.run import run_case as run_models
 from runs.report.output import write
-from runs.studies.motions import move
-from runs.studies.working_load import Point, at_point
+from studies.motions import move
+from studies.working_load import Point, at_point
 from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.slow

@@ -12,7 +12,7 @@ from beam_model.segment_model import AT_PADS, gap_system
 from dynamics.contact import PowerContact
 from runs.case.build import build_boom
 from runs.pipeline.card import card
-from runs.studies.motions import friction_case
+from studies.motions import friction_case
 
 
 def test_it_tells_stiffness_and_springs() -> None:

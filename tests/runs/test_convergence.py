@@ -15,8 +15,8 @@ import pytest
 from rich.console import Console
 
 from runs.report.tables import Table
-from runs.studies import convergence, verification
-from runs.studies.study import Plot, Proof, Study
+from studies import convergence, verification
+from studies.study import Plot, Proof, Study
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 

@@ -23,8 +23,8 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.report.opensees import _points, write
-from runs.studies.motions import friction_case, model_of, move
-from runs.studies.pads import with_pads
+from studies.motions import friction_case, model_of, move
+from studies.pads import with_pads
 from tests.other_codes import INSTALLED, run_elsewhere
 
 # A load that grows, a weight, a spring: what the paper's boom does not have.
@@ -130,7 +130,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
 
     from runs.folder.cache import Cache
     from runs.pipeline.models import workshop
-    from runs.studies.calibrated_beams import calibrated
+    from studies.calibrated_beams import calibrated
 
     case = with_pads(friction_case(), 0.1, 0.06)
     shell = model_of(case, "shell").model_copy(update={"mesh_size": 0.25})

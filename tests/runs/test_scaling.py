@@ -11,7 +11,7 @@ from rich.console import Console
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.studies.cost.scaling import STAGES, STEPS, Sizes, scaling
+from studies.cost.scaling import STAGES, STEPS, Sizes, scaling
 
 pytestmark = pytest.mark.slow
 

@@ -23,7 +23,7 @@ from runs.pipeline.at_rest import rest_at
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
-from runs.studies.drawn_column import END, LAW, LENGTH, STIFFNESS, column
+from studies.drawn_column import END, LAW, LENGTH, STIFFNESS, column
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 

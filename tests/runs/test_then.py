@@ -20,7 +20,7 @@ from runs.paper.verdict_table import print_verdicts
 from runs.report.verdict import Verdict
 
 SAYS = "not shown: in no run of 18 numerics"
-REMEDY = "remove it, or run python -m runs.studies.as_computed_then again"
+REMEDY = "remove it, or run python -m studies.as_computed_then again"
 
 
 @pytest.fixture

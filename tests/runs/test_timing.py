@@ -9,8 +9,8 @@ from functools import partial
 import pytest
 
 from runs.report.numerals import repeated
-from runs.studies.cost import timing
-from runs.studies.cost.timing import MEASURABLE, by_turns
+from studies.cost import timing
+from studies.cost.timing import MEASURABLE, by_turns
 
 
 class Clock:

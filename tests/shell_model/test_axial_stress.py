@@ -13,11 +13,11 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from mpi4py import MPI
 
 from geometry.boom import Boom, Collar
-from runs.studies.second_order import BOX, CLAMP, CRITICAL, LENGTH, STEEL, column
-from runs.studies.taper import arm
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.stresses import ShellStress, wall_forces
+from studies.second_order import BOX, CLAMP, CRITICAL, LENGTH, STEEL, column
+from studies.taper import arm
 
 
 def stressed(boom: Boom) -> ShellStress:

@@ -27,8 +27,8 @@ from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.verification.generalised_alpha import GeneralisedAlpha
-from shell_model.verification.unreduced import integrate_directly
+from studies.reference_models.generalised_alpha import GeneralisedAlpha
+from studies.reference_models.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 
 _SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)

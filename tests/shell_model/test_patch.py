@@ -14,9 +14,9 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from dynamics.failure import NumericsError
-from shell_model.verification.plates import OBLIQUE, STEEL, ConstantStrain, Patch, constant_strains
-from shell_model.verification.prismatic import Member, PlainBox
-from shell_model.verification.static_shell import StaticShell, hold
+from studies.reference_models.plates import OBLIQUE, STEEL, ConstantStrain, Patch, constant_strains
+from studies.reference_models.prismatic import Member, PlainBox
+from studies.reference_models.static_shell import StaticShell, hold
 from tests.shell_model.conftest import BOX
 
 # A Z of three walls.

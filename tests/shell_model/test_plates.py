@@ -11,10 +11,10 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.verification.eigenmodes import natural_frequencies
-from shell_model.verification.plates import SupportedPlate
-from shell_model.verification.prismatic import ANGLE, PlainBox
-from shell_model.verification.prismatic import BOX as CLOSED
+from studies.reference_models.eigenmodes import natural_frequencies
+from studies.reference_models.plates import SupportedPlate
+from studies.reference_models.prismatic import ANGLE, PlainBox
+from studies.reference_models.prismatic import BOX as CLOSED
 from tests.shell_model.booms import HELD, flat_boom
 
 Shells = Callable[..., SegmentShell]

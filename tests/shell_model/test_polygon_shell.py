@@ -31,7 +31,6 @@ from geometry.boom import (
 from geometry.contact_places import ContactLine, Stretch
 from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Section
-from runs.studies import sections
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.corner_lines import CornerLines
 from shell_model.contact.wall_points import Wall, WallPoints
@@ -41,6 +40,7 @@ from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell
+from studies import sections
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import UNEQUAL
 

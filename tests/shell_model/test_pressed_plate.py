@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from shell_model.verification.plates import STEEL
-from shell_model.verification.pressed_plate import Edges, PressedPlate, flange
+from studies.reference_models.plates import STEEL
+from studies.reference_models.pressed_plate import Edges, PressedPlate, flange
 
 pytestmark = pytest.mark.slow
 

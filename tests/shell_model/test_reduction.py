@@ -18,7 +18,7 @@ from shell_model.reduction.segment import (
 )
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.verification.eigenmodes import natural_frequencies
+from studies.reference_models.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD
 
 Shells = Callable[..., SegmentShell]

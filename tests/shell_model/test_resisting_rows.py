@@ -9,7 +9,7 @@ import pytest
 from dynamics.contact import PowerContact, contact_terms
 from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
-from shell_model.verification.resisting_rows import ResistingRows, resist
+from studies.reference_models.resisting_rows import ResistingRows, resist
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])

@@ -26,9 +26,9 @@ from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Outline
 from shell_model.segment.products import quadratic_form, times
 from shell_model.segment.segment_shell import assemble_segment
-from shell_model.verification.eigenmodes import natural_frequencies
-from shell_model.verification.solid import SolidFamily, assemble_solid
-from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
+from studies.reference_models.eigenmodes import natural_frequencies
+from studies.reference_models.solid import SolidFamily, assemble_solid
+from studies.reference_models.solid_mesh import SolidMesh, mesh_quarter
 from tests.shell_model.booms import STEEL, box_segment
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.04, web=0.03)

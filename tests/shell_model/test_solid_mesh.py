@@ -11,7 +11,7 @@ import pytest
 
 from geometry.arrays import Array
 from geometry.section import BoxSection
-from shell_model.verification.solid_mesh import SolidMesh, mesh_quarter
+from studies.reference_models.solid_mesh import SolidMesh, mesh_quarter
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.03, web=0.02)
 PLACES = (0.0, 0.5, 2.0)

@@ -21,12 +21,12 @@ from geometry.profiles import hexagon, u_section
 from geometry.section import COMPONENT, BoxSection, Section
 from geometry.taper import mean_area
 from geometry.unequal_box import UnequalBox
-from runs.studies.sections import LAW, STEEL
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.lines import lines
+from studies.sections import LAW, STEEL
 
 ENDS: Mapping[str, tuple[Section, Section]] = {
     "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from shell_model.verification.benchmarks import PUBLISHED, twisted_beam
+from studies.reference_models.benchmarks import PUBLISHED, twisted_beam
 
 
 @pytest.mark.parametrize(("edges", "allowed"), [(2, 5.0e-3), (4, 5.0e-4)])

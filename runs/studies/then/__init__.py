@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: LGPL-3.0-or-later
-"""The examples of the paper by numerics of its time, for :mod:`runs.studies.as_computed_then`."""

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a designer is answered, against the lever rule, exact beams, and published cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from mpi4py import MPI
+
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
+from beam_model.lines import lines
+from beam_model.segment_model import tied_system
+from dynamics.integrator import simulate
+from geometry.boom import Boom, Segment
+from runs import CASES
+from runs.case import reading as case_file
+from runs.pipeline.answers import Answers, Diagram, ModelAnswers
+from runs.pipeline.at_rest import at_rest, positions
+from runs.pipeline.life import counted, endurance
+from runs.pipeline.means import Means
+from runs.pipeline.modes import modes
+from runs.pipeline.moved import Motions, gone_through
+from runs.pipeline.run import run_case
+from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
+from studies.study import Held, Proof, Tell, titled
+
+# Of the paper's boom: N/m on both segments.
+OUTER, INNER = 83.16, 55.07
+# Stations, the far support and the tip in m, the play in m, the contacts in N/m.
+TAIL, HEAD, SUPPORT, TIP, PLAY, STIFF = 9.0, 10.0, 2.0, 19.0, 0.014, 1.0e9
+MODELS = ("timoshenko", "shell")
+# Between them section forces are read.
+ALONG_OUTER, ALONG_INNER = 5.5, 14.0
+# N/m on a cantilever.
+LOAD = -100.0
+
+# ASTM E1049-85, figure 6, and how many cycles its table has of each range.
+ASTM = (-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0)
+CYCLES = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+# EN 1993-1-9, 7.1: cycles of the category 71 at ranges in MPa, by its formulas.
+CURVE = {71.0: 2.0e6, 71.0 * 0.4 ** (1.0 / 3.0): 5.0e6, 71.0 * 0.4 ** (1.0 / 3.0) * 0.05**0.2: 1e8}
+
+# Pieces of half a metre know moments up to q h²/12, here 1.7 N m.
+CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
+LEVERS: Held = ("analytic", "lever rule", EXACT)
+
+
+@titled("answers", "What a designer asks")
+def study(tell: Tell) -> Iterator[Proof]:
+    """The paper's boom at rest, a cantilever in motion, cycles by hand."""
+    tell("the paper's boom at rest")
+    answers = answered()
+    for name in MODELS:
+        yield from _at_rest(name, answers.models[name])
+    yield from _reactions(answers)
+    tell("a cantilever")
+    yield from _cantilever()
+    yield from _cycles()
+
+
+def answered() -> Answers:
+    """Of the paper's boom, which hardly moves in so short a time."""
+    case = case_file.load(str(CASES / "coarse.toml"))
+    time = case.time.model_copy(update={"duration": 0.01})
+    models = tuple(model for model in case.models if model.name in MODELS)
+    short = case.model_copy(update={"models": models, "time": time})
+    run = run_case(short, "coarse.toml", Means(MPI.COMM_SELF))
+    assert run is not None
+    run.answer()
+    return run.results.summary.answers
+
+
+def station_forces() -> tuple[float, float]:
+    """At tail and head in N, upwards on the outer segment: by the lever rule."""
+    load = INNER * (TIP - TAIL)
+    head = load * (0.5 * (TIP + TAIL) - TAIL) / (HEAD - TAIL)
+    return load - head, head
+
+
+def support_forces() -> tuple[float, float]:
+    """At 0 and at the far support in N, upwards, of the outer segment."""
+    tail, head = station_forces()
+    far = -(0.5 * OUTER * HEAD**2 + tail * TAIL + head * HEAD) / SUPPORT
+    return -OUTER * HEAD - tail - head - far, far
+
+
+def _at_rest(name: str, own: ModelAnswers) -> Iterator[Proof]:
+    (rest,) = own.rests
+    tail, head = station_forces()
+    tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
+    held: Held = ("analytic", "2 Δ and what contacts give way, over the overlap", CLOSE)
+    turned = 1e3 * rest.tilts[0].rotation
+    yield Proof(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *held)
+    for pressed, force in zip(rest.stations, (tail, head), strict=True):
+        what = f"contact force at {pressed.x:g} m, {name}"
+        yield Proof(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
+    at_foot, far = support_forces()
+    x, s = ALONG_OUTER, TIP - ALONG_INNER
+    outer, inner = rest.diagrams
+    bent = -(at_foot * x + far * (x - SUPPORT) + 0.5 * OUTER * x**2)
+    for diagram, place, what, unit, force in (
+        (outer, x, "shear", "kN", -(at_foot + far + OUTER * x)),
+        (outer, x, "moment", "kN m", bent),
+        (inner, ALONG_INNER, "shear", "kN", INNER * s),
+        (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
+    ):
+        found, named = 1e-3 * read(diagram, what, place), f"{what} at {place:g} m, {name}"
+        yield Proof(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
+
+
+def read(diagram: Diagram, what: str, place: float) -> float:
+    """A curve at a place in m."""
+    return float(np.interp(place, diagram.x, diagram.curves[what]))
+
+
+def _reactions(answers: Answers) -> Iterator[Proof]:
+    for held, force in zip(answers.reactions, support_forces(), strict=True):
+        what = f"reaction at {held.x:g} m"
+        yield Proof(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
+
+
+def _cantilever() -> Iterator[Proof]:
+    """Its modes and its stress at rest by elements, and its swing in one coordinate."""
+    arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
+    boom = Boom((arm,), ())
+    elements = finite_element_segments(boom, 0.2, "euler-bernoulli", rotary_inertia=False)
+    own = swung(boom, elements)
+    rate = np.sqrt(STIFFNESS / arm.mass_per_length) / (2.0 * np.pi * LENGTH**2)
+    for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
+        mode = next(one for one in own.modes if one.number == number)
+        what = f"cantilever, {mode.way}, mode {number}"
+        yield Proof(what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE)
+    assert own.moved is not None
+    moment = 0.5 * abs(LOAD) * LENGTH**2
+    stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
+    (fibre,) = own.moved.fibres
+    assert fibre.at_rest is not None
+    held: Held = ("analytic", "M c/J, Navier 1826", CLOSE)
+    yield Proof("outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *held)
+    single = swung(boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False))
+    assert single.moved is not None
+    for peak in single.moved.peaks:
+        assert peak.factor is not None
+        what = f"dynamic factor of its {peak.what}, one coordinate, loaded suddenly"
+        yield Proof(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
+
+
+def swung(boom: Boom, segments: list[SegmentModel]) -> ModelAnswers:
+    """A boom of one segment that its load meets suddenly, for half a second."""
+    system, along = tied_system(boom, segments), lines(boom, segments)
+    rest = positions(system)[0.0]
+    told = [at_rest(boom, system, along, 0.0, rest)]
+    motion = simulate(system, duration=0.5)
+    motions = Motions(boom, along, motion, rest[None], told, jumps=False)
+    moved, _ = gone_through(motions)
+    return ModelAnswers(rests=told, modes=modes(boom, system, along, rest), moved=moved)
+
+
+def _cycles() -> Iterator[Proof]:
+    found = counted(ASTM)
+    counts = dict(zip(found.sizes.tolist(), found.counts.tolist(), strict=True))
+    for size, expected in CYCLES.items():
+        what = f"rainflow cycles of the range {size:g}"
+        source = "ASTM E1049-85, figure 6"
+        yield Proof(what, counts.get(size, 0.0), expected, "", "external", source, EXACT)
+    for size, cycles in CURVE.items():
+        found_cycles = float(endurance(np.array([1e6 * size * (1.0 + 1e-12)]), 71e6)[0])
+        what = f"cycles of {size:.4g} MPa, detail category 71"
+        yield Proof(what, found_cycles, cycles, "", "external", "EN 1993-1-9, 7.1", EXACT)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Statements of the paper that fail when its equations are solved well, as solved in 1997.
+
+``python -m studies.as_computed_then`` leaves what verdicts on the paper's cases show of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.typography import TO_PERCENT
+from runs.case import reading as case_file
+from runs.case import toml
+from runs.paper import then
+from runs.paper.reading import LITERAL
+from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
+from runs.process import notices
+from runs.report.numerals import NONE, number
+from runs.report.tables import Cell, Table, wide_console, write
+from studies.study import Piece, Plot, Tell, titled
+from studies.then.general_solver import METHODS
+from studies.then.modal_integrators import NEWMARK, WILSON
+from studies.then.samples import MEMBERS, MODES, SERIES, THEN, Moved, Numerics
+from studies.then.scheme_errors import proofs
+from studies.then.survey import ABOUT, TOLERANCES, WITH, WITHOUT, Survey, lost_then, share
+
+OUT = Path("runs/out/then")
+TITLE = "Statements of the paper as they were computed then"
+# Figures show energy from nowhere up to so much, in percent, and so many points of a curve.
+CUT, POINTS = 150.0, 1000
+
+
+@titled("as-computed-then", TITLE)
+def study(tell: Tell) -> Iterator[Piece]:
+    """Both examples by every scheme, with few modes, gaps iterated or lagged, at three steps."""
+    survey = Survey.of(tell)
+    yield from tables(survey)
+    yield from proofs()
+    yield from plots(survey)
+
+
+def tables(survey: Survey) -> list[Table]:
+    """All of a survey."""
+    made = outcome_table, free_table, rubbed_table, printed_table, reach_table
+    return [table(survey) for table in made]
+
+
+def outcome_table(survey: Survey) -> Table:
+    """A row for each statement."""
+    rows = [
+        (key, "yes" if found.shown else "no", found.why) for key, found in survey.outcomes.items()
+    ]
+    return Table.of_rows(
+        "then-statements",
+        "Which numerics of 1997 show what the paper says",
+        {"statement": "", "shown": "", "by": ""},
+        rows,
+        (
+            f"Shown: by some numerics in {TO_PERCENT * MOST:g} % of the runs or more. Runs have "
+            f"{', '.join(map(str, MODES))} modes of the elements, {MEMBERS} each with loads "
+            "changed by 1e-9.",
+        ),
+    )
+
+
+def free_table(survey: Survey) -> Table:
+    """Without friction: a row for each numerics, and one for both examples solved well."""
+    example = survey.without
+    peak = np.mean([one.elements.first_peak for one in example.well])
+    rows: list[Sequence[Cell]] = []
+    for how, samples in (("solved well", example.well), *survey.free.items()):
+        off = TO_PERCENT * (np.array([one.elements.first_peak for one in samples]) / peak - 1.0)
+        alike, mixed = (
+            [one.peaks(example.cutoff) for one in found]
+            for found in (samples, example.mixed(samples))
+        )
+        energies = _energies([one.elements for one in samples])
+        rows.append((str(how), *energies, _span(off), *_parting(alike), *_parting(mixed)))
+    headings = ("peaks apart to 6 s\n(%, median)", "and later", "as S3 says\n(% of runs)")
+    columns = {
+        "numerics": "", "elements gain more\nthan was put in at (s)": "",
+        "energy at the end\n(% of that put in)": "", "first peak of the\nelements off (%)": "",
+        **dict.fromkeys(headings, ".0f"),
+        **dict.fromkeys((f"{one},\nseries solved well" for one in headings), ".0f"),
+    }  # fmt: skip
+    return Table.of_rows(
+        "then-free", "Without friction: the tip by numerics of 1997", columns, rows
+    )
+
+
+def rubbed_table(survey: Survey) -> Table:
+    """With friction: the same."""
+    rows: list[Sequence[Cell]] = []
+    example = survey.with_friction
+    for how, samples in (("solved well", example.well), *survey.rubbed.items()):
+        apart = TO_PERCENT * np.array([one.apart() for one in samples])
+        rows.append(
+            (
+                str(how),
+                *_energies([one.elements for one in samples]),
+                _span([TO_PERCENT * one.elements.unsettled for one in samples]),
+                _span([TO_PERCENT * example.off(one.elements) for one in samples]),
+                _span(apart[:, 0]),
+                _span(apart[:, 1]),
+                TO_PERCENT * share(one.stratifies() for one in samples),
+                TO_PERCENT * share(one.stratifies() for one in example.mixed(samples)),
+                TO_PERCENT * share(map(lost_then, samples)),
+            )
+        )
+    columns = {
+        "numerics": "", "elements gain more\nthan was put in at (s)": "",
+        "energy at the end\n(% of that put in)": "", "steps without\nagreement (%)": "",
+        "elements off to 6 s\n(% of range)": "", "models apart to 6 s\n(% of range)": "",
+        "and later": "", "as S7 says\n(% of runs)": ".0f", "with the series\nsolved well": ".0f",
+        f"lost at {INTERVAL - ABOUT:g} to {INTERVAL + ABOUT:g} s\n(% of runs)": ".0f",
+    }  # fmt: skip
+    return Table.of_rows("then-rubbed", "With friction: the tip by numerics of 1997", columns, rows)
+
+
+def printed_table(survey: Survey) -> Table:
+    """When elements are lost whose contacts are as soft as the print has them."""
+    gained, ends = "elements gain more than\nwas put in at (s), ", "energy at the end\n(%), "
+    headings = [part + which for which in ("free", "friction") for part in (gained, ends)]
+    rows: list[Sequence[Cell]] = [
+        (str(how), *(cell for runs in both for cell in _energies(runs)))
+        for how, both in survey.printed.items()
+    ]
+    return Table.of_rows(
+        "then-printed",
+        f"With contacts of {number(LITERAL)} N/m, as the print has them",
+        {"numerics": "", **dict.fromkeys(headings, "")},
+        rows,
+        (f"With {', '.join(map(str, MODES))} modes, one run each.",),
+    )
+
+
+def reach_table(survey: Survey) -> Table:
+    """How far the general solver comes."""
+    rows: list[Sequence[Cell]] = []
+    for method, tolerance in product(METHODS, TOLERANCES):
+        ways = [(method, tolerance, *way[::-1]) for way in product((False, True), SERIES)]
+        rows.append((method, number(tolerance), *(survey.reached[way] for way in ways)))
+    columns = {
+        "solver": "", "tolerance": "", "four terms": ".3g", "five terms": ".3g",
+        "four terms, friction": ".3g", "five terms, friction": ".3g",
+    }  # fmt: skip
+    return Table.of_rows(
+        "then-series", f"How far {SERIES_STEPS} steps of a general solver reach (s)", columns, rows
+    )
+
+
+def plots(survey: Survey) -> Iterator[Plot]:
+    """The tip by both iterated schemes at the paper's step, and their energy."""
+    for name, what, example, samples in (
+        ("then-free", "Without friction", survey.without, survey.free),
+        ("then-rubbed", "With friction", survey.with_friction, survey.rubbed),
+    ):
+        by = {
+            f"{scheme.name}, iterated": max(
+                (one.elements for one in samples[Numerics(scheme, True, THEN)]),
+                key=lambda run: run.breaks,
+            )
+            for scheme in (NEWMARK, WILSON)
+        }
+        runs = {**by, "solved well": example.well[0].elements}
+        yield Plot(
+            name,
+            f"{what}: the beam elements' tip, solved well and as computed then",
+            "time (s)",
+            "tip (mm)",
+            {label: _curve(run.time, 1e3 * run.tip) for label, run in runs.items()},
+            f"{1e3 * THEN:g} ms; of {MEMBERS * len(MODES)} runs the one that lasts longest.",
+            logarithmic=False,
+        )
+        yield Plot(
+            f"{name}-energy",
+            f"{what}: energy from nowhere",
+            "time (s)",
+            "% of the energy put in",
+            {label: _cut(run.time, TO_PERCENT * run.balance) for label, run in runs.items()},
+            f"Gained above, lost below zero; cut at {CUT:g} %.",
+            logarithmic=False,
+        )
+
+
+def _energies(runs: Sequence[Moved]) -> tuple[str, str]:
+    """When their energy breaks out, and what is gained or lost where it does not."""
+    breaks = [run.breaks for run in runs]
+    ends = [TO_PERCENT * run.balance[-1] for run in runs]
+    return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
+
+
+def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
+    """Medians of how far peaks are apart early and late, and the runs that show S3, in percent."""
+    early, late = np.median(peaks, axis=0)
+    shown = share(before <= DIVERGENCE < after for before, after in peaks)
+    return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown
+
+
+def _span(values: Sequence[float] | Array) -> str:
+    """From the smallest to the largest, with two digits; none that is not finite."""
+    finite = [float(value) for value in values if np.isfinite(value)]
+    if not finite:
+        return NONE
+    ends = dict.fromkeys(number(end, 2) for end in (min(finite), max(finite)))
+    many = "" if len(finite) == len(values) else f" ({len(finite)} of {len(values)})"
+    return " … ".join(ends) + many
+
+
+def _curve(time: Array, values: Array) -> tuple[list[float], list[float]]:
+    """For a figure, as many points as can be seen."""
+    shown = slice(None, None, max(1, time.size // POINTS))
+    return time[shown].tolist(), values[shown].tolist()
+
+
+def _cut(time: Array, values: Array) -> tuple[list[float], list[float]]:
+    """The same until ``CUT`` is passed."""
+    shown = np.cumsum(~(values < CUT)) == 0
+    return _curve(time[shown], values[shown])
+
+
+def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
+    """Write ``then.json`` and ``then.md`` with these tables."""
+    cases = [case_file.load(str(path)) for path in (WITHOUT, WITH)]
+    data = {
+        "case_hashes": [toml.digest(case) for case in cases],
+        "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
+    }
+    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in made])
+
+
+def main() -> None:
+    """Print the tables, and leave them where the verdicts look for them."""
+    survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
+    made = tables(survey)
+    for table in made:
+        table.text.show(wide_console())
+    leave(survey, made, OUT)
+    print(f"written to {OUT}")
+
+
+if __name__ == "__main__":
+    notices.show()
+    main()

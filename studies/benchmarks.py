@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The shell element on the field's benchmarks, and on what it must do exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from runs.case.build import build_boom
+from runs.report.numerals import scientific
+from runs.report.tables import Cell, Table
+from shell_model.segment.forms import DRILLING, DRILLING_OF_CURVED
+from studies.motions import friction_case
+from studies.reference_models import benchmarks
+from studies.reference_models.benchmarks import PUBLISHED, SHEAR_RIGID
+from studies.reference_models.plates import OBLIQUE, Patch, SupportedPlate, constant_strains
+from studies.reference_models.prismatic import ANGLE, BOX, PlainBox
+from studies.refined import Reference, Refined, error_plot, refined_table
+from studies.study import Held, Piece, Proof, Tell, titled
+
+# Thickness of the plates that vibrate over their longer side.
+THIN, THICK = 0.001, 0.1
+
+NOTES = (
+    "Edges along a side of the symmetric part that is computed, over the width of the twisted "
+    "beam, over a wall of a section in torsion. Order, limit and index of the three finest values.",
+    "The published dent of the cylinder is that of a shell without shear strain; with shear it is "
+    "3 % deeper, and has no limit under a force in a point. Facets near the force are smaller.",
+    "Twisting moments fall to zero in a layer as wide as the wall is thick along free and simply "
+    "held edges: the roof and the angle give way a little more as the mesh begins to see it.",
+)
+DRILLING_NOTE = (
+    f"The default is {DRILLING:g} where plates are folded and {DRILLING_OF_CURVED:g} where facets "
+    "approach a curved surface. A stiff tie resists the shear flow around a fold; a soft one lets "
+    "a warped surface give way."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Meshes as numbers of edges along a side, each twice the one before, three at least."""
+
+    roof: Sequence[int] = (4, 8, 16, 32, 64)
+    cylinder: Sequence[int] = (12, 24, 48, 96)
+    hemisphere: Sequence[int] = (8, 16, 32, 64)
+    twisted: Sequence[int] = (1, 2, 4, 8, 16)
+    plate: Sequence[int] = (4, 8, 16, 32, 64)
+    torsion: Sequence[int] = (2, 4, 8)  #: over the width of each wall, one or more
+    slenderness: int = 20  #: edges along a twisted member for each one over a wall
+    box: float = 0.2  #: edge length of the boxes in m
+    frequencies: int = 10  #: how many of a box or plate
+    decades: int = 4  #: how far the drilling tie varies, in powers of ten
+
+
+def refined(
+    what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
+) -> Refined:
+    """A benchmark on meshes of so many edges, whose sizes are told over the finest."""
+    sizes = [edges[-1] / n for n in edges]
+    return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
+
+
+def published(sizes: Sizes) -> list[Refined]:
+    """The benchmarks with published values."""
+    stiff_in_shear = partial(benchmarks.pinched_cylinder, shear_correction=SHEAR_RIGID)
+    twisted = [benchmarks.twisted_beam(n) for n in sizes.twisted]
+    macneal, beam = "MacNeal and Harder 1985", PUBLISHED.twisted_beam
+    rows: list[tuple[str, Sequence[int], Sequence[float], float, str, float]] = [
+        ("Scordelis-Lo roof", sizes.roof, [benchmarks.scordelis_lo_roof(n) for n in sizes.roof],
+         PUBLISHED.scordelis_lo_roof, "Scordelis and Lo 1964", 0.01),
+        ("pinched cylinder", sizes.cylinder, [stiff_in_shear(n) for n in sizes.cylinder],
+         PUBLISHED.pinched_cylinder, "Flügge 1960, no shear", 0.01),
+        ("hemisphere", sizes.hemisphere, [benchmarks.hemisphere(n) for n in sizes.hemisphere],
+         PUBLISHED.hemisphere, macneal, 0.02),
+        ("twisted, in plane", sizes.twisted, [one.in_plane for one in twisted],
+         beam.in_plane, macneal, 0.01),
+        ("twisted, across", sizes.twisted, [one.out_of_plane for one in twisted],
+         beam.out_of_plane, macneal, 0.01),
+    ]  # fmt: skip
+    return [
+        refined(what, "", edges, values, Reference(value, "external", source, allowed))
+        for what, edges, values, value, source, allowed in rows
+    ]
+
+
+def plates(sizes: Sizes) -> list[Refined]:
+    """Lowest and fourth frequency of simply supported plates, thin and moderately thick."""
+    thin, thick = (SupportedPlate(1.0, 0.8, thickness) for thickness in (THIN, THICK))
+    found = []
+    for name, plate, exact, source in (
+        ("thin", thin, thin.kirchhoff(4), f"Kirchhoff's plate, t/a = {THIN:g}, Navier 1823"),
+        ("thick", thick, thick.mindlin(4), f"t/a = {THICK:g}, Mindlin 1951"),
+    ):
+        measured = np.array([plate.frequencies(n, 4) for n in sizes.plate])
+        for mode in (1, 4):
+            reference = Reference(float(exact[mode - 1]), "analytic", source, 0.01)
+            what, values = f"{name} plate, mode {mode}", measured[:, mode - 1].tolist()
+            found.append(refined(what, "Hz", sizes.plate, values, reference))
+    return found
+
+
+def torsion(sizes: Sizes) -> Iterator[Refined]:
+    """Torsion constants of an open and of a closed section."""
+    for name, member, source, allowed in (
+        ("angle 100 × 100 × 1 mm", ANGLE, "Σ b t³/3, Saint-Venant 1855", 0.005),
+        ("box 100 × 60 × 1 mm", BOX, "4 A² t/Σ b + Σ b t³/3, Bredt 1896", 0.001),
+    ):
+        found = [member.torsion_constant(n, sizes.slenderness * n) for n in sizes.torsion]
+        reference = Reference(member.thin_walled_constant, "analytic", source, allowed)
+        yield refined(f"torsion constant, {name}", "m⁴", sizes.torsion, found, reference)
+
+
+def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Proof]:
+    """What holds to round-off: patches under constant strain, and a turned box."""
+    patch = Patch.of()
+    held: Held = ("analytic", "the field that is held on its edges", 1.0e-11)
+    for state in constant_strains():
+        what = f"patch under constant {state.name} strain, oblique: largest error"
+        yield Proof(what, patch.error(state), 0.0, "", *held)
+    straight, turned = (
+        box.free_frequencies(sizes.box, sizes.frequencies, turn=turn) for turn in (None, OBLIQUE)
+    )
+    worst = int(np.abs(turned / straight - 1.0).argmax())
+    what = f"box turned in space: frequency {worst + 1}, which changes most"
+    held = ("analytic", "the same box along x", 1.0e-8)
+    yield Proof(what, float(turned[worst]), float(straight[worst]), "Hz", *held)
+
+
+def drilling(box: PlainBox, y: float, sizes: Sizes) -> Iterator[Table | Proof]:
+    """Boxes under ties up to 100 times their default, a twisted beam from its own default on.
+
+    Args:
+        box: an outer segment.
+        y: where the inner segment presses on it, in m from the middle.
+        sizes: what is measured.
+    """
+    powers = 10.0 ** np.arange(sizes.decades + 1)
+    soft, stiff = DRILLING * 1.0e-2 * powers, DRILLING_OF_CURVED * powers
+    supports, station = (0.0, 0.2 * box.length), 0.9 * box.length
+    rows: list[Sequence[Cell]] = []
+    for what, default, ties, measure in (
+        ("frequencies of the free box", DRILLING, soft,
+         lambda tie: box.free_frequencies(sizes.box, sizes.frequencies, tie)),
+        ("contact compliance of the box", DRILLING, soft,
+         lambda tie: [box.compliance(sizes.box, supports, station, y, tie)]),
+        ("twisted beam", DRILLING_OF_CURVED, stiff,
+         lambda tie: benchmarks.twisted_beam(sizes.twisted[-2], tie)),
+    ):  # fmt: skip
+        values = np.array([measure(tie) for tie in ties])
+        changes = values / values[np.isclose(ties, default)] - 1.0
+        rows += [
+            (what, tie, 100.0 * change[np.abs(change).argmax()])
+            for tie, change in zip(ties, changes, strict=True)
+        ]
+        first, last = (scientific(tie) for tie in ties[[0, -1]])
+        spread = float((np.ptp(values, axis=0) / np.abs(values[0])).max())
+        held: Held = ("non-regression", f"the default tie, {scientific(default)}", 1.0e-3)
+        what = f"{what}: spread over drilling ties from {first} to {last}"
+        yield Proof(what, spread, 0.0, "", *held)
+    columns = {"what": "", "tie / (G t)": ".1g", "largest change from the default (%)": ".4f"}
+    title = "What the drilling tie changes"
+    yield Table.of_rows("drilling", title, columns, rows, (DRILLING_NOTE,))
+
+
+@titled("benchmarks", "The shell element")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Benchmarks, patches, plates, torsion, a turned box, and the drilling tie."""
+    sizes = sizes or Sizes()
+    outer, inner = (segment.section for segment in build_boom(friction_case()).segments)
+    assert outer is not None
+    assert inner is not None
+    box = PlainBox(outer, 10.0)
+    tell("published benchmarks")
+    known = published(sizes)
+    tell("plates and torsion")
+    vibrating = plates(sizes)
+    found = [*known, *vibrating, *torsion(sizes)]
+    yield from (one.proof for one in found)
+    tell("pinched cylinder with shear")
+    dents = [benchmarks.pinched_cylinder(n) for n in sizes.cylinder]
+    sheared = Refined("pinched cylinder with shear", "", known[1].sizes, dents)
+    title = "The shell against published and analytic values"
+    yield refined_table("benchmarks", title, [*found, sheared], "edges × {:g}", NOTES)
+    tell("patches and a turned box")
+    yield from exactness(box, sizes)
+    tell("drilling ties")
+    yield from drilling(box, 0.5 * inner.size("y"), sizes)
+    x = "length of an edge over the finest one's"
+    title = "Flat facets close in on the published values"
+    caption = (
+        "Relative error against the published value. It levels off where the value itself is no "
+        "more accurate."
+    )
+    yield error_plot("benchmarks", title, x, known, caption)
+    title = "Simply supported plates close in on theory"
+    caption = "Relative error of natural frequencies against Kirchhoff's and Mindlin's plates."
+    yield error_plot("plates", title, x, vibrating, caption)

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A short pair of boxes, one in the other, as shells and as solids.
+
+Both are taken by families of mirrored motions, on a quarter, and read the same way, so that
+whatever is measured of one can be measured of the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import AdaptiveStep
+from dynamics.motion import Motion
+from geometry.arrays import Array
+from geometry.boom import Segment, Support
+from geometry.section import BoxSection
+from shell_model.contact.wall_points import gauss
+from shell_model.reduction.krylov import KrylovOptions, reduce_family
+from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
+from shell_model.reduction.solver import ShiftedSolver
+from shell_model.reduction.symmetry import Folding
+from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.products import times
+from shell_model.segment.shell import Shell
+from studies.motions import SLOW
+from studies.reference_models.lone_segment import shell_alone
+from studies.reference_models.plates import STEEL
+from studies.reference_models.solid import assemble_solid
+from studies.reference_models.solid_mesh import mesh_quarter
+
+# Distances in m of the mid-lines, which stay where they are as walls become thicker.
+OUTER = (0.40, 0.30)
+INNER = (0.31, 0.21)
+# Where the outer box ends, which the inner one hits, in m.
+HEAD = 2.0
+TAIL, TIP = 1.5, 3.5
+
+# Pads of 0.1 m in the inner box's corners at its tail, pressed along three lines (Simpson's rule).
+PAD_WIDTH = 0.06
+PADDED = {TAIL: 1.0 / 6.0, TAIL + 0.05: 4.0 / 6.0, TAIL + 0.1: 1.0 / 6.0}
+
+# The blow: the inner box moves up as a whole and meets the head's webs across the play.
+SPEED = 1.0  # m/s
+CLEARANCE = 2.0e-3  # m
+# Of the contact, over the thickness of the walls, in N/m²: as stiff as the boxes are themselves.
+CONTACT = 1.0e10
+AFTER = 1.0e-2  # s
+OUTPUT_STEP = 1.0e-5  # s
+
+FREQUENCY = "frequency"
+# Up to the frequencies of a blow of some milliseconds.
+KRYLOV = KrylovOptions(shifts=(20.0, 800.0), moments=5)
+
+
+class Probe(NamedTuple):
+    """What is read of a segment, and pushed."""
+
+    what: str  #: its name
+    family: Family  #: of the motions that it belongs to
+    places: Mapping[float, float]  #: x in m → weight of what is read there
+    read: Callable[[Outline], Row]  #: of the section
+
+    def row(self, outline: Callable[[float], Outline]) -> Row:
+        """Over all places; ``outline`` gives the section at x."""
+        return sum((weight * self.read(outline(x)) for x, weight in self.places.items()), Row())
+
+
+def pad_squeeze(outline: Outline) -> Row:
+    """How much farther the flanges are apart under pads in the corners, in m."""
+    half = 0.5 * outline.section.size("y")
+    rows = (
+        side * weight * outline.flange_deflection(side, y)
+        for side in (1.0, -1.0)
+        for y, weight in zip(*gauss(half - PAD_WIDTH, half, 4), strict=True)
+    )
+    return sum(rows, Row())
+
+
+PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
+    (
+        Probe("head", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("head twist", TWISTING, {HEAD: 1.0}, Outline.twist),
+    ),
+    (
+        Probe("struck", ALONG_Z, {HEAD: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip", ALONG_Z, {TIP: 1.0}, partial(Outline.wall_deflection, direction="z")),
+        Probe("tip twist", TWISTING, {TIP: 1.0}, Outline.twist),
+        Probe("tail squeeze", BREATHING, {TAIL: 1.0}, Outline.distortion),
+        Probe("pad squeeze", BREATHING, PADDED, pad_squeeze),
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Quarter:
+    """A family of a segment's motions."""
+
+    model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
+    rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
+
+    def measure(self) -> dict[str, float]:
+        """``FREQUENCY`` → the lowest of its elastic modes, in Hz; name of a probe → what a unit
+        force on it moves it by at ``SLOW``, in m/N or rad/(N·m). By one factorisation.
+        """
+        model = self.model
+        solve = ShiftedSolver(model, SLOW)
+        inverse, mass, stiffness = (
+            LinearOperator(
+                (model.num_dofs,) * 2, matvec=lambda u, of=of: of(u.reshape(-1, 1))[:, 0]
+            )
+            for of in (solve, partial(times, model.mass), partial(times, model.stiffness))
+        )
+        rigid = model.rigid_motions().shape[1]
+        # At a negative shift the matrix is positive definite, whatever motions are rigid.
+        omega2 = eigsh(
+            stiffness,
+            rigid + 1,
+            mass,
+            sigma=-solve.sigma,
+            OPinv=inverse,
+            v0=np.sin(np.arange(model.num_dofs)) * model.free,
+            return_eigenvectors=False,
+        )
+        moved = {what: float(row @ inverse(row)) for what, row in self.rows.items()}
+        solve.destroy()
+        return {FREQUENCY: float(np.sqrt(omega2.max()) / (2.0 * np.pi)), **moved}
+
+
+@dataclass(frozen=True, slots=True)
+class Blow:
+    """How the inner box hits the outer one."""
+
+    time: Array  #: (num_times,) in s
+    force: Array  #: (num_times,) at the contact in N
+    tip: Array  #: (num_times,) rise of the inner box's tip in m
+    #: Of what the force moves at the contact and at the tip, the worst of both boxes.
+    reduction_error: float
+
+    @property
+    def told(self) -> dict[tuple[str, str], float]:
+        """What of all its touches, and the unit → the value."""
+        return {
+            ("largest force", "kN"): 1.0e-3 * float(self.force.max()),
+            ("impulse", "N·s"): float(self.force.sum() * OUTPUT_STEP),
+            ("time in contact", "ms"): 1.0e3 * float(np.count_nonzero(self.force) * OUTPUT_STEP),
+            ("tip at the end", "mm"): 1.0e3 * float(self.tip[-1]),
+        }
+
+
+def pair(wall: float) -> tuple[Segment, Segment]:
+    """The outer box on two supports, and the free inner one.
+
+    Args:
+        wall: thickness of all walls in m.
+    """
+    held = (Support(0.0), Support(0.5))
+    return box("outer", 0.0, HEAD, OUTER, wall, held), box("inner", TAIL, TIP, INNER, wall)
+
+
+def shell_parts(segment: Segment, probes: Sequence[Probe], size: float) -> dict[Family, Quarter]:
+    """A segment's families as shells, with triangles of a size in m."""
+    whole = shell_alone(segment, size, [x for probe in probes for x in probe.places])
+    rows = np.column_stack([whole.row(probe.row(whole.outline)) for probe in probes])
+    folding = Folding(whole)
+    return {
+        job.family: Quarter(
+            job.shell(folding.part),
+            {
+                probe.what: force
+                for probe, force in zip(probes, job.forces.T, strict=True)
+                if probe.family == job.family
+            },
+        )
+        for job in folding.jobs(rows, np.zeros((len(rows), 0)))
+    }
+
+
+def solid_parts(
+    segment: Segment,
+    probes: Sequence[Probe],
+    along: tuple[float, float],
+    around: float,
+    splits: int,
+    layers: int = 2,
+) -> dict[Family, Quarter]:
+    """A segment's families as solids; see :func:`mesh_quarter` for the sizes."""
+    assert isinstance(segment.section, BoxSection)
+    read = (x for probe in probes for x in probe.places)
+    held = (support.x for support in segment.supports)
+    places = sorted({segment.start, segment.end, *held, *read})
+    mesh = mesh_quarter(segment.section, places, along, around, splits, layers)
+    families = dict.fromkeys(probe.family for probe in probes)
+    models = {family: assemble_solid(segment, mesh, family) for family in families}
+    return {
+        family: Quarter(
+            model,
+            {
+                probe.what: model.row(probe.row(model.outline))
+                for probe in probes
+                if probe.family == family
+            },
+        )
+        for family, model in models.items()
+    }
+
+
+def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
+    """The inner box thrown up against the head of the outer one.
+
+    Args:
+        outer, inner: their families along z.
+        wall: thickness in m, which tells the contact's stiffness.
+    """
+    coordinates = []
+    for part, struck_at in ((outer, "head"), (inner, "struck")):
+        push = part.rows[struck_at][:, None]
+        read = np.column_stack(list(part.rows.values()))
+        coordinates.append(reduce_family(part.model, push, read, KRYLOV, lambda done: None))
+    head, struck = coordinates[0].shapes, coordinates[1].shapes
+    up = np.zeros((len(struck), 1))
+    up[inner.model.node_dofs[:, 2]] = SPEED
+    velocity = np.concatenate(
+        [np.zeros(head.shape[1]), struck.T @ times(inner.model.mass, up)[:, 0]]
+    )
+    still = np.zeros(head.shape[1])
+    system = GapSystem(
+        omega2=np.concatenate([part.omega2 for part in coordinates]),
+        load=np.zeros(velocity.size),
+        rows=np.concatenate([-outer.rows["head"] @ head, inner.rows["struck"] @ struck])[None],
+        laws=[PowerContact(CONTACT * wall, 1.0, CLEARANCE).upper()],
+        station_of_row=np.array([0]),
+        stations=[HEAD],
+        observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},
+    )
+    motion = AdaptiveStep()(
+        Motion(system, CLEARANCE / SPEED + AFTER, OUTPUT_STEP, velocity=velocity)
+    )
+    return Blow(
+        motion.time,
+        np.asarray(motion.data["contact_force"].values[:, 0]),
+        np.asarray(motion.data["tip"].values),
+        max(max(part.compliance_error, part.reading_error) for part in coordinates),
+    )
+
+
+def box(
+    name: str,
+    start: float,
+    end: float,
+    middles: tuple[float, float],
+    wall: float,
+    supports: tuple[Support, ...] = (),
+) -> Segment:
+    """A box of steel, with the distances in m of its mid-lines."""
+    section = BoxSection(*middles, wall, wall)
+    return Segment.of_section(name, start, end, STEEL, section, supports=supports)

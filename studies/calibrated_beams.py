@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How near a beam that a shell calibrates comes to that shell.
+
+The paper's boom with friction over plays and loads up to ten times the paper's, near webs and with
+pads: textbook beams, the beam with springs, the beam with the fields of its section, and between
+them the shell in ever more of its coordinates. All share one mesh: what they are held against is
+the shell of that mesh, whose own error is another study's (``working_load``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from dynamics.damping import pressed_modes
+from dynamics.gap_system import GapSystem
+from dynamics.reduction.condensation import condensed
+from geometry.arrays import Array
+from runs.case.kinds.finite_element import FIELDS, FiniteElementTable
+from runs.case.schema import Case, Model
+from runs.report.tables import Cell, Table
+from studies.motions import all_built, friction_case, model_of, shell_of, side_by_side
+from studies.pads import with_pads
+from studies.study import Held, Piece, Plot, Proof, Tell, titled
+from studies.working_load import Moved, Point, at_point
+
+# What is allowed of the tip, as parts of its range, of first peaks, and of frequencies.
+SPRINGS, FIELDED, PEAK, FREQUENCY = 0.025, 0.01, 0.003, 0.001
+# Frequencies of the pressed boom that springs and fields are to keep; those beyond have the inertia
+# of the section in them.
+OF_SPRINGS, OF_FIELDS = 2, 6
+SHELL, EULER, PLAIN = "shell", "Euler–Bernoulli", "Timoshenko"
+SPRUNG, WITH_FIELDS = "with springs", "with section fields"
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    mesh_size: float = 0.2  #: of the shells in m
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
+    pad: tuple[float, float] = (0.1, 0.06)  #: length and width in m
+    coordinates: Sequence[int] = (10, 20)  #: of each segment of shells in fewer of them
+    duration: float = 5.0  #: in s
+
+
+def move_all(
+    systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
+) -> dict[str, list[Moved]]:
+    """Each system's motions of so many s at all points."""
+    return {
+        name: side_by_side(
+            partial(Moved.of, duration=duration), (at_point(system, point) for point in points)
+        )
+        for name, system in systems.items()
+    }
+
+
+def tips_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+    """(num_points,) the tip's largest distance as a part of the shell's range."""
+    return np.array([one.tip_off(other) for one, other in zip(moved, shell, strict=True)])
+
+
+def peaks_off(moved: Sequence[Moved], shell: Sequence[Moved]) -> Array:
+    """(num_points,) relative errors of the first peaks; NaN without one."""
+    return np.array([one.peaks_off(other)[0] for one, other in zip(moved, shell, strict=True)])
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """All models of one way to touch."""
+
+    where: str  #: segments touch
+    points: Sequence[Point]  #: of all motions
+    #: By the name of the model, the shell's first.
+    systems: Mapping[str, GapSystem]
+    moved: Mapping[str, Sequence[Moved]]
+    seconds: tuple[float, float]  #: of its reduction, and of the calibration
+
+    def off(self, name: str) -> Array:
+        """(num_points,) of the tip."""
+        return tips_off(self.moved[name], self.moved[SHELL])
+
+    def peaks_off(self, name: str) -> float:
+        """The worst of all points that have a first peak."""
+        return float(np.nanmax(peaks_off(self.moved[name], self.moved[SHELL])))
+
+    def frequencies_off(self, name: str, count: int) -> float:
+        """The worst relative error of the first frequencies with the joints pressed."""
+        # At rest without play all that presses is pressed.
+        point = self.points[0]._replace(play=0.0)
+        pressed = [
+            pressed_modes(at_point(self.systems[one], point))[0][:count] for one in (SHELL, name)
+        ]
+        return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
+
+    def rows(self) -> Iterator[Sequence[Cell]]:
+        """A row of every model."""
+        seconds = {name: sum(one.seconds for one in moved) for name, moved in self.moved.items()}
+        for name, system in self.systems.items():
+            if name == SHELL:
+                continue
+            off = self.off(name)
+            yield (
+                self.where,
+                name,
+                system.num_modes,
+                100.0 * off.max(),
+                100.0 * float(np.median(off)),
+                str(self.points[int(off.argmax())]),
+                100.0 * self.peaks_off(name),
+                100.0 * self.frequencies_off(name, OF_SPRINGS),
+                seconds[name] / seconds[PLAIN],
+            )
+
+    def proofs(self) -> Iterator[Proof]:
+        """What is asked of springs and of fields."""
+        for name, allowed, count in (
+            (SPRUNG, SPRINGS, OF_SPRINGS),
+            (WITH_FIELDS, FIELDED, OF_FIELDS),
+        ):
+            off = self.off(name)
+            point = self.points[int(off.argmax())]
+            for what, value, bar in (
+                (f"tip, part of its range, worst of {len(self.points)} points ({point})",
+                 float(off.max()), allowed),
+                ("first tip peak, worst of all", self.peaks_off(name), PEAK),
+                (f"first {count} frequencies, joints pressed", self.frequencies_off(name, count),
+                 FREQUENCY),
+            ):  # fmt: skip
+                held: Held = ("other code", "the shell that calibrates it", bar)
+                yield Proof(f"beam {name}, {self.where}: {what}", value, 0.0, "", *held)
+
+
+def calibrated(case: Case, model: Model, fields: bool) -> Model:
+    """A beam that a shell of the case calibrates, with its contact."""
+    return FiniteElementTable.model_validate(
+        {
+            "name": "calibrated",
+            "kind": "finite-element",
+            "calibrated_by": model.model_dump(exclude_none=True),
+            "section_fields": fields,
+            "contact": model.contact,
+        }
+    )
+
+
+def measure(case: Case, where: str, sizes: Sizes) -> Compared:
+    """All models at all points."""
+    shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
+    models = {
+        SHELL: shell,
+        EULER: model_of(case, "beam-fe-rotary"),
+        PLAIN: model_of(case, "timoshenko"),
+        SPRUNG: calibrated(case, shell, fields=False),
+        WITH_FIELDS: calibrated(case, shell, fields=True),
+    }
+    built = all_built(case, models)
+    systems = {name: one.system for name, one in built.items()}
+    for count in sizes.coordinates:
+        fewer, _ = condensed(systems[SHELL], count * len(case.segments))
+        systems[f"section fields, {count} coordinates a segment"] = fewer
+    points = Point.each(sizes.plays, sizes.loads)
+    moved = move_all(systems, points, sizes.duration)
+    reduction = built[SHELL].seconds["reduction"]
+    calibration = built[SHELL].seconds["far field"] + built[SPRUNG].seconds["calibration"]
+    return Compared(where, points, systems, moved, (reduction, calibration))
+
+
+def summary_table(compared: Sequence[Compared], sizes: Sizes) -> Table:
+    """A row of every model and way to touch."""
+    columns = {
+        "contact": "", "model": "", "coordinates": ".0f", "tip, worst\n(% of range)": ".2f",
+        "tip, median\n(% of range)": ".2f", "worst at": "", "first peak,\nworst (%)": ".3f",
+        f"first {OF_SPRINGS} frequencies,\npressed (%)": ".3f", "time over\nTimoshenko's": ".2f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "calibrated-beams",
+        "Beams against the shell that calibrates them",
+        columns,
+        [row for one in compared for row in one.rows()],
+        (
+            f"Plays of {1e3 * min(sizes.plays):g} to {1e3 * max(sizes.plays):g} mm, loads of "
+            f"{min(sizes.loads):g} to {max(sizes.loads):g} times the paper's, with its friction, "
+            f"{sizes.duration:g} s, shells of {sizes.mesh_size:g} m.",
+            *(
+                f"{one.where}: reduction {one.seconds[0]:.1f} s, "
+                f"calibration {one.seconds[1]:.1f} s."
+                for one in compared
+            ),
+        ),
+    )
+
+
+def point_table(compared: Compared) -> Table:
+    """Every point of one way to touch, a column for each model."""
+    names = [name for name in compared.moved if name != SHELL]
+    rows = zip(map(str, compared.points), *(100.0 * compared.off(n) for n in names), strict=True)
+    return Table.of_rows(
+        f"calibrated-beams-{compared.where.split()[0]}",
+        f"The tip off the shell's, {compared.where} (% of its range)",
+        {"point": "", **dict.fromkeys(names, ".2f")},
+        [tuple(row) for row in rows],
+    )
+
+
+def plot(compared: Sequence[Compared]) -> Plot:
+    """Coordinates of a segment against the worst error."""
+    curves = {}
+    for one in compared:
+        worst = {
+            name: (system.num_modes / 2.0, 100.0 * float(one.off(name).max()))
+            for name, system in one.systems.items()
+        }
+        for name in (PLAIN, SPRUNG):
+            size, off = worst[name]
+            curves[f"{one.where}: {name}"] = [size], [off]
+        sizes, offs = zip(*sorted(worst[name] for name in worst if "fields" in name), strict=True)
+        curves[f"{one.where}: section fields"] = list(sizes), list(offs)
+    return Plot(
+        "calibrated-beams",
+        "Springs bring a beam within 2 % of its shell, fields of the section within 1 %",
+        "coordinates of each segment",
+        "tip off the shell's, worst of all points (% of its range)",
+        curves,
+        f"Single marks: beams as they are, and with springs. Lines: the shell in fewer of its own "
+        f"coordinates, of which a beam with section fields has {FIELDS}.",
+    )
+
+
+@titled("calibrated-beams", "Beams that a shell calibrates")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """The paper's boom with friction, near its webs and with pads."""
+    sizes = sizes or Sizes()
+    case = friction_case()
+    compared = []
+    for where, touching in (
+        ("near webs", case),
+        ("with pads of {:g} x {:g} m".format(*sizes.pad), with_pads(case, *sizes.pad)),
+    ):
+        tell(where)
+        compared.append(measure(touching, where, sizes))
+    yield summary_table(compared, sizes)
+    for one in compared:
+        yield point_table(one)
+        yield from one.proofs()
+    yield plot(compared)

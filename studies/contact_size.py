@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What walls give way under contacts of every size, on ever finer meshes and by plate theory.
+
+The paper's boom with friction, its stations squeezed
+(:mod:`shell_model.contact.local_compliance`), without a reduction; and its first peak, which tells
+what that is worth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from mpi4py import MPI
+
+from geometry.arrays import Array
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case
+from runs.report.tables import Table
+from studies.motions import finer, friction_case, gap_system, move, shell_of
+from studies.pads import with_pads
+from studies.refined import Refined, refined_table
+from studies.study import Held, Piece, Proof, Tell, titled
+
+if TYPE_CHECKING:
+    from shell_model.segment.segment_shell import SegmentShell
+
+# Allowed of the local compliance and of a pressed wall.
+ALLOWED = 0.01
+NANO = 1.0e9
+UNIT = "1e-9 m/N"
+
+# N/m of an elastic support, which what is in balance does not feel.
+SPRING = 1.0e6
+# How far beside a support its force is in balance, in m: beyond its fine mesh.
+BESIDE = 0.33
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    #: Edge lengths over the default ones, each half the one before.
+    meshes: Sequence[float] = (1.0, 0.5, 0.25)
+    default: float = 1.0  #: of them, whose motion is taken
+    lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: of corners that are pressed, in m
+    #: Lengths and widths in m.
+    pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
+    plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
+    peak: float = 0.9  #: time in s within which the tip's first peak comes
+    loads: Sequence[float] = (1.0, 10.0)  #: over the paper's
+
+
+class Contact(NamedTuple):
+    """A way to touch: its name and case, and length and width in m of what is pressed."""
+
+    name: str
+    case: Case
+    length: float
+    width: float | None
+
+
+def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
+    """Corners and pads."""
+    corners = []
+    for length in sizes.lengths:
+        joints = tuple(joint.model_copy(update={"contact_length": length}) for joint in case.joints)
+        pressed = case.model_copy(update={"joints": joints})
+        corners.append(Contact(f"corner of {length:g} m", pressed, length, None))
+    return corners + [
+        Contact(f"pad of {length:g} m x {width:g} m", with_pads(case, length, width), length, width)
+        for length, width in sizes.pads
+    ]
+
+
+def squeezed(contact: Contact, part: float) -> Array:
+    """(num_stations,) local compliance in m/N, edges so many times as long as the default ones."""
+    from shell_model.boom_shell import assemble_segments
+    from shell_model.contact.local_compliance import full_compliance, local_compliance
+    from shell_model.contact.rows import Touching
+
+    boom = build_boom(contact.case)
+    model = finer(shell_of(contact.case), part)
+    options = model.options()
+    shells = assemble_segments(boom, options, MPI.COMM_SELF)
+    laws = contact_laws(contact.case, model)
+    touching = Touching.of(
+        boom, shells, {"z": laws, "y": ()}, options.contact_line, options.surface
+    )
+    rows = touching.rows({}).contacts
+    stations = [row.station for row in rows]
+    local = local_compliance(full_compliance(shells, rows), [row.law for row in rows], stations)
+    _, first = np.unique(stations, return_index=True)
+    return np.asarray(local[first])
+
+
+def supported(case: Case, parts: Sequence[float]) -> list[float]:
+    """What the outer segment's walls give way at its last support, in m/N, a value for each mesh.
+
+    An elastic support pulls the walls there, and halves of its force push the same walls back on
+    both sides, where all meshes have a line.
+
+    Args:
+        case: of the boom.
+        parts: of the default edge lengths, falling.
+    """
+    from shell_model.boom_shell import assemble_segments
+    from shell_model.contact.local_compliance import shell_compliance
+    from shell_model.reduction.symmetry import Folding
+
+    boom = build_boom(case)
+    outer = boom.segments[0]
+    supports = tuple(replace(support, stiffness=SPRING) for support in outer.supports)
+    elastic = replace(outer, supports=supports)
+    x = max(support.x for support in supports)
+    there, found = None, []
+    for part in parts:
+        options = finer(shell_of(case), part).options()
+        held = replace(boom, segments=(elastic, *boom.segments[1:]))
+        shell, *_ = assemble_segments(held, options, MPI.COMM_SELF)
+        there = there or _lines_beside(shell, x)
+        before, at, after = (
+            shell.row(shell.outline(line).wall_deflection("z")) for line in (there[0], x, there[1])
+        )
+        share = (there[1] - x) / (there[1] - there[0])
+        squeeze = at - share * before - (1.0 - share) * after
+        found.append(float(shell_compliance(Folding(shell), squeeze[:, None])[0, 0]))
+    return found
+
+
+def _lines_beside(shell: SegmentShell, x: float) -> tuple[float, float]:
+    lines = np.unique(shell.nodes[:, 0])
+    before, after = (lines[np.abs(lines - x - far).argmin()] for far in (-BESIDE, BESIDE))
+    return float(before), float(after)
+
+
+def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
+    """The tip's first peak in m under each load, on the default mesh."""
+    model = finer(shell_of(contact.case), sizes.default)
+    system = gap_system(contact.case, build_boom(contact.case), model)
+    loaded = (replace(system, load=load * system.load) for load in sizes.loads)
+    return [move(one, sizes.peak).first_peak()[1] for one in loaded]
+
+
+def plate_proofs(sizes: Sizes) -> Iterator[Proof]:
+    """A wall under a patch beside its edge."""
+    from studies.reference_models.pressed_plate import flange
+
+    held: Held = ("analytic", "Reissner and Mindlin's plate, by Ritz's method", ALLOWED)
+    for edges in ("simply supported", "clamped"):
+        pressed = flange(edges)
+        for size in sizes.plate:
+            what = f"{edges} plate under a patch beside its edge, mesh of {1e3 * size:g} mm"
+            yield Proof(what, NANO * pressed.shell(size), NANO * pressed.theory(), UNIT, *held)
+
+
+@titled("contact-size", "What walls give way where segments touch")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Corners and pads of several sizes, a support, and a plate."""
+    sizes = sizes or Sizes()
+    default = sizes.meshes.index(sizes.default)
+    held: Held = ("other code", f"edges {1.0 / sizes.meshes[-1]:g} times as short", ALLOWED)
+    tell("plates")
+    yield from plate_proofs(sizes)
+    tell("support")
+    values = [NANO * value for value in supported(friction_case(), sizes.meshes)]
+    what = "local compliance, elastic support, at 2 m"
+    yield Proof(what, values[default], values[-1], UNIT, *held)
+    stations = [x for x, _ in build_boom(friction_case()).stations]
+    rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, values)]
+    for contact in contacts_of(friction_case(), sizes):
+        tell(contact.name)
+        local = NANO * np.array([squeezed(contact, part) for part in sizes.meshes])
+        peaks = [1.0e3 * peak for peak in first_peaks(contact, sizes)]
+        rows.append((contact.name, contact.length, contact.width, *local[default], *peaks))
+        for x, values in zip(stations, local.T.tolist(), strict=True):
+            found.append(Refined(f"{contact.name}, {x:g} m", UNIT, sizes.meshes, values))
+            what = f"local compliance, {contact.name}, at {x:g} m"
+            yield Proof(what, values[default], values[-1], UNIT, *held)
+    columns = {
+        "pressed": "", "along the boom\n(m)": ".3g", "across\n(m)": ".3g",
+        **{f"local compliance\nat {x:g} m ({UNIT})": ".2f" for x in stations},
+        **{f"first tip peak\nload × {load:g} (mm)": ".1f" for load in sizes.loads},
+    }  # fmt: skip
+    yield Table.of_rows(
+        "contact-size",
+        "What the size of a contact means",
+        columns,
+        rows,
+        (
+            "The paper's boom with its friction, default mesh. Corners are pressed where webs meet "
+            "flanges; pads beside them, where the flanges bend. What the size changes of the peak "
+            "is more than what any mesh does.",
+        ),
+    )
+    title = "Local compliance on ever finer meshes"
+    note = "Edges are those of the default mesh, all of them longer or shorter by the same factor."
+    yield refined_table("local-compliance", title, found, "edges × {:g}", (note,))

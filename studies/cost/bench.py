@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the time step and a shell cost: ``python -m studies.cost.bench``.
+
+Everything is measured in one process; methods that are compared take turns, so that what else
+the machine does falls on all of them.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from statistics import median
+from time import process_time
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.console import Console
+
+from dynamics.contact import PowerContact
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from dynamics.motion import Motion
+from dynamics.predictability.ensemble import integrate_ensemble
+from geometry.arrays import Array
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.process import notices
+from runs.report.tables import Table, wide_console
+from studies.cost import scaling
+from studies.cost.drawing import MODELS, drawing
+from studies.cost.generic_solvers import (
+    TOLERANCES,
+    array_rates,
+    compiled_rates,
+    generic,
+    matched,
+)
+from studies.cost.leaving import leaving
+from studies.cost.timing import NOISE, by_turns, leave
+from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
+
+PAPER = CASES / "paper.toml"
+OUT = Path("runs/out/bench")
+
+# Goal: wall s of the ensemble of series.
+ENSEMBLE_GOAL = 10.0
+
+# Steps in s, and solvers that are to err no more.
+LEVELS = (
+    (1.0e-3, ("LSODA", "DOP853", "odeint")),
+    (1.0e-4, ("LSODA", "DOP853", "Radau", "odeint")),
+    (1.0e-5, ("LSODA", "DOP853", "odeint")),
+    (1.0e-6, ("LSODA", "DOP853", "odeint")),
+)
+
+# What the tables call the time step, and the right-hand sides: as one writes it, and compiled with
+# its data as constants.
+OURS = "time step"
+NUMPY = "NumPy"
+COMPILED = "compiled"
+
+# Relative change of the members' loads.
+CHANGE = 1.0e-9
+
+# The step whose cost is measured by modes and rows, and that of an ensemble, in s.
+STEP, MEMBERS_STEP = 1.0e-5, 1.0e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """How much is measured."""
+
+    duration: float = 10.0  #: of ensembles and of booms that are drawn out, in s
+    #: Models with friction, their motion in s, its steps in s and the step of the converged one.
+    models: Sequence[str] = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
+    regular: float = 5.0
+    steps: Sequence[float] = (1.0e-3, 2.0e-4, 1.0e-4, 5.0e-5, 2.0e-5, 1.0e-5)
+    converged: float = 2.5e-6
+    early: float = 0.4  #: of the series without friction in s, before its motion is chaotic
+    #: Steps in s, and the solvers that each is compared with.
+    levels: Sequence[tuple[float, Sequence[str]]] = LEVELS
+    most: int = 3  #: repetitions of what is quick
+    #: Wall seconds of all repetitions of one run, beyond which there are no more.
+    budget: float = 6.0
+    #: The table of the cost of a step.
+    modes: Sequence[int] = (5, 20, 80, 200)
+    rows: Sequence[int] = (2, 4, 16)
+    updates: int = 5_000_000  #: of one mode by one step, that are timed for an entry of it
+    members: int = 256  #: of the ensemble of series
+    shell_members: int = 32  #: of the ensemble of shells, 0 for none
+    #: Models of a run whose leaving is timed.
+    left: Sequence[str] = ("series", "timoshenko", "shell")
+    drawn: Sequence[str] = MODELS  #: models that are drawn out
+
+
+class Method(NamedTuple):
+    """A way to move the series: a row of the table, and what moves it once."""
+
+    solver: str
+    rates: str  #: its right-hand side, where it needs one
+    tolerance: str  #: relative tolerance, or step, as text
+    error: float  #: of the tip, as a part of its range
+    run: Callable[[], object]
+
+
+def five_terms(case: Case) -> GapSystem:
+    """The five-term series of a case."""
+    return gap_system(case, build_boom(case), model_of(case, "kantorovich-5"))
+
+
+def off(tip: Array, exact: Array) -> float:
+    """Return the largest error of a tip (num_times,) as a part of the range of the exact one."""
+    return float(np.abs(tip - exact).max() / np.ptp(exact))
+
+
+def errors(sizes: Sizes) -> Table:
+    """Errors and costs over the step, of models whose motion friction makes regular."""
+    case, rows = friction_case(), []
+    boom = build_boom(case)
+    for name in sizes.models:
+        if name == "shell" and not find_spec("dolfinx"):
+            continue
+        motion = Motion(gap_system(case, boom, model_of(case, name)), sizes.regular, OUTPUT_STEP)
+        finest = FixedStep(sizes.converged)(motion)
+        exact, (_, peak) = np.asarray(finest.data["tip"].values), finest.first_peak()
+        ways: list[FixedStep | AdaptiveStep] = [*map(FixedStep, sizes.steps), AdaptiveStep()]
+        seconds = by_turns([partial(way, motion) for way in ways], sizes.most, sizes.budget)
+        for way, taken in zip(ways, seconds, strict=True):
+            begin = process_time()
+            run = way(motion)
+            cpu = process_time() - begin
+            attributes, tip = run.data.attrs, np.asarray(run.data["tip"].values)
+            asked = f"{way.step:g} s" if isinstance(way, FixedStep) else f"to {way.tolerance:g}"
+            rows.append(
+                (name, motion.system.num_modes, asked, attributes["steps"],
+                 100.0 * off(tip, exact), 100.0 * abs(run.first_peak()[1] / peak - 1.0),
+                 run.energy_residual, taken, cpu)
+            )  # fmt: skip
+    columns = {
+        "model": "", "modes": ".0f", "step": "", "steps": ".0f", "tip off (% of range)": ".2g",
+        "first peak off (%)": ".1g", "energy residual": ".1g", "wall s": "", "CPU s": ".2g",
+    }  # fmt: skip
+    return Table.of_rows(
+        "errors",
+        f"The time step, {sizes.regular:g} s of the paper's boom with friction",
+        columns,
+        rows,
+        (
+            f"Off the motion in steps of {sizes.converged:g} s. To a tolerance, windows of the "
+            "motion are made with two steps and, where these differ, again with half of them.",
+        ),
+    )
+
+
+def compare(case: Case, sizes: Sizes) -> Table:
+    """The time step against generic solvers that err no more."""
+    system = five_terms(case)
+    motion, row = Motion(system, sizes.early, OUTPUT_STEP), system.observers["tip"].row
+    rates = {NUMPY: array_rates(system), COMPILED: compiled_rates(system)}
+    rows, failed = [], []
+
+    def solved(name: str, tolerance: float, kind: str = COMPILED) -> Array:
+        states = generic(name, rates[kind], 2 * system.num_modes, sizes.early, tolerance)
+        return np.asarray(states[:, : system.num_modes] @ row)
+
+    def error(name: str, tolerance: float) -> float:
+        return off(solved(name, tolerance), exact)
+
+    exact = solved("DOP853", float(TOLERANCES[-1]))
+    for step, solvers in sizes.levels:
+        ours = partial(FixedStep(step), motion)
+        target = off(np.asarray(ours().data["tip"].values), exact)
+        methods = [Method(OURS, "", f"{step:g} s", target, ours)]
+        for name in solvers:
+            loosest, least = matched(partial(error, name), target)
+            if loosest is None:
+                failed.append(f"{name} errs more than a step of {step:g} s, by {least:.1e}.")
+                continue
+            methods += [
+                Method(name, kind, f"{loosest:.1e}", least, partial(solved, name, loosest, kind))
+                for kind in rates
+            ]
+        seconds = by_turns([method.run for method in methods], sizes.most, sizes.budget)
+        for method, taken in zip(methods, seconds, strict=True):
+            ratios = [theirs / mine for theirs, mine in zip(taken, seconds[0], strict=False)]
+            rows.append((*method[:-1], taken, ratios))
+    columns = {
+        "solver": "", "right-hand side": "", "tolerance": "", "tip off (of range)": ".1e",
+        "wall s": "", "over the time step": "",
+    }  # fmt: skip
+    return Table.of_rows(
+        "solvers",
+        f"Five-term series without friction, {sizes.early:g} s, at equal error of the tip",
+        columns,
+        rows,
+        [
+            *failed,
+            "The time step also labels its outputs and their energies; the others leave states. "
+            "Their tolerances are matched with the compiled right-hand side, and their absolute "
+            "ones are a thousandth.",
+        ],
+    )
+
+
+def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
+    """A made-up system all of whose rows press all the time, which makes the dearest steps.
+
+    Two rigid modes, the others 20 Hz apart up to a few kHz as those of a shell; 1000 kg, stops
+    of 1e7 N/m without clearance at places along a bar, 10 kN.
+    """
+    order = np.arange(num_modes)
+    place = (np.arange(num_rows) + 0.5) / num_rows
+    rows = np.cos(np.pi * np.outer(place, order)) * np.sqrt(2.0 / 1000.0)
+    return GapSystem(
+        omega2=(2.0 * np.pi * 20.0 * np.maximum(order - 1, 0)) ** 2,
+        load=1.0e4 * rows[0],
+        rows=rows,
+        laws=[PowerContact(1.0e7, 1.0, 0.0)] * num_rows,
+        station_of_row=np.arange(num_rows),
+        stations=place.tolist(),
+        observers={},
+    )
+
+
+def steps(sizes: Sizes) -> Table:
+    """What a step costs, by modes and rows."""
+    kinds = [(n, m) for n in sizes.modes for m in sizes.rows]
+    made = {n: 10 * math.ceil(sizes.updates / (10 * n)) for n in sizes.modes}
+    runs = [
+        partial(
+            FixedStep(STEP), Motion(pressed_system(n, m), STEP * made[n], STEP * made[n] / 10.0)
+        )
+        for n, m in kinds
+    ]
+    seconds = dict(zip(kinds, by_turns(runs, sizes.most, sizes.budget), strict=True))
+    return Table.of_rows(
+        "steps",
+        "ns per step while every row presses",
+        {"modes": ".0f", **{f"{m} rows": "" for m in sizes.rows}},
+        [
+            (n, *([1e9 * part / made[n] for part in seconds[n, m]] for m in sizes.rows))
+            for n in sizes.modes
+        ],
+    )
+
+
+def ensembles(case: Case, sizes: Sizes) -> Table:
+    """What ensembles cost, by threads."""
+    cores = len(os.sched_getaffinity(0))
+
+    def run(whole: GapSystem, count: int, integrator: Integrator, threads: int) -> None:
+        motion = Motion(whole, sizes.duration, OUTPUT_STEP)
+        with ThreadPoolExecutor(threads) as pool:
+            integrate_ensemble(
+                motion, count, CHANGE, 0, "load", integrator=integrator, executor=pool
+            )
+
+    fixed, members, series = FixedStep(MEMBERS_STEP), sizes.members, five_terms(case)
+    name, of_shells = f"{members} five-term series", f"{sizes.shell_members} shells"
+    what = [
+        *((name, n, partial(run, series, members, fixed, n)) for n in sorted({1, cores})),
+        (f"{name}, to a tolerance", cores, partial(run, series, members, AdaptiveStep(), cores)),
+    ]
+    if sizes.shell_members and find_spec("dolfinx"):
+        shell = gap_system(case, build_boom(case), model_of(case, "shell"))
+        what.append((of_shells, cores, partial(run, shell, sizes.shell_members, fixed, cores)))
+    seconds = by_turns([made for _, _, made in what], sizes.most, sizes.budget)
+    fastest = min(median(taken) for taken in seconds[: len({1, cores})])
+    goal = "reached" if fastest <= ENSEMBLE_GOAL else "not reached"
+    return Table.of_rows(
+        "ensembles",
+        f"Ensembles, {sizes.duration:g} s in steps of {MEMBERS_STEP:g} s, loads within {CHANGE:g}",
+        {"ensemble": "", "threads": ".0f", "repetitions": ".0f", "wall s": ""},
+        [
+            (name, threads, len(taken), taken)
+            for (name, threads, _), taken in zip(what, seconds, strict=True)
+        ],
+        (f"The goal of {ENSEMBLE_GOAL:g} s for the series is {goal}.", NOISE),
+    )
+
+
+def bench(sizes: Sizes, folder: Path, console: Console) -> None:
+    """Measure, print, and write ``bench.json`` and ``bench.md``."""
+    case = case_file.load(str(PAPER))
+    parts: list[Callable[[], Table]] = [
+        partial(errors, sizes),
+        partial(compare, case, sizes),
+        partial(steps, sizes),
+        partial(ensembles, case, sizes),
+        partial(leaving, sizes.left),
+        partial(drawing, sizes.drawn, sizes.duration),
+    ]
+    machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
+    data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
+    leave(folder, "bench", "What the time step costs", data, (part() for part in parts), console)
+
+
+if __name__ == "__main__":
+    notices.show()
+    shown_on = wide_console()
+    bench(Sizes(), OUT, shown_on)
+    scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)

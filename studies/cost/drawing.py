@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What it costs to draw a boom out while it moves: ``python -m studies.cost.drawing``.
+
+Models may be named behind it. The paper's boom is drawn out by 4 m through all of the motion,
+beside the same boom, pads and all, that stays where it begins.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from time import process_time
+from typing import Any, NamedTuple
+
+from protractile.cases import change
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case
+from runs.process import notices
+from runs.report.tables import Table, wide_console
+from studies.motions import OUTPUT_STEP, gap_system, model_of, move
+
+CASE = CASES / "drawn-out.toml"
+MODELS = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
+DURATION = 10.0
+
+# Goals: processor time over that at rest, and processor s from the mesh of a shell to its system.
+BEAM_GOAL, SHELL_GOAL, BUILT_GOAL = 3.0, 5.0, 15.0
+
+# What resists: prescribed forces in N that press pads sideways, or dashpots in N·s/m.
+RESISTED: Mapping[str, Mapping[str, Any]] = {
+    "nothing": {},
+    "friction": {"joint.normal_forces": [450.0, 500.0]},
+    "dashpots": {"joint.dashpot": 300.0},
+}
+
+_SHELL = ShellTable.model_validate(
+    {"name": "shell", "kind": "shell", "mesh_size": 0.1, "contact_tolerance": "any"}
+)
+_PAD = 0.1
+
+
+class Cost(NamedTuple):
+    """Processor s until there is a system of so many modes, and of its motion."""
+
+    modes: int
+    built: float
+    moved: float
+
+
+def drawing(models: Sequence[str] = MODELS, duration: float = DURATION) -> Table:
+    """Processor time of motions that are drawn out, and of those at rest.
+
+    Args:
+        models: of the case, and its ``shell``, which is left out where there is no FEniCSx.
+        duration: of each motion in s.
+    """
+    asked = [name for name in models if name != "shell" or find_spec("dolfinx")]
+    rows, worst = [], {True: 0.0, False: 0.0}
+    for name in asked:
+        for resisted, values in RESISTED.items():
+            drawn, resting = (_cost(case, name) for case in _cases(duration, values))
+            ratio = drawn.moved / resting.moved
+            worst[name == "shell"] = max(worst[name == "shell"], ratio)
+            costs = (resting.modes, drawn.modes, resting.moved, drawn.moved, ratio)
+            rows.append((name, resisted, *costs, resting.built, drawn.built))
+    columns = {
+        "model": "", "resisted by": "", "modes at rest": ".0f", "drawn": ".0f", "at rest s": ".2f",
+        "drawn out s": ".2f", "times": ".1f", "built at rest s": ".1f", "built drawn s": ".1f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "drawing",
+        f"Drawn out by 4 m within {duration:g} s, processor time beside the same boom at rest",
+        columns,
+        rows,
+        [
+            f"At most {worst[of_shell]:.1f} times for {what}: the goal of {goal:g} is "
+            f"{'reached' if worst[of_shell] <= goal else 'not reached'}."
+            for of_shell, what, goal in (
+                (False, "beams", BEAM_GOAL),
+                (True, "the shell", SHELL_GOAL),
+            )
+            if worst[of_shell]
+        ],
+    )
+
+
+def _cases(duration: float, values: Mapping[str, Any]) -> tuple[Case, Case]:
+    """Drawn out, and at rest."""
+    case = case_file.load(str(CASE))
+    times = {"time.duration": duration, "joint.drive.time": duration}
+    drawn = change(case, **times, **values, **{"joint.contact_length": _PAD})
+    still = tuple(joint.model_copy(update={"drive": None}) for joint in drawn.joints)
+    return drawn, drawn.model_copy(update={"joints": still})
+
+
+def _cost(case: Case, name: str) -> Cost:
+    model = _SHELL if name == _SHELL.name else model_of(case, name)
+    begin = process_time()
+    system = gap_system(case, build_boom(case), model)
+    built = process_time() - begin
+    # One output compiles the time loop.
+    move(system, OUTPUT_STEP)
+    begin = process_time()
+    move(system, case.time.duration)
+    return Cost(system.num_modes, built, process_time() - begin)
+
+
+if __name__ == "__main__":
+    notices.show()
+    drawing(sys.argv[1:] or MODELS).text.show(wide_console())

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A gap system by solvers that know nothing of it, to measure ours against."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable
+
+import numpy as np
+from numba import njit
+from scipy.integrate import odeint, solve_ivp
+
+from dynamics.contact import contact_terms
+from dynamics.gap_system import GapSystem
+from dynamics.kernels.terms import term_force
+from geometry.arrays import Array
+from studies.motions import OUTPUT_STEP
+
+Rates = Callable[[float, Array], Array]
+
+# Methods of solve_ivp, whose loop is in Python, and the one solver whose loop is in Fortran.
+METHODS = ("LSODA", "DOP853", "Radau")
+SOLVERS = (*METHODS, "odeint")
+
+# Of which the loosest is taken that errs no more than ours.
+TOLERANCES = 10.0 ** np.arange(-3.0, -13.5, -0.5)
+# Absolute tolerance over the relative one: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the one with which
+# LSODA took the least time for the same energy residual.
+ABSOLUTE = 1.0e-3
+
+
+def compiled_rates(system: GapSystem) -> Rates:
+    """t, (a, ȧ) → (ȧ, ä) of an undamped system, compiled with its data as constants."""
+    omega2, load, rows = system.omega2.copy(), system.load.copy(), system.rows.copy()
+    terms = contact_terms(system.laws)
+    n = system.num_modes
+
+    @njit
+    def rates(t: float, state: Array) -> Array:
+        out = np.empty(2 * n)
+        for i in range(n):
+            out[i] = state[n + i]
+            out[n + i] = load[i] - omega2[i] * state[i]
+        for t in range(terms.size):
+            j = terms[t]["row"]
+            y = 0.0
+            for i in range(n):
+                y += rows[j, i] * state[i]
+            force = term_force(terms[t], y)
+            if force != 0.0:
+                for i in range(n):
+                    out[n + i] -= rows[j, i] * force
+        return out
+
+    compiled: Rates = rates
+    compiled(0.0, np.zeros(2 * n))
+    return compiled
+
+
+def array_rates(system: GapSystem) -> Rates:
+    """The same in NumPy, as one writes it for a generic solver; friction by its speed's sign."""
+    n = system.num_modes
+    terms = contact_terms(system.laws)
+    side, stiffness, onset, exponent = (
+        terms[name] for name in ("side", "stiffness", "onset", "exponent")
+    )
+    pressed = side[:, None] * system.rows[terms["row"]]
+
+    def rates(t: float, state: Array) -> Array:
+        force = stiffness * np.maximum(pressed @ state[:n] - onset, 0.0) ** exponent
+        acceleration = system.load - system.omega2 * state[:n] - force @ pressed
+        return np.concatenate([state[n:], acceleration])
+
+    if not system.frictions:
+        return rates
+    slides = system.friction_rows
+    drag = np.array([f.coefficient * f.normal_force for f in system.frictions])
+
+    def rubbed(t: float, state: Array) -> Array:
+        out = rates(t, state)
+        out[n:] -= (drag * np.sign(slides @ state[n:])) @ slides
+        return out
+
+    return rubbed
+
+
+def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
+    """(num_times, num_states) from rest by one of scipy's solvers, at the output steps of ours."""
+    times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
+    start = np.zeros(num_states)
+    tolerances = {"rtol": tolerance, "atol": ABSOLUTE * tolerance}
+    if name == "odeint":
+        return np.asarray(odeint(rates, start, times, tfirst=True, mxstep=10**7, **tolerances))
+    span = (0.0, float(times[-1]))
+    return np.asarray(solve_ivp(rates, span, start, name, times, **tolerances).y.T)
+
+
+def matched(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
+    """Return the loosest of ``TOLERANCES`` that errs by no more than ``target``, and its error.
+
+    By bisection, as if less tolerance erred less; None, and the least error that was found, where
+    the tightest ones err more.
+
+    Args:
+        error: of a tolerance.
+        target: in the same unit.
+    """
+    found: dict[int, float] = {}
+
+    def suffices(i: int) -> bool:
+        found[i] = error(float(TOLERANCES[i]))
+        return found[i] <= target
+
+    i = bisect_left(range(TOLERANCES.size), True, key=suffices)
+    if i == TOLERANCES.size:
+        return None, min(found.values())
+    return float(TOLERANCES[i]), found[i]

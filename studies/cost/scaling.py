@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a shell costs by its size and by ranks: ``python -m studies.cost.scaling``.
+
+Every run has processes of its own, so that its peak memory is its own.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom, contact_laws
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
+from runs.process import notices
+from runs.report.tables import Table, wide_console
+from studies.cost.timing import leave
+
+SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
+OUT = Path("runs/out/scaling")
+
+# Goals: exponent of time against size, wall s of the default mesh's reduction and of ten seconds of
+# its motion, wall s and GB of a million degrees of freedom a segment.
+EXPONENT_GOAL = 1.2
+DEFAULT_GOAL, MOTION_GOAL = 5.0, 1.5
+MILLION_GOALS = 300.0, 8.0
+
+STAGES = ("mesh", "assembly", "rows", "reduction", "fields", "mesh error")
+
+# Stages whose peaks of memory are told.
+REMEMBERED = ("mesh", "assembly", "reduction", "fields")
+
+# Of the motions in s; the last is that of the goal.
+STEPS = (1.0e-4, 1.0e-5)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """How much is measured."""
+
+    #: Edge lengths in m, falling; the last makes about a million degrees of freedom a segment.
+    meshes: Sequence[float] = (0.1, 0.06, 0.035, 0.018)
+    default: float = 0.1  #: edge length in m of the motions
+    #: Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
+    #: meshes.
+    ranks: Sequence[int] = (1, 2)
+    duration: float = 10.0  #: of the motions in s
+
+
+def measured(sizes: Sizes) -> Iterator[Table]:
+    """The default mesh from plates to its motion, by ranks; then ever finer meshes on the most."""
+    runs = [
+        _measured(ranks, "move", name, sizes.default, sizes.duration)
+        for ranks in sizes.ranks
+        for name in SIZED
+    ]
+    goal = f"Goal: {DEFAULT_GOAL:g} s on two cores."
+    yield _stages("scaling-default", "The default mesh, from plates to the gap system", runs, goal)
+    columns = {
+        "case": "", "ranks": ".0f", "step s": ".2g", "motion s": ".2f",
+        "ns a step": ".0f", "contact changes": ".0f", "energy residual": ".1g",
+    }  # fmt: skip
+    yield Table.of_rows(
+        "scaling-motion",
+        f"{sizes.duration:g} s of motion",
+        columns,
+        [(run["case"], run["ranks"], *motion) for run in runs for motion in run["motions"]],
+        (f"Goal: {MOTION_GOAL:g} s at a step of {STEPS[-1]:g} s. The motion is one rank's work.",),
+    )
+    runs = [_measured(sizes.ranks[-1], "reduce", "friction", mesh) for mesh in sizes.meshes]
+    note = "Peaks are sums over the ranks, of each rank's own largest resident set."
+    yield _stages("scaling", "The paper's boom as shells, by size", runs, note)
+    yield Table.of_rows(
+        "scaling-memory",
+        "Peak memory when a stage ends, GB over all ranks",
+        {"dofs a segment": ".0f", "idle": ".2f", **dict.fromkeys(REMEMBERED, ".2f")},
+        [(run["dofs"], run["idle"], *(run["peaks"][at] for at in REMEMBERED)) for run in runs],
+    )
+    dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
+    wall = _exponent(dofs, [run["total_seconds"] for run in runs])
+    # What starts up with the processes is there without any shell.
+    memory = _exponent(dofs, [run["peaks"]["fields"] - run["idle"] for run in runs])
+    yield Table.of_rows(
+        "scaling-goals",
+        "What growing takes",
+        {"what": "", "measured": ".3g", "goal": ".3g"},
+        [
+            ("power of the size with which wall time grows", wall, EXPONENT_GOAL),
+            ("the same of peak memory beyond that of idle processes", memory, None),
+            ("wall s of the largest", last["total_seconds"], seconds),
+            ("peak GB of the largest", last["peaks"]["fields"], peak),
+        ],
+    )
+
+
+def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str) -> Table:
+    """What each stage of each run takes."""
+    columns = {
+        "case": "", "mesh m": ".2g", "ranks": ".0f", "dofs a segment": ".0f",
+        **{f"{stage} s": ".2f" for stage in STAGES}, "all s": ".2f", "modes": ".0f",
+        "peak GB": ".2f", "compliance error": ".1g",
+    }  # fmt: skip
+    return Table.of_rows(
+        name,
+        title,
+        columns,
+        [
+            (run["case"], run["mesh"], run["ranks"], run["dofs"],
+             *(run["seconds"][stage] for stage in STAGES), run["total_seconds"], run["modes"],
+             run["peaks"]["fields"], run["errors"]["contact_compliance"])
+            for run in runs
+        ],
+        (note,),
+    )  # fmt: skip
+
+
+def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """p of the power law values ~ sizesᵖ that fits best."""
+    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0]) if len(sizes) > 1 else math.nan
+
+
+def _measured(ranks: int, *what: object) -> dict[str, Any]:
+    """What a run of its own processes tells."""
+    launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
+    if launcher and shutil.which("mpirun") is None:
+        raise FileNotFoundError("several ranks take mpirun, which is not installed")
+    done = subprocess.run(
+        [*launcher, sys.executable, "-m", "studies.cost.scaling", *map(str, what)],
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    told: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    return told
+
+
+def _run(what: str, name: str, size: str, duration: str = "0") -> None:
+    """One run, in processes that are its own; rank 0 prints what it took."""
+    from mpi4py import MPI
+
+    from shell_model.boom_shell import ShellOptions
+    from shell_model.reduced_shell import reduce_boom
+
+    comm = MPI.COMM_WORLD
+    case = case_file.load(str(CASES / SIZED[name]))
+    boom = build_boom(case)
+    model = of_kind(ShellTable, case.models)[0]
+    options = ShellOptions(float(size), contact_line=model.contact_line)
+    idle = comm.allreduce(_peak())
+    peaks: dict[str, float] = {}
+
+    def tell(stage: str, part: float) -> None:
+        peaks[stage] = _peak()
+
+    comm.barrier()
+    start = perf_counter()
+    reduced = reduce_boom(boom, contact_laws(case, model), options, comm, tell)
+    comm.barrier()
+    total = perf_counter() - start
+    peaks["fields"] = _peak()
+    every = comm.gather(peaks)
+    if every is None:
+        return
+    summed = {stage: sum(one.get(stage, 0.0) for one in every) for stage in peaks}
+    told: dict[str, Any] = {
+        "case": name,
+        "ranks": comm.size,
+        "mesh": options.mesh_size,
+        "dofs": reduced.num_dofs // 2,
+        "modes": reduced.system.num_modes,
+        "seconds": reduced.seconds,
+        "total_seconds": total,
+        "idle": idle,
+        "peaks": summed,
+        "errors": reduced.errors,
+    }
+    if what == "move":
+        told["motions"] = [_motion(reduced.system, float(duration), step) for step in STEPS]
+    print(json.dumps(told))
+
+
+def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
+    """Return step, seconds of a motion, nanoseconds of a step, contact changes, energy residual."""
+    # The first output compiles.
+    FixedStep(step)(Motion(system, 1.0e-3))
+    start = perf_counter()
+    motion = FixedStep(step)(Motion(system, duration))
+    seconds = perf_counter() - start
+    changes = motion.data.attrs["contact_changes"]
+    return [step, seconds, 1e9 * seconds * step / duration, changes, motion.energy_residual]
+
+
+def _peak() -> float:
+    """This program's largest resident set so far, in GB."""
+    # getrusage would tell the parent's as well, which was this process before it began.
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    (line,) = (line for line in status.splitlines() if line.startswith("VmHWM:"))
+    return float(line.split()[1]) * 1024.0 / 1.0e9
+
+
+def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
+    """Measure, print, and write ``scaling.json`` and ``scaling.md``."""
+    data = {"sizes": asdict(sizes)}
+    leave(folder, "scaling", "What a shell costs", data, measured(sizes), console)
+
+
+if __name__ == "__main__":
+    notices.show()
+    if len(sys.argv) > 1:
+        _run(*sys.argv[1:])
+    else:
+        scaling(Sizes(), OUT, wide_console())

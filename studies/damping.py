@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Damping ratios asked for against those with which pressed booms swing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from dynamics.damping import pressed_modes, with_ratio
+from dynamics.equilibrium import equilibrium
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from geometry.arrays import Array
+from runs import CASES
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.report.tables import Table
+from studies.motions import gap_system, model_of, without_friction
+from studies.study import Held, Piece, Proof, Tell, titled
+
+# Booms, and their cases.
+BOOMS = {
+    "two segments": "friction-walk.toml",
+    "three segments": "three-segments.toml",
+    "in space": "spatial.toml",
+}
+# Of each boom, all with a linear contact.
+MODELS = ("kantorovich-24", "timoshenko", "shell")
+MESH_SIZE = 0.2
+
+RATIOS = (0.005, 0.02, 0.05)
+MODES = 3
+# The numbers of the loads of the cases are those of the masses.
+GRAVITY = 9.80665
+# For which each mode swings, and steps of each.
+PERIODS, STEPS = 1.1, 2000
+# What a swing changes of a contact's penetration.
+SWING = 0.02
+
+NOTE = (
+    "From the logarithmic decrements of a small swing about rest under the boom's weight, in space "
+    "under a third of it sideways too."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PressedBoom:
+    """A boom that its weight presses, at rest."""
+
+    system: GapSystem  #: under its weight, without damping and friction
+    rest: Array  #: (num_modes,) in √kg·m
+    omega: Array  #: (MODES,) of the first modes in rad/s
+    shapes: Array  #: (num_modes, MODES)
+
+    @classmethod
+    def of(cls, system: GapSystem) -> PressedBoom:
+        """A boom without stops under a load whose numbers are its masses."""
+        system = replace(without_friction(system), load=-GRAVITY * system.load)
+        omega, shapes = pressed_modes(system)
+        rest = equilibrium(system, system.load)
+        return cls(system, rest, omega[:MODES], shapes[:, :MODES])
+
+    def measured(self, ratio: float, mode: int) -> tuple[float, float]:
+        """The ratio by the logarithmic decrement of a mode's swing, and its energy residual."""
+        gaps = self.system.rows @ self.rest
+        laws = list(zip(self.system.laws, gaps, strict=True))
+        pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]
+        deep = np.array([abs(gap) - law.clearance for law, gap in laws])
+        shape, period = self.shapes[:, mode], 2.0 * np.pi / self.omega[mode]
+        reach = np.abs(self.system.rows @ shape)
+        run = FixedStep(period / STEPS)(
+            Motion(
+                with_ratio(self.system, ratio),
+                PERIODS * period,
+                period / 200.0,
+                position=self.rest + shape * SWING * (deep / reach)[pressed].min(),
+            )
+        )
+        swing = (run.states - self.rest) @ shape
+        peaks, _ = find_peaks(swing)
+        decrement = np.log(swing[0] / swing[peaks[-1]]) / peaks.size
+        return float(decrement / np.hypot(2.0 * np.pi, decrement)), run.energy_residual
+
+
+@titled("damping", "Damping ratios asked for and measured")
+def study(tell: Tell) -> Iterator[Piece]:
+    """Every boom and model at every ratio."""
+    rows, residuals = [], []
+    held: Held = ("analytic", "logarithmic decrement 2πζ/√(1 − ζ²)", 0.05)
+    for (boom, file), model in product(BOOMS.items(), MODELS):
+        name = f"{boom}, {model}"
+        tell(name)
+        pressed = PressedBoom.of(_system(CASES / file, model))
+        farthest = f"damping ratio of {name}: the mode of the first {MODES} that is farthest off"
+        for ratio in RATIOS:
+            swings = np.array([pressed.measured(ratio, mode) for mode in range(MODES)])
+            residuals.append(float(swings[:, 1].max()))
+            worst = 100.0 * float(swings[np.abs(swings[:, 0] - ratio).argmax(), 0])
+            rows.append((name, 100.0 * ratio, *(100.0 * swings[:, 0])))
+            yield Proof(farthest, worst, 100.0 * ratio, "%", *held)
+    residual = "energy residual of these swings, the largest"
+    held = ("analytic", "conservation of energy", 1.0e-4)
+    yield Proof(residual, max(residuals), 0.0, "", *held)
+    modes = {f"mode {mode}\n%": ".4g" for mode in range(1, MODES + 1)}
+    columns = {"boom": "", "asked\n%": ".3g", **modes}
+    yield Table.of_rows("damping", "Damping ratios of pressed booms", columns, rows, (NOTE,))
+
+
+def _system(path: Path, name: str) -> GapSystem:
+    case = case_file.load(str(path))
+    model = model_of(case, name)
+    if model.meshed:
+        model = model.model_copy(update={"mesh_size": MESH_SIZE})
+    return gap_system(case, build_boom(case), model)

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A cantilever that is pressed ever farther, as far as a segment has been drawn out in it.
+
+What a force presses up to a, beyond which the column is straight, buckles as a column of the length
+a; under a load across the head it bends by what is known of a beam-column, and goes on straight but
+for the load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from beam_model.boom_modes import critical_factor
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
+from beam_model.segment_model import gap_system
+from dynamics.contact import PowerContact
+from dynamics.drive.travel import SCurve
+from geometry.arrays import Array
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, Joint, Segment
+from geometry.drive import Drive
+from geometry.section import BoxSection
+from studies.second_order import (
+    BOX,
+    CLAMP,
+    ELEMENT,
+    LENGTH,
+    SHARE,
+    SHEAR_STIFFNESS,
+    STEEL,
+    STIFFNESS,
+)
+from studies.study import Held, Proof, Tell, titled
+
+INNER = BoxSection(height=0.16, width=0.11, flange=0.006, web=0.006)
+LAW = PowerContact(1e8, 1.0, clearance=5e-3)
+TERMS = 16
+# x in m of the inner segment's tail at the start, and where it is drawn to.
+START, END = 2.0, 5.0
+ALLOWED = 1e-4
+
+MODELS: Mapping[str, Callable[[Boom], list[SegmentModel]]] = {
+    "elements": lambda boom: finite_element_segments(boom, ELEMENT, "euler-bernoulli", False),
+    "series": lambda boom: kantorovich_segments(boom, (TERMS, 6), "complete", False),
+    "shear-flexible elements": lambda boom: finite_element_segments(
+        boom, ELEMENT, "timoshenko", False
+    ),
+}
+
+
+def column(force: float) -> Boom:
+    """The cantilever, and what is drawn out in it, whose tail hands a force in N on."""
+    outer = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,))
+    inner = Segment.of_section("drawn", START, START + LENGTH, STEEL, INNER)
+    drive = Drive(SCurve(END - START, 1.0), ("inner", "outer"))
+    joint = Joint(0, 1, (START, LENGTH), LAW.clearance, drive=drive)
+    pressed = with_compression((outer, inner), [joint], [Thrust(1, START, force)])
+    return Boom(pressed, (joint,))
+
+
+@titled("drawn_column", "A column that is pressed ever farther as a segment is drawn out in it")
+def study(tell: Tell) -> Iterator[Proof]:
+    """Every model of beams."""
+    for name, build in MODELS.items():
+        tell(name)
+        yield from _proofs(name, build)
+
+
+def _proofs(name: str, build: Callable[[Boom], list[SegmentModel]]) -> Iterator[Proof]:
+    in_shear = name == "shear-flexible elements"
+    euler = 0.25 * np.pi**2 * STIFFNESS / END**2
+    critical = euler / (1.0 + euler / SHEAR_STIFFNESS) if in_shear else euler
+    boom = column(SHARE * critical)
+    models = build(boom)
+    factor = critical_factor(boom, models)
+    assert factor is not None
+    source = "Euler 1744, shear by Engesser 1891" if in_shear else "Euler 1744"
+    pressed = f"pressed over {END:g} of its {LENGTH:g} m"
+    what = f"critical force of a cantilever that is drawn to be {pressed}, {name}"
+    found = factor * SHARE * critical
+    yield Proof(what, found, critical, "N", "analytic", source, ALLOWED)
+    if in_shear:
+        return
+    system = gap_system(boom, models, [LAW])
+    held: Held = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
+    for time, x in ((0.0, START), (1.0, END)):
+        head = _compliance(system.standing(time).stiffness, system.observers["head"].row)
+        what = f"deflection of its head under {SHARE:g} P_cr over {x:g} m, {name}"
+        yield Proof(what, head, _bent(x, SHARE * critical), "m/N", *held)
+
+
+def _compliance(stiffness: Array, row: Array) -> float:
+    """In m/N of what one segment alone moves."""
+    own = np.flatnonzero(row)
+    return float(row[own] @ np.linalg.solve(stiffness[np.ix_(own, own)], row[own]))
+
+
+def _bent(a: float, force: float) -> float:
+    """m/N of the head under a load across it, with a force in N on the part up to a in m.
+
+    E J w″ = Q (L − x) + P (w(a) − w) up to a, with w(0) = w′(0) = 0; E J w″ = Q (L − x) beyond.
+    """
+    k, beyond = np.sqrt(force / STIFFNESS), LENGTH - a
+    at_a = (np.tan(k * a) / k + beyond / np.cos(k * a) - LENGTH) / force
+    slope = (at_a + LENGTH / force) * k * np.sin(k * a) + (np.cos(k * a) - 1.0) / force
+    return float(at_a + slope * beyond + beyond**3 / (3.0 * STIFFNESS))

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether loads that change with time do what their histories ask, wherever their kinks lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from dynamics.excitation import Excitation, Ramp, Sine, Table
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from geometry.arrays import Array
+from studies.study import Held, Proof, Tell, titled
+
+# Distance of outputs, steps, and duration in s. A step is a tenth of the shortest 1/ω below.
+OUTPUT_STEP, STEP = 0.02, 2.0e-5
+DURATION = 4.0
+# ω of masses of 1 kg on springs in rad/s: free, of a boom, of the plates of a shell.
+OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
+# The one whose swing is told.
+BOOM = 19.0
+# Force in N.
+FORCE = 10.0
+
+DUHAMEL: Held = ("analytic", "Duhamel's integral of each line", 1.0e-8)
+
+_MANY = np.linspace(0.011, 2.9, 1500)
+KINKED: Mapping[str, Ramp | Table] = {
+    "a ramp of 0.71 s": Ramp(0.71),
+    "kinks at 0.7 and 1.2 s": Table((0.0, 0.7, 1.2), (0.5, 1.0, -0.5)),
+    "kinks at 0.303, 0.311 and 0.7 s": Table((0.0, 0.303, 0.311, 0.7), (0.0, 1.0, -2.0, 0.3)),
+    "a table of 1500 points": Table(_MANY.tolist(), np.sin(40.0 * _MANY).tolist()),
+    "a rise within 1 ms": Table((0.507, 0.508), (0.0, 1.0)),
+}
+
+
+def response(omega: float, history: Ramp | Table, time: Array) -> Array:
+    """(num_times,) closed form of 1 kg from rest on a spring ω² in N/m under 1 N times a history.
+
+    A constant load from t = 0 on, and at each kink a ramp by as much as the slope changes there.
+
+    Args:
+        omega: in rad/s, 0 without a spring.
+        history: with kinks from t = 0 on.
+        time: (num_times,) in s.
+    """
+    kinks = np.array(history.kinks)
+    values = history(kinks)
+    slopes = np.diff(values) / np.diff(kinks)
+    way = values[0] * 0.5 * time**2 * np.sinc(0.5 * omega * time / np.pi) ** 2
+    for begin, change in zip(kinks, np.diff(slopes, prepend=0.0, append=0.0), strict=True):
+        since = np.maximum(time - begin, 0.0)
+        if omega == 0.0:
+            way = way + change * since**3 / 6.0
+        else:
+            way = way + change * (since - np.sin(omega * since) / omega) / omega**2
+    return np.asarray(way)
+
+
+def masses(history: Ramp | Sine | Table) -> GapSystem:
+    """A mass for each of ``OMEGAS`` under 1 N times a history, each observed by its ω."""
+    n = len(OMEGAS)
+    return GapSystem(
+        omega2=np.square(OMEGAS),
+        load=np.zeros(n),
+        rows=np.zeros((0, n)),
+        laws=[],
+        station_of_row=np.zeros(0, dtype=np.int64),
+        stations=[0.0],
+        observers={f"{w:g}": Observer(row) for w, row in zip(OMEGAS, np.eye(n), strict=True)},
+        excitations=[Excitation(np.ones(n), history)],
+    )
+
+
+@titled("histories", f"Loads in time, steps of {STEP:g} s")
+def study(tell: Tell) -> Iterator[Proof]:
+    """Swings that kinked histories leave, and the largest error of each, against closed forms."""
+    for what, history in KINKED.items():
+        tell(what)
+        run = FixedStep(STEP)(Motion(masses(history), DURATION, OUTPUT_STEP))
+        found = {omega: run.data[f"{omega:g}"].values for omega in OMEGAS}
+        asked = {omega: response(omega, history, run.time) for omega in OMEGAS}
+        after = run.time > history.kinks[-1]
+        measured, exact = (FORCE * 1.0e3 * 0.5 * np.ptp(way[BOOM][after]) for way in (found, asked))
+        worst = max(np.abs(found[w] - asked[w]).max() / np.ptp(asked[w]) for w in OMEGAS)
+        swing = f"{what}: swing left at {BOOM / (2.0 * np.pi):.2g} Hz"
+        largest = f"{what}: largest error, 0 to {OMEGAS[-1] / (2.0 * np.pi):.0f} Hz, part of range"
+        yield Proof(swing, measured, exact, "mm", *DUHAMEL)
+        yield Proof(largest, float(worst), 0.0, "", *DUHAMEL)

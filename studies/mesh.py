@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How near the shell of the paper's boom is to one of infinitely fine mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from dynamics.gap_system import GapSystem
+from dynamics.trajectory import Trajectory
+from runs.case.build import build_boom
+from runs.pipeline.motion import Plan
+from studies.motions import finer, friction_case, gap_system, lasting, shell_of
+from studies.refined import Refined, error_plot, refined_table
+from studies.study import Piece, Tell, titled
+
+# What is allowed of the default mesh, relative to the limit of infinitely fine ones.
+ALLOWED = 0.01
+
+NOTE = (
+    "Order, Richardson's limit and the grid convergence index of the finest mesh, from the three "
+    "finest, with the safety factor 1.25 (Roache 1994). No order where values do not go one way "
+    "with ever smaller steps."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    #: Edge lengths over the default ones, each half the one before, three at least.
+    meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
+    default: float = 1.0  #: of them, which is judged
+    duration: float = 3.0  #: of the motion in s
+    #: How many of the lowest natural frequencies, of the first tip peaks.
+    frequencies: int = 3
+    peaks: int = 3
+
+
+@titled("mesh", "Meshes of the paper's boom")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Frequencies, flexibilities and tip peaks of the paper's boom on ever finer meshes."""
+    sizes = sizes or Sizes()
+    case = lasting(friction_case(), sizes.duration)
+    results = []
+    for part in sizes.meshes:
+        tell(f"edges x {part:g}")
+        model = finer(shell_of(case), part)
+        system = gap_system(case, build_boom(case), model)
+        motion = Plan.of(system, case, model).trajectory(lambda part: None)
+        results.append(_quantities(system, motion, sizes))
+    found = [
+        Refined(what, unit, sizes.meshes, [result[what, unit] for result in results])
+        for what, unit in results[-1]
+    ]
+    yield refined_table("meshes", "Meshes, with friction", found, "edges × {:g}", (NOTE,))
+    finest = f"edges × {sizes.meshes[-1]:g}"
+    for one in found:
+        yield one.against_limit(f"{one.what}, default mesh", sizes.default, finest, ALLOWED)
+    yield error_plot(
+        "mesh",
+        "The shell settles as its mesh refines",
+        "edges over the default ones",
+        found,
+        "Relative distance from Richardson's limit of the three finest meshes, for the paper's "
+        "boom with friction.",
+    )
+
+
+def peak_heights(motion: Trajectory) -> list[float]:
+    """Heights in m of the tip's peaks, on parabolas through the three highest output values."""
+    tip = np.asarray(motion.data["tip"].values)
+    places, _ = find_peaks(tip, prominence=0.2 * np.ptp(tip))
+    before, top, after = tip[places - 1], tip[places], tip[places + 1]
+    bend = before - 2.0 * top + after
+    return [float(height) for height in top - 0.125 * (after - before) ** 2 / bend]
+
+
+def _quantities(
+    system: GapSystem, motion: Trajectory, sizes: Sizes
+) -> dict[tuple[str, str], float]:
+    """What and unit → value."""
+    from shell_model.contact.local_compliance import compliance, local_compliance
+
+    elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]
+    found = {(f"natural frequency {i}", "Hz"): float(f) for i, f in enumerate(elastic, start=1)}
+    whole = compliance(system.omega2, system.rows)
+    local = local_compliance(whole, system.laws, system.station_of_row.tolist())
+    for station, x in enumerate(system.stations):
+        row = int(np.argmax(system.station_of_row == station))
+        found[f"local compliance at {x:g} m", "m/N"] = float(local[row])
+    for i, height in enumerate(peak_heights(motion)[: sizes.peaks], start=1):
+        found[f"tip peak {i}", "mm"] = 1.0e3 * height
+    return found

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What of the distance from the paper's series to the shell each thing makes.
+
+One thing after another is changed that the series leaves out and the shell has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from runs.case import reading as case_file
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.report.tables import Table
+from studies.motions import CASE, friction_case, gap_system, model_of, trajectories
+from studies.pads import flexibility_table
+from studies.study import Tell, titled
+
+# From the paper's series to the shell: what is changed, and the model that has it.
+LADDER = (
+    ("the paper's five-term series", "kantorovich-5"),
+    ("linear contact", "kantorovich-5-linear"),
+    ("more terms", "kantorovich-24-printed"),
+    ("a complete base", "kantorovich-24"),
+    ("beam elements", "beam-fe"),
+    ("rotary inertia", "beam-fe-rotary"),
+    ("shear", "timoshenko"),
+    ("local flexibility", "timoshenko-local"),
+    ("section distortion", "timoshenko-distorting"),
+    ("stiffness and springs read from the shell", "sprung"),
+    ("fields of its section", "fielded"),
+    ("plates", "shell"),
+)
+# Up to when the ladder is to explain all but a hundredth, in s.
+EXPLAINED = 5.0
+
+
+def rungs(case: Case) -> Table:
+    """Each rung of ``LADDER``: what it changes of the tip, and what it leaves to the shell, largest
+    differences as parts of the shell's range.
+
+    Args:
+        case: with its models.
+    """
+    names = [name for _, name in LADDER]
+    runs = trajectories(case_file.select(case, str(CASE), names))
+    # A selection keeps the case's order.
+    order = [model.name for model in case.models if model.name in names]
+    tip = {name: run.data["tip"].values for name, run in zip(order, runs, strict=True)}
+    shell = tip[names[-1]]
+    early = case.time.output_step * np.arange(shell.size) <= EXPLAINED
+
+    def apart(one: str, other: str) -> tuple[float, float]:
+        distance = 100.0 * np.abs(tip[one] - tip[other]) / np.ptp(shell)
+        return float(distance[early].max()), float(distance.max())
+
+    before = [names[0], *names[:-1]]
+    columns = {
+        "with": "", "model": "", f"changes, to {EXPLAINED:g} s (% of the range)": ".2f",
+        "changes, to the end": ".2f", f"left to the shell, to {EXPLAINED:g} s": ".2f",
+        "left, to the end": ".2f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "ladder",
+        "From the paper's series to the shell",
+        columns,
+        [
+            (what, name, *apart(name, previous), *apart(name, names[-1]))
+            for (what, name), previous in zip(LADDER, before, strict=True)
+        ],
+    )
+
+
+@titled("model-ladder", "From the paper's series to the shell")
+def study(tell: Tell) -> Iterator[Table]:
+    """The ladder, and how much more the shell's stations give way than a beam's."""
+    case = friction_case()
+    tell("the models from the series to the shell")
+    yield rungs(case)
+    tell("flexibility of the stations")
+    shell = gap_system(case, build_boom(case), model_of(case, "shell"))
+    yield flexibility_table([("the shell's stations", case, shell)])

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What the size of a slide pad does to the flexibility of the stations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.boom import Boom
+from geometry.contact_places import pads
+from runs.case.build import build_boom
+from runs.case.contact import PadTable
+from runs.case.schema import Case
+from runs.report.tables import Cell, Table
+from studies.motions import SLOW, compliance, gap_system, model_of
+from studies.study import Proof
+
+
+def with_pads(case: Case, length: float, width: float) -> Case:
+    """The case with pads of a size, in m, at all its joints."""
+    pad = PadTable.model_validate({"length": length, "width": width})
+    joints = tuple(joint.model_copy(update={"pad": pad}) for joint in case.joints)
+    return case.model_copy(update={"joints": joints})
+
+
+def flexibility_table(contacts: Sequence[tuple[str, Case, GapSystem]]) -> Table:
+    """How much more stations give way than those of Timoshenko's beam.
+
+    Args:
+        contacts: names, cases (with the model ``timoshenko``, in the plane and with friction), and
+            shells that touch at the stations.
+    """
+    rows: list[Sequence[Cell]] = []
+    for name, case, system in contacts:
+        beam = gap_system(case, _middles(build_boom(case)), model_of(case, "timoshenko"))
+        rigid = compliance(beam, beam.rows)
+        together = compliance(system, system.friction_rows) - rigid
+        alone = compliance(system, upper_rows(system)) - rigid
+        rows.append((name, *together, *(alone - together)))
+    stations = contacts[0][2].stations
+    columns = {
+        "contact": "", **{f"both flanges together\nat {x:g} m (m/N)": ".3g" for x in stations},
+        **{f"one flange more\nat {x:g} m (m/N)": ".3g" for x in stations},
+    }  # fmt: skip
+    return Table.of_rows(
+        "flexibility",
+        "Flexibility of the stations beyond Timoshenko's beam",
+        columns,
+        rows,
+        (
+            f"Read at σ = (2π · {SLOW:g} Hz)², with every segment free of the others.",
+            "A pad at the end of the overlap has its middle half its length inside, and there the "
+            "beam is read too.",
+        ),
+    )
+
+
+def _middles(boom: Boom) -> Boom:
+    """The boom with its stations in the middles of their pads."""
+    places = {
+        pad.x: pad.x if pad.patch is None else 0.5 * (pad.patch.start + pad.patch.end)
+        for pad in pads(boom)
+    }
+    joints = tuple(
+        replace(joint, stations=tuple(places[x] for x in joint.stations)) for joint in boom.joints
+    )
+    return replace(boom, joints=joints)
+
+
+def upper_rows(system: GapSystem) -> Array:
+    """(num_stations, num_modes) the mean approach above each station, by the points' shares."""
+    above = np.array(
+        [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
+    )
+    at = np.equal.outer(np.arange(len(system.stations)), system.station_of_row) * above
+    return np.asarray(at @ system.rows / at.sum(axis=1, keepdims=True))
+
+
+def pad_proofs(case: Case, size: tuple[float, float], system: GapSystem) -> Iterator[Proof]:
+    """A pressed pad's resultant: how large, and where.
+
+    What its row reads of a rigid motion is the work of its force, read the other way.
+
+    Args:
+        case: with the pads.
+        size: their length and width in m.
+        system: the shell with them.
+    """
+    boom = build_boom(case)
+    start, _ = boom.overlap(boom.joints[0])
+    for what, tail, tip, asked, unit, source in (
+        ("force of a uniformly pressed pad, over its law's", 1.0, 1.0, 1.0, "",
+         "pressure times area"),
+        ("its place along the boom, pad at the overlap's start", start, boom.tip,
+         start + 0.5 * size[0], "m", "middle of the pad"),
+    ):  # fmt: skip
+        found = float(upper_rows(system)[0] @ rigid_motion(system, tail, tip))
+        yield Proof(what, found, asked, unit, "analytic", source, 1.0e-6)
+
+
+def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
+    """(num_modes,) the state in which the free inner segment's ends are so high, in m."""
+    free = np.flatnonzero(system.omega2 == 0.0)
+    rows = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
+    state = np.zeros(system.num_modes)
+    state[free] = np.linalg.lstsq(rows, np.array([tail, tip]), rcond=None)[0]
+    return state

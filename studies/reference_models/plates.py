@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Flat plates with known solutions: patches under constant strain, and plates that vibrate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from geometry.arrays import Array, Indices
+from geometry.boom import Material
+from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
+from shell_model.segment.shell import ON_LINE
+from studies.reference_models.benchmarks import X, Y, Z, grid
+from studies.reference_models.eigenmodes import natural_frequencies
+from studies.reference_models.static_shell import StaticShell, hold
+
+Field = Callable[[Array, Array], Array]
+
+STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+PATCH_THICKNESS = 0.05
+
+# Columns are the patch's x and y and its normal in space: no axis lies along one of space.
+OBLIQUE = np.asarray(Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix())
+
+
+def rigidities(thickness: float) -> tuple[float, float]:
+    """D in N m and S = 5/6 G t in N/m of a plate of steel, t in m."""
+    bending = STEEL.youngs_modulus * thickness**3 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
+    return bending, SHEAR_CORRECTION * STEEL.shear_modulus * thickness
+
+
+def rectangle(length: float, width: float) -> Field:
+    """Places (num, 3) in m on [0, length] × [0, width], of parameters (num,) from 0 to 1."""
+    return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantStrain:
+    """A state of a plate on [0, 1]² whose strains are the same everywhere.
+
+    Args:
+        name: for people.
+        displacement: (num, 3) along the plate's x, y and normal in m, at x, y (num,) in m.
+        rotation: (num, 3) about them in rad.
+        membrane, bending: (2, 2) ε, and κ in 1/m.
+        shear: (2,) γ.
+    """
+
+    name: str
+    displacement: Field
+    rotation: Field
+    membrane: Array
+    bending: Array
+    shear: Array
+
+    @property
+    def couple(self) -> Array:
+        """(3,) in N m/m² with which the state is in balance: e3 × Q, Q the shear force."""
+        q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
+        return np.array([-q2, q1, 0.0])
+
+
+def constant_strains() -> list[ConstantStrain]:
+    """Every membrane, bending and shear strain at once in each of three states.
+
+    Bending is u_z = −κ_xx x²/2 − κ_yy y²/2 − κ_xy x y with normals that stay normal.
+    """
+    none, strain = np.zeros((2, 2)), 1.0e-3 * np.array([[1.0, 0.4], [0.4, -0.7]])
+    spin, tilt = 6.0e-4, np.array([3.0e-4, -5.0e-4])
+    gradient = strain + spin * np.array([[0.0, -1.0], [1.0, 0.0]])
+    gamma = np.array([8.0e-4, -2.0e-4])
+    slope = gamma + tilt
+
+    def columns(x: Array, *values: Array | float) -> Array:
+        return np.stack([np.broadcast_to(value, x.shape) for value in values], axis=1)
+
+    def bent(x: Array, y: Array) -> Array:
+        xx, yy, xy = strain[0, 0], strain[1, 1], strain[0, 1]
+        return columns(x, 0.0, 0.0, -0.5 * (xx * x**2 + yy * y**2) - xy * x * y)
+
+    def turned(x: Array, y: Array) -> Array:
+        along_x, along_y = strain @ np.stack([x, y])
+        return columns(x, -along_y, along_x, 0.0)
+
+    return [
+        ConstantStrain(
+            "membrane",
+            lambda x, y: columns(x, *(gradient @ np.stack([x, y])), 0.0),
+            lambda x, y: columns(x, 0.0, 0.0, spin),
+            strain,
+            none,
+            np.zeros(2),
+        ),
+        ConstantStrain("bending", bent, turned, none, strain, np.zeros(2)),
+        ConstantStrain(
+            "shear",
+            lambda x, y: columns(x, 0.0, 0.0, slope[0] * x + slope[1] * y),
+            lambda x, y: columns(x, tilt[1], -tilt[0], 0.0),
+            none,
+            none,
+            gamma,
+        ),
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """A distorted mesh of the plate on [0, 1]², oblique in space.
+
+    Args:
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3).
+        shell: of steel, ``PATCH_THICKNESS`` thick.
+    """
+
+    points: Array
+    triangles: Indices
+    shell: StaticShell
+
+    @classmethod
+    def of(cls, n: int = 4) -> Patch:
+        """With n edges along each side; inner points are off their places by a fifth of one."""
+
+        def surface(x: Array, y: Array) -> Array:
+            inside = (np.abs(x - 0.5) < 0.5 - ON_LINE) & (np.abs(y - 0.5) < 0.5 - ON_LINE)
+            off = 0.2 / n * inside
+            x, y = x + off * np.sin(17.0 * x + 5.0 * y), y + off * np.cos(7.0 * x - 13.0 * y)
+            return np.asarray(np.stack([x, y, np.zeros_like(x)], axis=1) @ OBLIQUE.T)
+
+        points, triangles = grid(surface, n, n)
+        return cls(points, triangles, StaticShell(points, triangles, PATCH_THICKNESS, STEEL))
+
+    def exact(self, state: ConstantStrain) -> Array:
+        """(num_dofs,) the known solution."""
+        shell = self.shell
+        solution = np.zeros(shell.num_dofs)
+        for places, dofs, field in (
+            (shell.nodes, shell.node_dofs, state.displacement),
+            (shell.rotation_nodes, shell.rotation_dofs, state.rotation),
+        ):
+            x, y, _ = OBLIQUE.T @ places.T
+            solution[dofs] = field(x, y) @ OBLIQUE.T
+        return solution
+
+    def solve(self, state: ConstantStrain) -> Array:
+        """(num_dofs,) the solution between edges that are held as it is known to be."""
+        shell, exact = self.shell, self.exact(state)
+        held: dict[int, float] = {}
+        for places, dofs in (
+            (shell.nodes, shell.node_dofs),
+            (shell.rotation_nodes, shell.rotation_dofs),
+        ):
+            edge = np.abs(places @ OBLIQUE[:, :2] - 0.5).max(axis=1) > 0.5 - ON_LINE
+            held |= hold(dofs[edge], exact[dofs[edge]])
+        return shell.solve(held, shell.surface_load(np.zeros(3), OBLIQUE @ state.couple))
+
+    def error(self, state: ConstantStrain) -> float:
+        """Largest error of a displacement or rotation, relative to the largest of its kind."""
+        found, exact = self.solve(state), self.exact(state)
+        return max(
+            float(np.abs(found[dofs] - exact[dofs]).max() / np.abs(exact[dofs]).max())
+            for dofs in (self.shell.node_dofs, self.shell.rotation_dofs)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SupportedPlate:
+    """A rectangular plate of steel on hard simple supports, a by b by t in m: edges keep their
+    places and, along themselves, their direction.
+    """
+
+    length: float
+    width: float
+    thickness: float
+
+    def frequencies(self, n: int, count: int) -> Array:
+        """(count,) lowest natural frequencies in Hz of the shell, n edges along each side."""
+        # The drilling tie and the wall's inertia have frequencies of their own, from
+        # √(12 DRILLING G/ρ)/(2π t) on: in a thick plate a soft tie comes too near.
+        shell = StaticShell(
+            *grid(rectangle(self.length, self.width), n, n),
+            self.thickness,
+            STEEL,
+            DRILLING_OF_CURVED,
+        )
+        held: dict[int, float] = {}
+        for axis, size in ((X, self.length), (Y, self.width)):
+            for edge in (0.0, size):
+                held |= shell.hold_at(axis, edge, [X, Y, Z], [axis])
+        return natural_frequencies(shell.held(held), count)
+
+    def kirchhoff(self, count: int) -> Array:
+        """(count,) lowest frequencies in Hz without shear and rotary inertia (Navier 1823)."""
+        t = self.thickness
+        speed2 = STEEL.youngs_modulus * t**2 / (12.0 * (1.0 - STEEL.poissons_ratio**2))
+        return self._lowest(self._wave_numbers2() * np.sqrt(speed2 / STEEL.density), count)
+
+    def mindlin(self, count: int) -> Array:
+        """(count,) lowest frequencies in Hz (Mindlin 1951).
+
+        With k² = (mπ/a)² + (nπ/b)² and the slope along the wave, ω² is the lower root of
+        (S k² − ρt ω²)(D k² + S − ρt³/12 ω²) = S² k², S = 5/6 G t.
+        """
+        t, k2 = self.thickness, self._wave_numbers2()
+        plate, shear = rigidities(t)
+        mass, inertia = STEEL.density * t, STEEL.density * t**3 / 12.0
+        square = mass * inertia
+        linear = mass * (plate * k2 + shear) + inertia * shear * k2
+        constant = shear * plate * k2**2
+        # The lower root, written without a difference of nearly equal numbers.
+        omega2 = 2.0 * constant / (linear + np.sqrt(linear**2 - 4.0 * square * constant))
+        return self._lowest(np.sqrt(omega2), count)
+
+    def _wave_numbers2(self) -> Array:
+        waves = np.pi * np.arange(1, 30)
+        return np.asarray(np.add.outer((waves / self.length) ** 2, (waves / self.width) ** 2))
+
+    @staticmethod
+    def _lowest(omega: Array, count: int) -> Array:
+        return np.asarray(np.sort(omega.ravel())[:count] / (2.0 * np.pi))

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A family of a segment's motions as a solid: elasticity in space, which judges the shell.
+
+It answers whatever a family of a shell is asked. Where a shell's reading takes the displacement of
+a wall's mid-surface, the solid gives the mean over the wall's thickness; at a corner, the mean
+over the square in which two walls meet. A force is spread the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from petsc4py import PETSc
+from scipy.sparse import csr_matrix, diags, vstack
+
+from geometry.arrays import Array, Indices
+from geometry.boom import Material, Segment, Support
+from geometry.section import BoxSection
+from shell_model import compat
+from shell_model.reduction.mirror import Family, on_plane
+from shell_model.segment.attachments import Attached
+from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.shell import ON_LINE, Matrices, Shell
+from studies.reference_models.solid_mesh import SolidMesh
+
+
+@dataclass(frozen=True, slots=True)
+class SolidFamily(Shell):
+    """K u = f and M ü of a quarter of a segment, with the energies of the whole one.
+
+    It is on one process, and there are no rotations.
+
+    Args:
+        section: the walls.
+        middles: (num_middles, 3) places on the mid-surfaces of the whole segment in m.
+        means: (3 num_middles, num_dofs) the mean displacements over the thickness there.
+    """
+
+    section: BoxSection
+    middles: Array
+    means: csr_matrix
+
+    @property
+    def num_dofs(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.free.size)
+
+    @property
+    def owned(self) -> tuple[int, int]:
+        """All rows."""
+        return 0, self.num_dofs
+
+    def outline(self, x: float) -> Outline:
+        """The means at x, a plane of the mesh; :meth:`row` alone understands what it reads."""
+        at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
+        return Outline(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
+
+    def row(self, weights: Row) -> Array:
+        """(num_dofs,) what a reading of means reads of the family's motions."""
+        of_means = np.zeros(self.means.shape[0])
+        of_means[list(weights)] = list(weights.values())
+        of_means = self.means.T @ of_means
+        return np.where(self.free, of_means, 0.0)
+
+
+class SolidForms(NamedTuple):
+    """Compiled bilinear forms."""
+
+    stiffness: Any
+    mass: Any
+
+
+def solid_forms(space: Any, material: Material) -> SolidForms:
+    """Linear elasticity in space (Navier 1821) of an isotropic material, on a ``solid_space``."""
+    domain = space.mesh
+    shear, nu = material.shear_modulus, material.poissons_ratio
+    mu, lame, density = (
+        # Constants, not numbers: the compiled form then serves every material.
+        fem.Constant(domain, PETSc.ScalarType(value))
+        for value in (shear, 2.0 * shear * nu / (1.0 - 2.0 * nu), material.density)
+    )
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    strain, virtual = ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))
+    energy = 2.0 * mu * ufl.inner(strain, virtual) + lame * ufl.tr(strain) * ufl.tr(virtual)
+    dx = ufl.dx(degree=4, domain=domain)  # exact on bricks
+    return SolidForms(fem.form(energy * dx), fem.form(density * ufl.inner(u, v) * dx))
+
+
+class SolidMatrices(Matrices):
+    """Matrices of four quarters on this process, assembled when they are asked for.
+
+    Args:
+        forms: of one quarter.
+        held: (num_held,) degrees of freedom that stay at zero.
+    """
+
+    def __init__(self, forms: SolidForms, held: Indices) -> None:
+        self._forms, self._held = forms, held.astype(PETSc.IntType)
+
+    @cached_property
+    def stiffness(self) -> PETSc.Mat:
+        return self._decoupled(self._forms.stiffness, 1.0)
+
+    @cached_property
+    def mass(self) -> PETSc.Mat:
+        return self._decoupled(self._forms.mass, 0.0)
+
+    @cached_property
+    def geometric(self) -> None:
+        return None
+
+    def _decoupled(self, form: Any, diagonal: float) -> PETSc.Mat:
+        matrix = compat.assemble_matrix(form, [], diagonal)
+        matrix.scale(4.0)
+        matrix.zeroRowsColumns(self._held, diagonal)
+        return matrix
+
+
+def assemble_solid(segment: Segment, mesh: SolidMesh, family: Family) -> SolidFamily:
+    """Assemble one family of a segment's motions on this process.
+
+    A pinned support holds the whole section against y and z, which leaves it free to tilt; a
+    clamped one holds every displacement of it.
+
+    Args:
+        segment: with a box section, on rigid supports.
+        mesh: of a quarter, with planes at supports and wherever an outline is read.
+        family: of the motions.
+
+    Raises:
+        ValueError: the segment has what the solid does not know.
+    """
+    section = segment.section
+    assert isinstance(section, BoxSection)
+    if segment.masses or segment.collars or segment.diaphragms:
+        raise ValueError(f"{segment.name!r} as a solid has plain walls and carries no masses")
+    if any(
+        support.stiffness is not None
+        or support.rotation_stiffness is not None
+        or support.lateral_kind is not None
+        for support in segment.supports
+    ):
+        raise ValueError(f"{segment.name!r} as a solid takes rigid supports alone")
+    comm = MPI.COMM_SELF
+    space = compat.solid_space(compat.create_hexahedron_mesh(comm, mesh.points, mesh.hexahedra))
+    nodes = space.tabulate_dof_coordinates()
+    node_dofs = np.arange(nodes.size).reshape(-1, 3)
+    held = np.unique(
+        np.concatenate([_in_mirrors(family, nodes), *_on_supports(segment.supports, nodes)])
+    )
+    free = np.ones(nodes.size, dtype=bool)
+    free[held] = False
+    middles, means = _means(mesh, nodes, family)
+    return SolidFamily(
+        comm=comm,
+        matrices=SolidMatrices(solid_forms(space, segment.material), held),
+        free=free,
+        springs=Attached.of([], [], free.size),
+        nodes=nodes,
+        node_dofs=node_dofs,
+        rotation_nodes=np.zeros((0, 3)),
+        rotation_dofs=np.zeros((0, 3), dtype=np.int64),
+        space=space,
+        section=section,
+        middles=middles,
+        means=means,
+    )
+
+
+def _in_mirrors(family: Family, nodes: Array) -> Indices:
+    """Degrees of freedom that the family holds in the planes y = 0 and z = 0."""
+    return np.concatenate(
+        [
+            3 * np.flatnonzero(on_plane(nodes, axis)) + component
+            for axis in (1, 2)
+            for part, component in family.held(axis)
+            if part == 0
+        ]
+    )
+
+
+def _on_supports(supports: tuple[Support, ...], nodes: Array) -> Iterator[Indices]:
+    for support in supports:
+        at = np.flatnonzero(np.abs(nodes[:, 0] - support.x) < ON_LINE)
+        components = np.arange(0 if support.kind == "clamped" else 1, 3)
+        yield (3 * at[:, None] + components).ravel()
+
+
+def _means(mesh: SolidMesh, nodes: Array, family: Family) -> tuple[Array, csr_matrix]:
+    """Places on the mid-surfaces of the whole segment, and what takes the means there."""
+    places, quarter = _quarter_means(mesh, nodes)
+    parts: list[tuple[Array, csr_matrix]] = []
+    for signs, sides in zip(family.signs[:, :3], _SIDES, strict=True):
+        # What lies in a mirror is one place, not two.
+        mine = ~((on_plane(places, 1) & (sides[1] < 0)) | (on_plane(places, 2) & (sides[2] < 0)))
+        image = diags(np.tile(signs, len(places))) @ quarter
+        parts.append((places[mine] * sides, image[np.repeat(mine, 3)]))
+    return np.concatenate([at for at, _ in parts]), csr_matrix(vstack([rows for _, rows in parts]))
+
+
+# Of the quarters, in the order of ``Family.signs``.
+_SIDES = np.array([(1, 1, 1), (1, -1, 1), (1, 1, -1), (1, -1, -1)])
+
+
+def _quarter_means(mesh: SolidMesh, nodes: Array) -> tuple[Array, csr_matrix]:
+    lines = [np.sort(np.r_[plane, 0.5 * (plane[1:] + plane[:-1])]) for plane in mesh.planes]
+    number = np.full([line.size for line in lines], -1)
+    between = (0.5 * (line[1:] + line[:-1]) for line in lines)
+    at = tuple(np.searchsorted(*pair) for pair in zip(between, nodes.T, strict=True))
+    number[at] = np.arange(len(nodes))
+
+    stencils = list(_stencils(number.shape[1], number.shape[2], mesh.layers))
+    stencil = np.repeat(np.arange(len(stencils)), [weights.size for *_, weights in stencils])
+    j, k, weights = (np.concatenate(part) for part in zip(*stencils, strict=True))
+    # Outlines are read at mesh planes, not between them.
+    taken = number[::2, j, k]
+    places = np.empty((len(taken), len(stencils), 3))
+    places[:, :, 0] = mesh.planes[0][:, None]
+    places[:, :, 1] = np.bincount(stencil, weights * lines[1][j])
+    places[:, :, 2] = np.bincount(stencil, weights * lines[2][k])
+
+    means = stencil + len(stencils) * np.arange(len(taken))[:, None]
+    rows, columns = ((3 * one[..., None] + np.arange(3)).ravel() for one in (means, taken))
+    values = np.tile(np.repeat(weights, 3), len(taken))
+    matrix = csr_matrix((values, (rows, columns)), shape=(places.size, nodes.size))
+    return places.reshape(-1, 3), matrix
+
+
+def _stencils(num_y: int, num_z: int, layers: int) -> Iterator[tuple[Indices, Indices, Array]]:
+    """Positions along y and z, and weights, of the nodes that the mean at each place takes.
+
+    With ``layers`` of cells through a wall.
+    """
+    # Simpson's rule is exact for the quadratic displacement of a cell.
+    simpson = np.zeros(2 * layers + 1)
+    for cell in range(layers):
+        simpson[2 * cell : 2 * cell + 3] += np.array([1.0, 4.0, 1.0]) / (6.0 * layers)
+    web, flange = (num - 1 - 2 * layers + np.arange(2 * layers + 1) for num in (num_y, num_z))
+    for j in range(num_y - 1 - layers):
+        yield np.full_like(flange, j), flange, simpson
+    for k in range(num_z - 1 - layers):
+        yield web, np.full_like(web, k), simpson
+    square = np.outer(simpson, simpson).ravel()
+    yield np.repeat(web, flange.size), np.tile(flange, web.size), square

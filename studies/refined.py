@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Values on ever finer meshes, and how far they are from where refinement leads (Roache 1994)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from runs.report.tables import Table
+from studies.study import Kind, Plot, Proof
+
+# Of a grid convergence index of three or more grids (Roache 1998).
+SAFETY = 1.25
+# Below it the meshes do not tell where they lead.
+LEAST_ORDER = 0.5
+
+
+class Reference(NamedTuple):
+    """What a value should be, and the relative error with which it counts as proven."""
+
+    value: float
+    kind: Kind
+    source: str
+    allowed: float
+
+
+@dataclass(frozen=True, slots=True)
+class Refined:
+    """A quantity on ever finer meshes."""
+
+    what: str  #: it is
+    unit: str  #: of the values; empty for a pure number, or where the source names none
+    sizes: Sequence[float]  #: of the meshes, falling by one ratio each
+    values: Sequence[float]  #: one for each
+    reference: Reference | None = None  #: what the finest should be, where it is known
+
+    @property
+    def order(self) -> float:
+        """Observed on the three finest; NaN where values do not go one way by ever less."""
+        if len(self.values) < 3:
+            return math.nan
+        coarse, medium, fine = self.values[-3:]
+        earlier, later = medium - coarse, fine - medium
+        if later == 0.0 or earlier / later <= 1.0:
+            return math.nan
+        return math.log(earlier / later) / math.log(self._ratio)
+
+    @property
+    def limit(self) -> float:
+        """Richardson's value at mesh size zero; NaN without an order."""
+        medium, fine = self.values[-2:]
+        return fine + (fine - medium) / self._shrinking
+
+    @property
+    def index(self) -> float:
+        """Grid convergence index of the finest mesh, relative to its value."""
+        medium, fine = self.values[-2:]
+        return SAFETY * abs((fine - medium) / fine) / self._shrinking
+
+    @property
+    def settles(self) -> bool:
+        """Whether the meshes tell where they lead."""
+        return self.order > LEAST_ORDER  # False where there is none
+
+    @property
+    def settled(self) -> float:
+        """Where refinement leads it; the finest mesh's value where that cannot be told."""
+        return self.limit if self.settles else self.values[-1]
+
+    @property
+    def errors(self) -> list[float]:
+        """Of each mesh, relative to the reference, or to the limit where there is none."""
+        exact = self.limit if self.reference is None else self.reference.value
+        return [abs(value / exact - 1.0) for value in self.values]
+
+    @property
+    def proof(self) -> Proof:
+        """The finest mesh against the reference."""
+        assert self.reference is not None
+        value, kind, source, allowed = self.reference
+        order = self.order if math.isfinite(self.order) else None
+        return Proof(self.what, self.values[-1], value, self.unit, kind, source, allowed, order)
+
+    def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Proof:
+        """One mesh against where refinement leads.
+
+        Args:
+            what: is proven.
+            size: of the mesh.
+            finest: name of the finest mesh, the reference where there is no limit.
+            allowed: relative error.
+
+        Raises:
+            ValueError: the finest mesh has no limit to be held against.
+        """
+        if not self.settles and size == self.sizes[-1]:
+            raise ValueError(f"{what}: the finest mesh would be held against itself")
+        value = self.values[self.sizes.index(size)]
+        source, order = (
+            ("limit of its refinement (Richardson 1911)", self.order)
+            if self.settles
+            else (finest, None)
+        )
+        return Proof(what, value, self.settled, self.unit, "other code", source, allowed, order)
+
+    @property
+    def _ratio(self) -> float:
+        return self.sizes[-2] / self.sizes[-1]
+
+    @property
+    def _shrinking(self) -> float:
+        return math.pow(self._ratio, self.order) - 1.0
+
+
+def refined_table(
+    name: str, title: str, found: Sequence[Refined], mesh: str, notes: Sequence[str] = ()
+) -> Table:
+    """One row a quantity: its values, order, limit and index.
+
+    Args:
+        name, title, notes: of the table.
+        found: on the same sizes, or on some of the finest.
+        mesh: name of a mesh of a size, "edges × {:g}" say.
+    """
+    sizes = max((one.sizes for one in found), key=len)
+    columns = {
+        "quantity": "", **{mesh.format(size): ".6g" for size in sizes}, "order": ".2f",
+        "limit": ".6g", "GCI (%)": ".3f",
+    }  # fmt: skip
+    return Table.of_rows(
+        name,
+        title,
+        columns,
+        [
+            (
+                f"{one.what} ({one.unit})" if one.unit else one.what,
+                *[None] * (len(sizes) - len(one.values)),
+                *one.values,
+                one.order,
+                one.limit,
+                100.0 * one.index,
+            )
+            for one in found
+        ],
+        notes,
+    )
+
+
+def error_plot(name: str, title: str, x: str, found: Sequence[Refined], caption: str) -> Plot:
+    """Errors against the sizes of the meshes, of what has a reference or a limit.
+
+    Args:
+        name, title, x, caption: of the figure.
+        found: its curves.
+    """
+    curves = {
+        one.what: (list(one.sizes), one.errors)
+        for one in found
+        if all(map(math.isfinite, one.errors))
+    }
+    return Plot(name, title, x, "relative error", curves, caption)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How the motion settles as steps, series, elements and meshes refine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.model import of_kind
+from runs.case.kinds.shell import ShellTable
+from runs.case.schema import Case, Model
+from runs.report.tables import Cell, Table
+from studies.motions import finer, friction_case, model_of, trajectories
+from studies.study import Tell, titled
+
+# The models whose integration is refined, its steps in s, and that of all further refinements.
+STEPPED = ("kantorovich-5", "kantorovich-24", "timoshenko", "shell")
+STEPS = (8.0e-5, 4.0e-5, 2.0e-5, 1.0e-5)
+FINE_STEP = 1.0e-5
+TERMS = (3, 6, 12, 24)
+ELEMENTS = (2.0, 1.0, 0.5, 0.25)
+MESHES = (0.4, 0.2, 0.1, 0.05)
+
+NOTE = (
+    "Largest difference of the tip over the whole run from that of the next finer one. The order "
+    "is that of the differences."
+)
+
+
+def orders(sizes: Sequence[float], differences: Sequence[float]) -> list[float]:
+    """Observed orders: slopes of the differences over the sizes in a log-log plot."""
+    slopes = np.diff(np.log(differences)) / np.diff(np.log(sizes[: len(differences)]))
+    return [float(order) for order in np.abs(slopes)]
+
+
+def refine(
+    case: Case, name: str, model: Model, sizes: Sequence[float], at: Callable[[Model, float], Model]
+) -> list[Sequence[Cell]]:
+    """Run one model at several sizes: a row for each.
+
+    Args:
+        case: the model's.
+        name: of the rows.
+        model: of the case.
+        sizes: from the coarsest to the finest.
+        at: the model at a size.
+    """
+    refined = tuple(
+        at(model, size).model_copy(update={"name": f"{model.name} {i}"})
+        for i, size in enumerate(sizes)
+    )
+    runs = trajectories(case.model_copy(update={"models": refined}))
+    tips = np.array([run.data["tip"].values for run in runs])
+    apart = (np.abs(np.diff(tips, axis=0)).max(axis=1) / np.ptp(tips[-1])).tolist()
+    peaks = [1.0e3 * run.first_peak()[1] for run in runs]
+    parts = [*(100.0 * part for part in apart), None]
+    slopes = [None, *orders(sizes, apart), None]
+    return [(name, *row) for row in zip(sizes, parts, slopes, peaks, strict=True)]
+
+
+@titled("refinement", "How the motion settles")
+def study(tell: Tell) -> Iterator[Table]:
+    """Steps of all integrations, terms, elements, meshes, each of the case with friction."""
+    case = friction_case()
+    rows: list[Sequence[Cell]] = []
+    for what, name, sizes, unit, at in (
+        *(("step", name, STEPS, " (s)", with_step) for name in STEPPED),
+        ("terms of each segment", "kantorovich-24", TERMS, "", _with_terms),
+        ("element length", "beam-fe", ELEMENTS, " (m)", _with_elements),
+        ("element length", "timoshenko", ELEMENTS, " (m)", _with_elements),
+        ("mesh size", "shell", MESHES, " (m)", _with_mesh),
+    ):  # fmt: skip
+        tell(f"{name}: {what}")
+        model = model_of(case, name)
+        stepped = model if at is with_step else with_step(model, FINE_STEP)
+        rows += refine(case, f"{name}: {what}{unit}", stepped, sizes, at)
+    columns = {
+        "refined": "", "size": ".3g", "off the next (% of the range)": ".3g", "order": ".2g",
+        "first tip peak (mm)": ".2f",
+    }  # fmt: skip
+    title = "Convergence of the paper's example with friction"
+    yield Table.of_rows("convergence", title, columns, rows, (NOTE,))
+
+
+def with_step(model: Model, step: float) -> Model:
+    """The model by steps in s."""
+    return model.model_copy(update={"step": step})
+
+
+def _with_terms(model: Model, terms: float) -> Model:
+    (series,) = of_kind(KantorovichTable, [model])
+    return series.model_copy(update={"terms": (round(terms),) * len(series.terms)})
+
+
+def _with_elements(model: Model, length: float) -> Model:
+    return model.model_copy(update={"element_length": length})
+
+
+def _with_mesh(model: Model, size: float) -> Model:
+    (shell,) = of_kind(ShellTable, [model])
+    return finer(shell, size / shell.mesh_size)

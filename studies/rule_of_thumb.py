@@ -1,0 +1,342 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How far a beam will be off the shell, told before there is a shell: a rule, and its scatter.
+
+The beam lacks a part δ of the tip's static deflection: what shear gives, and what the walls give
+where the segments press. A mass that falls through the play and is caught by the boom as by a
+spring tells what becomes of it in motion: with γ the free way of the tip over its static deflection
+and s = √(2γ), the first peak is off by δ/√(1 + s²), and after n slow periods the tip by
+
+    δ (1/√(1 + s²) + n μ ψ)
+    ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))
+
+where χ = π − arctan s, ψ is the part of δ by which the period is off, and μ the way that the tip
+makes at its highest speed in a period, over its range. Booms of other proportions than the paper's,
+with its friction, tell what that is worth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.section import BoxSection
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.pipeline.proportions import static_tip
+from runs.report.tables import Cell, Table
+from studies.calibrated_beams import (
+    EULER,
+    PLAIN,
+    SHELL,
+    SPRUNG,
+    calibrated,
+    move_all,
+    peaks_off,
+    tips_off,
+)
+from studies.motions import all_built, model_of, shell_of
+from studies.proportions import (
+    BESIDE,
+    BOOMS,
+    HEIGHT,
+    INNER_WALL,
+    OUTER_WALL,
+    Proportions,
+    boom_case,
+)
+from studies.study import Held, Piece, Proof, Tell, titled
+from studies.working_load import Point
+
+# What a wall gives near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed length.
+NEAR_WEBS = 0.20, 0.70
+# Under a pad, in d²/(E t³), d from the middle of the pad to the web.
+PADS = 1.8
+# How much too high springs leave free bending, over the square of its frequency over the flange's.
+FLANGES = 0.065
+# What shear gives beyond that of Timoshenko's beam, since it is not even over the webs, as a part.
+UNEVEN = 0.09
+# A mode of the shell is the beam's if its frequency is as near, as a part.
+_NEAR = 0.15
+# What is allowed of the geometric mean of measured errors over those of the rule, and of springs.
+MEAN_OFF, PEAK = 0.25, 0.005
+# Rules of more than this say no more than that the tip is lost.
+LOST = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: by their names
+    mesh_size: float = 0.2  #: of the shells in m
+    contact_tolerance: float = 0.04  #: of the same
+    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: 2Δ in m
+    #: Over the weight at 1 m/s²; under less of them friction stops the boom early.
+    loads: Sequence[float] = (10.0,)
+    periods: float = 8.0  #: of the boom without play that the motions last
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What is known of a boom before there is a shell."""
+
+    #: Parts of the tip's static deflection under its weight at 1 m/s² in m, the second one
+    #: Timoshenko's.
+    bending: float
+    shear: float
+    pressed: float
+    frequency: float  #: the first one without play in Hz
+    lever: float  #: free way of the tip over half the play
+
+    @classmethod
+    def of(cls, given: Proportions, case: Case) -> Rule:
+        """From the boom's beams without play, and statics."""
+        boom = build_boom(case)
+        tied = [
+            model_of(case, name).without_play(boom) for name in ("beam-fe-rotary", "timoshenko")
+        ]
+        tips = [static_tip(system) for system, _ in filter(None, tied)]
+        inner, overlap = boom.segments[1], given.overlap
+        # Of the weight, and of 1 N at the tip: down at the tail, up at the head.
+        over = inner.length / overlap
+        weight = inner.load * inner.length
+        at_head, at_tail = 0.5 * weight * over, weight * (0.5 * over - 1.0)
+        pressed = at_head * over + at_tail * (over - 1.0)
+        assert tied[1] is not None
+        return cls(
+            bending=tips[0],
+            shear=tips[1] - tips[0],
+            pressed=giving_way(given, case) * pressed,
+            frequency=float(tied[1][0].frequencies[0]),
+            lever=2.0 * over - 1.0,
+        )
+
+    @property
+    def deflection(self) -> float:
+        """All of it in m."""
+        return self.bending + (1.0 + UNEVEN) * self.shear + self.pressed
+
+    def lacking(self, name: str) -> float:
+        """δ of a kind of beam."""
+        known = self.bending + (0.0 if name == EULER else self.shear)
+        return 1.0 - known / self.deflection
+
+    def swing(self, point: Point) -> float:
+        """s = √(2γ)."""
+        return float(np.sqrt(self.lever * point.play / (point.load * self.deflection)))
+
+    def peak_off(self, name: str, point: Point) -> float:
+        """Of the first peak, as a part of it."""
+        return self.lacking(name) / float(np.hypot(1.0, self.swing(point)))
+
+    def tip_off(self, name: str, point: Point, duration: float) -> float:
+        """Of the tip within so many s, as a part of its range."""
+        s = self.swing(point)
+        root, chi = float(np.hypot(1.0, s)), np.pi - float(np.arctan(s))
+        periods = duration * np.pi * self.frequency / (s + chi)
+        psi = 0.5 * (chi + s / root**2) / (s + chi)
+        mu = 2.0 * (s + chi) * root / (0.5 * s**2 + 1.0 + root)
+        return min(1.0, self.lacking(name) * (1.0 / root + periods * mu * psi))
+
+
+def giving_way(given: Proportions, case: Case) -> float:
+    """What a station gives way for each N, of both walls, in m/N."""
+    material = case.material
+    assert material is not None
+    e = material.youngs_modulus
+    walls = given.walls * OUTER_WALL, given.walls * INNER_WALL
+    width = HEIGHT / given.aspect
+    if given.pad is None:
+        # A corner is pressed over a tenth of the overlap.
+        spread = NEAR_WEBS[0] + NEAR_WEBS[1] * np.log(width / (0.1 * given.overlap))
+        return float(spread / e * sum(1.0 / wall for wall in walls))
+    # From the middle of the pad, which lies beside the inner web, to each web.
+    to_webs = 0.5 * (given.pad[1] + BESIDE * width), 0.5 * given.pad[1]
+    return PADS / e * sum(d**2 / wall**3 for d, wall in zip(to_webs, walls, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A boom's beams against its shell at all points."""
+
+    rule: Rule  #: of it
+    points: Sequence[Point]  #: play and load
+    duration: float  #: of the motions in s
+    #: (num_points,) errors by the name of the beam.
+    peaks: Mapping[str, Array]
+    tips: Mapping[str, Array]
+    #: First frequency of the free inner segment in Hz, by the name of the model.
+    bending: Mapping[str, float]
+
+
+def flange_frequency(case: Case) -> float:
+    """Of a strip of the inner segment's flange, which rests on the webs, in Hz."""
+    inner = build_boom(case).segments[1]
+    box, material = inner.section, inner.material
+    assert isinstance(box, BoxSection)
+    plate = material.youngs_modulus * box.flange**2 / (12.0 * (1.0 - material.poissons_ratio**2))
+    return float(0.5 * np.pi * np.sqrt(plate / material.density) / box.width**2)
+
+
+def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
+    """First frequency of the free inner segment in Hz: that mode moves the tip much."""
+    own, shown = _moving_tip(beam), _moving_tip(shell)
+    bending = min(own)
+    near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}
+    return {SPRUNG: bending, SHELL: max(near, key=near.__getitem__)}
+
+
+def _moving_tip(system: GapSystem) -> dict[float, float]:
+    """How much those modes move the tip that move it much, by their frequencies in Hz."""
+    frequencies, moves = system.omega / (2.0 * np.pi), np.abs(system.observers["tip"].row)
+    much = (frequencies > 0.0) & (moves > 0.1 * moves.max())
+    return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
+
+
+def measure(given: Proportions, sizes: Sizes) -> Measured:
+    """Move the beams and the shell of a boom."""
+    case = boom_case(given)
+    rule = Rule.of(given, case)
+    fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.contact_tolerance}
+    shell = shell_of(case).model_copy(update=fine)
+    models = {
+        SHELL: shell,
+        EULER: model_of(case, "beam-fe-rotary"),
+        PLAIN: model_of(case, "timoshenko"),
+        SPRUNG: calibrated(case, shell, fields=False),
+    }
+    points = Point.each(sizes.plays, sizes.loads)
+    duration = sizes.periods / rule.frequency
+    systems = {name: one.system for name, one in all_built(case, models).items()}
+    beams = move_all(systems, points, duration)
+    of_shell = beams.pop(SHELL)
+    return Measured(
+        rule,
+        points,
+        duration,
+        {name: peaks_off(moved, of_shell) for name, moved in beams.items()},
+        {name: tips_off(moved, of_shell) for name, moved in beams.items()},
+        inner_bending(systems[SHELL], systems[SPRUNG]),
+    )
+
+
+def ratios(found: Sequence[Measured], name: str, tips: bool) -> Array:
+    """(num_ratios,) errors of a beam over those of the rule, of all booms and points."""
+    pairs = [
+        (
+            off,
+            one.rule.tip_off(name, point, one.duration) if tips else one.rule.peak_off(name, point),
+        )
+        for one in found
+        for point, off in zip(one.points, (one.tips if tips else one.peaks)[name], strict=True)
+    ]
+    return np.array([off / rule for off, rule in pairs if np.isfinite(off) and rule < LOST])
+
+
+def boom_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+    """What each boom's beams lack, by the rule and as its shell without play has it."""
+    rows: list[Sequence[Cell]] = []
+    for name, one in found.items():
+        rule, given = one.rule, sizes.booms[name]
+        parts = [part / rule.deflection for part in (rule.shear, rule.pressed)]
+        parts += [rule.lacking(beam) for beam in (EULER, PLAIN)]
+        parts += [one.peaks[beam][0] for beam in (EULER, PLAIN, SPRUNG)]
+        sizes_of = given.length / HEIGHT, given.overlap / HEIGHT
+        rows.append((name, *sizes_of, *(100.0 * part for part in parts)))
+    columns = {
+        "boom": "", "length /\nheight": ".1f", "overlap /\nheight": ".2f", "shear\n(%)": ".2f",
+        "pressed\nwalls (%)": ".2f", f"rule,\n{EULER} (%)": ".2f", f"rule,\n{PLAIN} (%)": ".2f",
+        f"{EULER}\n(%)": ".2f", f"{PLAIN}\n(%)": ".2f", f"{SPRUNG}\n(%)": ".3f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "rule-of-thumb-booms",
+        "What beams lack of the tip's static deflection, and how far their first peaks are off",
+        columns,
+        rows,
+        (f"Without play, under {sizes.loads[0]:g} times the weight at 1 m/s² at once.",),
+    )
+
+
+def scatter_table(found: Sequence[Measured], sizes: Sizes) -> Table:
+    """How far the rule is off what was measured, over all booms and points."""
+    rows: list[Sequence[Cell]] = []
+    for tips, what in ((False, "first peak"), (True, "tip")):
+        for name in (EULER, PLAIN):
+            ratio = ratios(found, name, tips)
+            # By one standard deviation of the logarithms.
+            mean, scatter = np.exp([np.log(ratio).mean(), np.log(ratio).std()]).tolist()
+            rows.append((what, name, ratio.size, mean, scatter, ratio.min(), ratio.max()))
+    columns = {
+        "error of": "", "beam": "", "points": ".0f", "geometric\nmean": ".2f",
+        "scatter,\na factor": ".2f", "least": ".2f", "most": ".2f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "rule-of-thumb-scatter",
+        "Measured errors over those of the rule",
+        columns,
+        rows,
+        (
+            f"{len(found)} booms, plays of {', '.join(f'{1e3 * play:g}' for play in sizes.plays)} "
+            f"mm, loads of {', '.join(f'{load:g}' for load in sizes.loads)} times the weight at "
+            f"1 m/s², {sizes.periods:g} periods of the boom without play; where the rule tells "
+            f"more than {100.0 * LOST:g} % the tip is lost, and it is left out.",
+        ),
+    )
+
+
+def springs_table(found: Mapping[str, Measured], sizes: Sizes) -> Table:
+    """What springs leave, at the worst point of each boom, and the flanges' part in it."""
+    rows: list[Sequence[Cell]] = []
+    for name, one in found.items():
+        bending, flange = one.bending[SHELL], flange_frequency(boom_case(sizes.booms[name]))
+        parts = (
+            float(np.nanmax(one.peaks[SPRUNG])),
+            one.tips[SPRUNG].max(),
+            one.bending[SPRUNG] / bending - 1.0,
+            FLANGES * (bending / flange) ** 2,
+        )
+        peak, tip, too_high, of_flanges = (100.0 * part for part in parts)
+        rows.append((name, peak, tip, bending, too_high, of_flanges))
+    columns = {
+        "boom": "", "first peak,\nworst (%)": ".3f", "tip,\nworst (%)": ".2f",
+        "free bending of the\ninner segment (Hz)": ".1f", "too high\n(%)": ".2f",
+        "of the\nflanges (%)": ".2f",
+    }  # fmt: skip
+    return Table.of_rows(
+        "rule-of-thumb-springs",
+        "A beam with the stiffness and springs of the shell",
+        columns,
+        rows,
+        ("Flanges: 0.065 times the square of the frequency over that of a strip on the webs.",),
+    )
+
+
+def proofs(found: Sequence[Measured]) -> Iterator[Proof]:
+    """The rule against the shells, and springs."""
+    booms = f"{len(found)} booms"
+    for name in (EULER, PLAIN):
+        what = f"{name}: first tip peak's error over that of the rule of thumb, geometric mean of "
+        mean = float(np.exp(np.log(ratios(found, name, tips=False)).mean()))
+        yield Proof(what + booms, mean, 1.0, "", "other code", "shells", MEAN_OFF)
+    worst = max(float(np.nanmax(one.peaks[SPRUNG])) for one in found)
+    held: Held = ("other code", "the shell that calibrates it", PEAK)
+    yield Proof(f"beam {SPRUNG}: first tip peak, worst of {booms}", worst, 0.0, "", *held)
+
+
+@titled("rule-of-thumb", "A rule of thumb for beams")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Booms of other proportions than the paper's, with its friction."""
+    sizes = sizes or Sizes()
+    found = {}
+    for name, given in sizes.booms.items():
+        tell(name)
+        found[name] = measure(given, sizes)
+    every = list(found.values())
+    yield boom_table(found, sizes)
+    yield scatter_table(every, sizes)
+    yield springs_table(found, sizes)
+    yield from proofs(every)

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What collars and diaphragms make of the flexibility where the boom's segments touch.
+
+A collar goes around the head of the outer segment or the tail of the inner one, a diaphragm closes
+the tail alone: the inner segment slides through the head. Flexibility is static, so that the mass
+of a stiffener has no part in it: the outer segment stands on its own supports, the inner one on two
+pins far from the joint, and Timoshenko's beam on the same is taken off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import Array
+from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
+from geometry.section import BoxSection
+from runs.case.build import build_boom
+from runs.report.tables import Cell, Table
+from shell_model.segment.cross_section import Outline, Row
+from shell_model.segment.products import quadratic_form
+from shell_model.segment.segment_shell import SegmentShell
+from studies.motions import friction_case
+from studies.reference_models.eigenmodes import natural_frequencies
+from studies.reference_models.lone_segment import compliances, shell_alone
+from studies.study import Held, Piece, Proof, Tell, titled
+
+# The error of the mesh; what the walls beside a plate, and the force on a short thick ring, add.
+ALLOWED = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    mesh: float = 0.05  #: edge length in m on the boom
+    collar: float = 0.3  #: length of a collar in m
+    #: Thicknesses of both in m, rising.
+    collars: Sequence[float] = (0.005, 0.010, 0.020)
+    diaphragms: Sequence[float] = (0.004, 0.008, 0.016)
+    #: x in m at which the inner segment is held for its static flexibility.
+    pins: tuple[float, float] = (14.0, 19.0)
+    frequencies: int = 3  #: how many of the lowest ones
+    #: Edge lengths in m where an analytic value is the reference.
+    plate_mesh: float = 0.04
+    ring_mesh: float = 0.0125
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """One segment with its stiffeners."""
+
+    what: str  #: it is, and has
+    mass: float  #: of all its plates in kg
+    #: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange, above and
+    #: below its webs.
+    together: Array
+    one_more: Array  #: (num_stations,) what one flange with all of the force gives way beyond that
+    frequencies: Array  #: the lowest ones in Hz, rigid motions left out
+
+    @property
+    def row(self) -> list[Cell]:
+        """Of the table."""
+        flexibilities = np.column_stack([self.together, self.one_more]).ravel()
+        return [self.what, self.mass, *flexibilities, *self.frequencies]
+
+
+def stiffened(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], dict[str, Segment]]:
+    """What each of two segments has → the segment with it: nothing first, the most last."""
+    outer, inner = boom.segments
+    head, tail = (outer.end - sizes.collar, outer.end), (inner.start, inner.start + sizes.collar)
+    outers, inners = {"nothing": outer}, {"nothing": inner}
+    for t in sizes.collars:
+        what = f"{1e3 * t:g} mm"
+        outers[f"collar at the head, {what}"] = replace(outer, collars=(Collar(*head, t),))
+        inners[f"collar at the tail, {what}"] = replace(inner, collars=(Collar(*tail, t),))
+    for t in sizes.diaphragms:
+        plates = (Diaphragm(inner.start, t),)
+        inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plates)
+    # Both rise.
+    both = replace(inner, collars=(Collar(*tail, sizes.collars[-1]),), diaphragms=plates)
+    return outers, inners | {"the thickest of both": both}
+
+
+def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes) -> Variant:
+    """A segment's mass, flexibility at the stations, x in m, and lowest frequencies."""
+    shell = shell_alone(segment, sizes.mesh, stations)
+    held, standing = segment, shell
+    if not segment.supports:
+        held = replace(segment, supports=tuple(Support(x) for x in sizes.pins))
+        standing = shell_alone(held, sizes.mesh, stations)
+    tops, bottoms = (
+        [_corners(standing.outline(x), side) for x in stations] for side in (1.0, -1.0)
+    )
+    both = [0.5 * top + 0.5 * bottom for top, bottom in zip(tops, bottoms, strict=True)]
+    together, alone = 1.0e9 * np.reshape(compliances(standing, *both, *tops), (2, -1))
+    beam = 1.0e9 * np.array([_timoshenko(held, x) for x in stations])
+    free = shell.rigid_motions().shape[1]
+    frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
+    name = f"{segment.name}, {what}"
+    return Variant(name, _mass(shell), together - beam, alone - together, frequencies)
+
+
+def _corners(outline: Outline, side: float) -> Row:
+    """A flange's deflection above its webs, where pads near the webs press."""
+    return outline.flange_deflection(side, 0.5 * outline.section.size("y"))
+
+
+def _timoshenko(segment: Segment, x: float) -> float:
+    """Deflection in m of an overhanging beam under 1 N at x, beside its two pins."""
+    section, material = segment.section, segment.material
+    assert section is not None
+    near, far = sorted((support.x for support in segment.supports), key=lambda pin: abs(pin - x))
+    a, span = abs(x - near), abs(far - near)
+    bending = a**2 * (span + a) / (3.0 * material.youngs_modulus * section.second_moment_of_area)
+    return bending + (a + a**2 / span) / (material.shear_modulus * section.shear_area)
+
+
+def _mass(shell: SegmentShell) -> float:
+    """What a slide along x carries, in kg."""
+    slide = np.zeros(shell.free.size)
+    slide[shell.node_dofs[:, 0]] = 1.0
+    return quadratic_form(shell.mass, slide)
+
+
+def racking(outline: Outline) -> Row:
+    """How far the section leans into a parallelogram: turn of the webs less that of the flanges.
+
+    Twice the twist, with its flanges the other way round.
+    """
+    along_y = set(outline.dofs[:, 1].tolist())
+    return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
+
+
+def racking_stiffness(
+    section: BoxSection, material: Material, thickness: float, size: float
+) -> float:
+    """What a diaphragm adds to the moment in N m that leans a section by one radian.
+
+    Args:
+        section: of a box one metre long, with the plate in its middle.
+        material: of both.
+        thickness: of the plate in m.
+        size: of the mesh in m.
+    """
+    stiffness = []
+    for plates in ((), (Diaphragm(0.5, thickness),)):
+        shell = shell_alone(_piece(material, section, 1.0, diaphragms=plates), size, (0.5,))
+        (compliance,) = compliances(shell, racking(shell.outline(0.5)))
+        stiffness.append(1.0 / compliance)
+    return stiffness[1] - stiffness[0]
+
+
+def ring_flexibility(section: BoxSection, young: float, collar: float, size: float) -> float:
+    """How a ring of box gives way to opposite forces on the middles of its flanges, in m²/N.
+
+    Args:
+        section: of a ring whose length is a twentieth of its perimeter.
+        young: Young's modulus in Pa; without Poisson's ratio plates bend as beams do.
+        collar: thickness in m that is added all around.
+        size: of the mesh in m.
+    """
+    length = 0.1 * (section.width + section.height)
+    collars = (Collar(0.0, length, collar),) if collar else ()
+    ring = _piece(Material(young, 0.0, 7850.0), section, length, collars=collars)
+    shell = shell_alone(ring, size, (0.5 * length,))
+    across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))
+    forces = (
+        weight * side * shell.outline(x).flange_deflection(side, 0.0)
+        for x, weight in across
+        for side in (1.0, -1.0)
+    )
+    return compliances(shell, sum(forces, Row()))[0] * length
+
+
+def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
+    """The same of a frame of Timoshenko beams of the thickness t without Poisson's ratio.
+
+    A flange is a beam of span b that bears P in its middle, and whose ends the corner moment
+    P b² / 8 (b + h) turns back until flange and web have one slope there; it bends, and gives way
+    to shear. The webs shorten under P / 2 each.
+    """
+    b, h, t = section.width, section.height, section.flange + collar
+    bending = 24.0 * (b**3 / 48.0 - b**4 / (64.0 * (b + h))) / t**3
+    # Twice b / (4 κ G t), with κ = 5/6 and G = E/2.
+    shear = 1.2 * b / t
+    return (bending + shear + 0.5 * h / t) / young
+
+
+def _piece(
+    material: Material, section: BoxSection, length: float, **stiffeners: tuple[object, ...]
+) -> Segment:
+    """A free piece of box."""
+    return Segment.of_section("piece", 0.0, length, material, section, **stiffeners)
+
+
+def table(found: Sequence[Variant], stations: Sequence[float], sizes: Sizes) -> Table:
+    """One row a variant."""
+    flexibility = "both flanges (nm/N)", "one flange more (nm/N)"
+    columns = {
+        "segment, with": "", "mass (kg)": ".1f",
+        **{f"{x:g} m: {what}": ".2f" for x in stations for what in flexibility},
+        **{f"f{k} (Hz)": ".2f" for k in range(1, sizes.frequencies + 1)},
+    }  # fmt: skip
+    return Table.of_rows(
+        "variants",
+        "Collars and diaphragms on the paper's boom",
+        columns,
+        [one.row for one in found],
+        (
+            f"Collars are {sizes.collar:g} m long. Static flexibility above the webs, beyond that "
+            "of Timoshenko's beam of the plain box: of half the force on each flange, and what all "
+            "of it on one flange adds. Frequencies are the lowest elastic ones of a segment alone, "
+            "the outer one on its supports, the inner one free. Flexibility to a corner's force "
+            f"grows as the mesh refines: compare on one mesh, here {sizes.mesh:g} m.",
+        ),
+    )
+
+
+def sums(
+    outer: Sequence[Variant], inner: Sequence[Variant], stations: Sequence[float], sizes: Sizes
+) -> Table:
+    """What both segments of a joint give way together, for some pairs of variants."""
+    head, tail, closed = outer[-1], inner[len(sizes.collars)], inner[-2]
+    return Table.of_rows(
+        "stiffened-stations",
+        "Flexibility of a contact, both segments together",
+        {"with": "", **{f"at {x:g} m (nm/N)": ".2f" for x in stations}},
+        [
+            (what, *(one.together + one.one_more + other.together + other.one_more))
+            for what, one, other in (
+                ("nothing", outer[0], inner[0]),
+                ("a collar at the head", head, inner[0]),
+                ("a collar at the tail", outer[0], tail),
+                ("collars at both", head, tail),
+                ("a diaphragm in the tail", outer[0], closed),
+                ("collars at both and the diaphragm", head, inner[-1]),
+            )
+        ],
+        ("Of one flange of each, with the thickest stiffeners of the table above.",),
+    )
+
+
+def proofs(boom: Boom, sizes: Sizes) -> Iterator[Proof]:
+    """Stiffeners that are simple enough for a formula."""
+    inner = boom.segments[1]
+    section, material = inner.section, inner.material
+    assert isinstance(section, BoxSection)
+    t, collar = sizes.diaphragms[len(sizes.diaphragms) // 2], sizes.collars[0]
+    what = f"resistance of a diaphragm of {1e3 * t:g} mm to racking"
+    value = racking_stiffness(section, material, t, sizes.plate_mesh)
+    shear = material.shear_modulus * t * section.width * section.height
+    plate: Held = ("analytic", "G t b h of a plate in pure shear", ALLOWED)
+    yield Proof(what, value, shear, "N m", *plate)
+    if section.flange != section.web:
+        return
+    young = material.youngs_modulus
+    beams: Held = ("analytic", "frame of Timoshenko beams", ALLOWED)
+    for thickness, has in (
+        (0.0, "without a collar"),
+        (collar, f"with a collar of {1e3 * collar:g} mm"),
+    ):
+        value = ring_flexibility(section, young, thickness, sizes.ring_mesh)
+        frame = frame_flexibility(section, young, thickness)
+        yield Proof(f"flexibility of a ring {has}, per length", value, frame, "m²/N", *beams)
+
+
+@titled("stiffeners", "Collars and diaphragms")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Collars and diaphragms at the joint of the paper's boom."""
+    sizes = sizes or Sizes()
+    boom = build_boom(friction_case())
+    stations = boom.joints[0].stations
+    outer: list[Variant] = []
+    inner: list[Variant] = []
+    for variants, found in zip(stiffened(boom, sizes), (outer, inner), strict=True):
+        for what, segment in variants.items():
+            tell(f"{segment.name}: {what}")
+            found.append(measure(segment, what, stations, sizes))
+    yield table([*outer, *inner], stations, sizes)
+    yield sums(outer, inner, stations, sizes)
+    tell("a diaphragm in pure shear, and rings")
+    yield from proofs(boom, sizes)

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How right the recovered stresses are: away from contacts a beam's, near them as the mesh refines.
+
+The inner segment of the paper's boom rests on the forces that its contacts need under its
+load: a static state with known moments, and known forces where it touches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from dynamics.contact import ContactLaw
+from geometry.boom import Boom
+from geometry.contact_places import pads
+from runs.case.build import build_boom, contact_laws
+from shell_model.boom_shell import ShellOptions
+from shell_model.contact.corner_lines import CornerLines
+from shell_model.reduced_shell import reduce_boom
+from shell_model.stress.history import near_places
+from shell_model.stress.recovery import gather_stress_modes
+from shell_model.stress.stresses import ShellStress, wall_forces
+from studies.motions import friction_case, model_of
+from studies.reference_models.lone_segment import at_rest, shell_alone
+from studies.refined import Refined, refined_table
+from studies.study import Held, Piece, Plot, Proof, Tell, titled
+
+INNER = 1
+
+# Relative errors with which a stress counts as proven: away from contacts, over a patch, and of
+# the reduction.
+BEAM, PATCH, REDUCED = 0.01, 0.05, 0.001
+
+NOTE = (
+    "The force enters along a length of the corner of a flange and a web. The stress of the "
+    "nearest triangle grows as the mesh refines, and is no design stress. The mean over a patch of "
+    "half a wall and 0.5 m settles."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    #: Edge lengths in m, each half the one before, three at least.
+    meshes: Sequence[float] = (0.2, 0.1, 0.05, 0.025)
+    default: float = 0.1  #: the one that a run takes unless told otherwise
+    places: Sequence[float] = (12.0, 14.0, 16.0)  #: x in m away from contacts
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """The inner segment at rest between its contacts."""
+
+    boom: Boom  #: the paper's
+    stress: ShellStress  #: of the segment alone, whose number there is 0
+
+    @classmethod
+    def on_mesh(cls, boom: Boom, size: float) -> Pressed:
+        """From a static solution of the full shell.
+
+        Args:
+            boom: with two stations.
+            size: of the mesh in m.
+        """
+        segment = boom.segments[INNER]
+        shell = shell_alone(segment, size, boom.stations_of(INNER))
+        force = segment.load * shell.unit_loads["z"]
+        corners = CornerLines(shell)
+        pressed = {pad.x: pad.pressed[0] for pad in pads(boom)}
+        for x, (side, strength) in contact_forces(boom).items():
+            row = corners.deflection(pressed[x], "z", 0.0, side)
+            force -= side * strength * shell.row(row)
+        modes = gather_stress_modes(shell, at_rest(shell, force[:, None]))
+        assert modes is not None
+        assert shell.mesh is not None
+        return cls(boom, ShellStress.still(shell.mesh, modes))
+
+    @classmethod
+    def reduced(cls, boom: Boom, laws: Sequence[ContactLaw], size: float) -> Pressed:
+        """The same state from the coordinates that a run moves in.
+
+        Args:
+            boom: with two stations.
+            laws: of its joint.
+            size: of the mesh in m.
+        """
+        shell = reduce_boom(boom, laws, ShellOptions(size), MPI.COMM_SELF)
+        system, fields = shell.system, shell.fields
+        assert fields is not None
+        needed = contact_forces(boom)
+        force = system.load.copy()
+        for row, law, station in zip(system.rows, system.laws, system.station_of_row, strict=True):
+            side, strength = needed[system.stations[station]]
+            if side == law.terms[0].side:
+                force -= side * strength * row
+        elastic = system.omega2 > 0.0
+        state = np.divide(force, system.omega2, out=np.zeros_like(force), where=elastic)
+        own = fields[f"coordinates_{INNER + 1}"].values @ state
+        modes = np.tensordot(own, fields[f"stress_{INNER + 1}"].values, axes=1)[None]
+        return cls(boom, ShellStress.still(shell.meshes[INNER], modes.astype(np.float32)))
+
+    def top(self, x: float) -> tuple[float, float]:
+        """Mean σ_x over the width of the top in Pa, and what a beam has there.
+
+        σ = M z / J, with the mean of M over the row of elements that holds x.
+        """
+        segment = self.boom.segments[INNER]
+        assert segment.section is not None
+        row = self.stress.row(0, x)
+        row = row[self.stress.wall[row] == self.stress.plates[0].index("top")]
+        found = np.average(self.stress.at(0.0).membrane[row, 0], weights=self.stress.areas[row])
+        begin, end = self.stress.spans[row, 0].min(), self.stress.spans[row, 1].max()
+        arms = segment.end - np.array([begin, end])
+        moment = -segment.load * (arms**3).dot([1.0, -1.0]) / (6.0 * (end - begin))
+        section = segment.section
+        return float(found), moment * 0.5 * section.size("z") / section.second_moment_of_area
+
+    def shear(self, x: float) -> tuple[float, float]:
+        """Force that the webs carry in N, and what equilibrium asks for."""
+        segment = self.boom.segments[INNER]
+        forces = wall_forces(self.stress, 0.0, 0, x)
+        row = self.stress.row(0, x)
+        middle = 0.5 * (self.stress.spans[row, 0].min() + self.stress.spans[row, 1].max())
+        found = forces["left"].shear + forces["right"].shear
+        return found, segment.load * (segment.end - middle)
+
+    def near(self, x: float) -> tuple[float, float]:
+        """The largest von Mises stress in the band round x, and that of a patch, in Pa."""
+        found = near_places(self.stress, [x], [self.boom.segments[INNER].name]).isel(time=0)
+        return float(found["von_mises"].item()), float(found["von_mises_patch"].item())
+
+
+def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
+    """x → side and strength in N of what presses on the inner segment, from its equilibrium.
+
+    Its load lifts it: it presses up at the outer segment's end, and down at its own tail.
+    """
+    segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
+    lift = segment.load * segment.length
+    lever = 0.5 * (segment.start + segment.end) - tail
+    at_head = lift * lever / (head - tail)
+    return {tail: (-1, at_head - lift), head: (1, at_head)}
+
+
+def stresses(pressed: Sequence[Pressed], sizes: Sizes) -> dict[tuple[float, str], Refined]:
+    """x of each contact, and "triangle" or "patch" → the largest von Mises stress near it."""
+    return {
+        (x, what): Refined(
+            f"largest {what} at {x:g} m",
+            "MPa",
+            sizes.meshes,
+            [one.near(x)[place] / 1.0e6 for one in pressed],
+        )
+        for x in pressed[0].boom.joints[0].stations
+        for place, what in enumerate(("triangle", "patch"))
+    }
+
+
+def proofs(
+    default: Pressed, reduced: Pressed, near: Mapping[tuple[float, str], Refined], sizes: Sizes
+) -> Iterator[Proof]:
+    """The default mesh against a beam, equilibrium, and the limit of the refinement; and the
+    reduced shell against the full one.
+    """
+    mesh, finest = (f"mesh of {size:g} m" for size in (sizes.default, sizes.meshes[-1]))
+    for x in sizes.places:
+        value, reference = (stress / 1.0e6 for stress in default.top(x))
+        what = f"stress of the top at {x:g} m, {mesh}"
+        yield Proof(what, value, reference, "MPa", "analytic", "σ = M z / J", BEAM)
+    what = f"shear force of the webs at {sizes.places[0]:g} m, {mesh}"
+    yield Proof(what, *default.shear(sizes.places[0]), "N", "analytic", "equilibrium", BEAM)
+    unreduced: Held = ("other code", "the unreduced shell, of the same mesh", REDUCED)
+    for x in default.boom.joints[0].stations:
+        at = f"at the contact at {x:g} m"
+        what = f"von Mises stress of a patch {at}, {mesh}"
+        yield near[x, "patch"].against_limit(what, sizes.default, finest, PATCH)
+        what = f"largest von Mises stress of a triangle {at}, reduced"
+        reference = near[x, "triangle"].values[sizes.meshes.index(sizes.default)]
+        yield Proof(what, reduced.near(x)[0] / 1.0e6, reference, "MPa", *unreduced)
+
+
+@titled("stress", "Stresses of the inner segment between its contacts")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Stresses of the inner segment of the paper's boom, on ever finer meshes."""
+    sizes = sizes or Sizes()
+    case = friction_case()
+    boom = build_boom(case)
+    pressed = []
+    for size in sizes.meshes:
+        tell(f"mesh of {size:g} m")
+        pressed.append(Pressed.on_mesh(boom, size))
+    tell(f"mesh of {sizes.default:g} m, reduced")
+    laws = contact_laws(case, model_of(case, "shell"))
+    reduced = Pressed.reduced(boom, laws, sizes.default)
+    near = stresses(pressed, sizes)
+    title = "Von Mises stress where the inner segment is pressed"
+    yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))
+    yield from proofs(pressed[sizes.meshes.index(sizes.default)], reduced, near, sizes)
+    yield Plot(
+        "stress",
+        "At a line of contact the mesh makes the stress; over a patch it settles",
+        "mesh size (m)",
+        "von Mises stress (MPa)",
+        {one.what: (one.sizes, one.values) for one in near.values()},
+        "The inner segment of the paper's boom rests on its contacts. Largest von Mises stress of "
+        "a triangle within 0.25 m of each, and of the mean over half a wall.",
+    )

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Contact over the whole overlap beside contact at the stations, on the paper's boom.
+
+Without friction the motion is chaotic after its first presses, so the first peak is compared; with
+friction the tip over the whole run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from runs.case.build import build_boom, contact_laws
+from runs.case.schema import Case
+from runs.report.numerals import number
+from runs.report.tables import Table
+from studies.motions import (
+    OUTPUT_STEP,
+    friction_case,
+    gap_system,
+    model_of,
+    move,
+    shell_of,
+    without_friction,
+)
+from studies.pads import flexibility_table, pad_proofs, rigid_motion, with_pads
+from studies.study import Piece, Plot, Proof, Tell, titled
+
+# Beyond the play, in m: how deep the approaches of the proofs go.
+DEPTH = 1.0e-3
+DEFAULT_POINTS = (8, 4)
+
+NOTES = (
+    "A surface has no pads: the corners of the inner box press on the outer flange beside its web, "
+    "and the flange gives way there.",
+    "Pads at the ends of the overlap have their middles half their length inside, which shortens "
+    "the arm of the couple that holds the inner segment, and lets it tilt more within the play.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    mesh: float = 0.1  #: edge length in m
+    duration: float = 10.0  #: of the motions with friction that are compared, in s
+    peak: float = 0.9  #: time in s within which the first peak of the tip comes
+    penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  #: parts of the default penalty per area
+    #: Points along the overlap and across half a wall.
+    points: Sequence[tuple[int, int]] = ((4, 4), (8, 2), DEFAULT_POINTS, (8, 6), (12, 4))
+    #: Lengths and widths in m.
+    pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
+
+
+class Contact(NamedTuple):
+    """A way to touch: its name, what touches so, and its shell, with friction."""
+
+    name: str
+    case: Case
+    system: GapSystem
+
+
+@titled("surface-contact", "Contact over the whole overlap")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """Surface against stations, its penalty, its quadrature, and pads of several sizes."""
+    sizes = sizes or Sizes()
+    case = friction_case()
+    shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
+
+    def touching(name: str, case: Case, **update: object) -> Contact:
+        tell(f"contact {name}")
+        system = gap_system(case, build_boom(case), shell.model_copy(update=update))
+        return Contact(name, case, system)
+
+    stations = [
+        touching("near webs", case),
+        touching("across", case, contact_line="across"),
+        *(
+            touching(f"pads of {length:g} m x {width:g} m", with_pads(case, length, width))
+            for length, width in sizes.pads
+        ),
+    ]
+    surfaces = {
+        points: touching(
+            "surface, {} x {} points".format(*points),
+            case,
+            contact_line="surface",
+            surface_points=points,
+        )
+        for points in sizes.points
+    }
+    lines, padded = stations[0], stations[2]
+    default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
+    softer = [
+        Contact(f"{default.name}, {part:g} of the penalty", case, _scaled(default.system, part))
+        for part in sizes.penalties
+    ]
+    tell("motions with friction")
+    tips = {
+        contact.name: np.asarray(move(contact.system, sizes.duration).data["tip"].values)
+        for contact in (lines, default)
+    }
+    apart = np.abs(tips[lines.name] - tips[default.name]).max() / np.ptp(tips[default.name])
+    notes = (
+        f"With friction, over {sizes.duration:g} s, the tip of the surface is up to "
+        f"{100.0 * apart:.1f} % of its range from that of near webs.",
+        f"Its default penalty of {number(_density(case, default.system))} N/m³ presses as both "
+        "stations do when the segments approach each other alike. Points are along the overlap, "
+        "and across half a wall.",
+        *NOTES,
+    )
+    tell("first peaks")
+    yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
+    yield flexibility_table(stations)
+    yield from _proofs(case, default.system)
+    yield from pad_proofs(case, sizes.pads[0], padded.system)
+    time = (OUTPUT_STEP * np.arange(len(tips[lines.name]))).tolist()
+    yield Plot(
+        "surface-contact",
+        "Contact over the whole overlap is softer than from web to web",
+        "time (s)",
+        "tip (mm)",
+        {name: (time, (1.0e3 * tip).tolist()) for name, tip in tips.items()},
+        "The tip of the paper's boom with friction, touching at its stations near the webs and "
+        "over the whole overlap.",
+        logarithmic=False,
+    )
+
+
+def _scaled(system: GapSystem, part: float) -> GapSystem:
+    return replace(system, laws=[law.shared(part) for law in system.laws])
+
+
+def _upper_stiffness(system: GapSystem) -> float:
+    """Of all rows together where the inner segment presses up, in N/mⁿ."""
+    return sum(term.stiffness for law in system.laws for term in law.terms if term.side > 0.0)
+
+
+def _density(case: Case, system: GapSystem) -> float:
+    """The default penalty per area in N/mⁿ⁺²."""
+    boom = build_boom(case)
+    (joint,) = boom.joints
+    section = boom.segments[joint.inner].section
+    assert section is not None
+    start, end = boom.overlap(joint)
+    return _upper_stiffness(system) / (section.size("y") * (end - start))
+
+
+def _peaks(contacts: Sequence[Contact], notes: Sequence[str], sizes: Sizes) -> Table:
+    """The tip's first peak without and with friction, and how far it is off the first contact's."""
+    both = np.array(
+        [
+            [move(one, sizes.peak).first_peak()[1] for one in (without_friction(of), of)]
+            for _, _, of in contacts
+        ]
+    )
+    off = both / both[0] - 1.0
+    columns = {"contact": "", "modes": ".0f", "rows": ".0f"}
+    for how in ("without", "with"):
+        columns[f"first tip peak\n{how} friction (mm)"] = ".1f"
+        columns[f"off near webs\n{how} friction (%)"] = ".1f"
+    numbers = np.stack([1.0e3 * both, 100.0 * off], axis=2).reshape(len(both), -1)
+    rows = [
+        (name, system.num_modes, len(system.laws), *row)
+        for (name, _, system), row in zip(contacts, numbers, strict=True)
+    ]
+    return Table.of_rows("surface", "Where the segments touch", columns, rows, notes)
+
+
+def _proofs(case: Case, system: GapSystem) -> Iterator[Proof]:
+    """Forces of approaches whose pressure can be integrated by hand."""
+    boom = build_boom(case)
+    (joint,) = boom.joints
+    start, end = boom.overlap(joint)
+    clearance = system.laws[0].clearance
+    whole = _upper_stiffness(system)
+    upper, _ = contact_laws(case, model_of(case, "shell"))[0].terms
+    n, k = upper.exponent, upper.stiffness * len(joint.stations)
+
+    def forces(tail: float, slope: float) -> Array:
+        """Of the inner segment this high at its tail, beyond the play, and rising so."""
+        high = clearance + tail
+        gaps = system.rows @ rigid_motion(system, high, high + slope * (boom.tip - start))
+        return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
+
+    places = system.rows @ rigid_motion(system, start, boom.tip)
+    uniform, tilted = forces(DEPTH, 0.0), forces(0.0, DEPTH / (end - start))
+    approach = f"{1e3 * DEPTH:g} mm beyond the play"
+    over = "contact force over the overlap"
+    weightless = sum(w.terms[0].stiffness <= 1.0e-9 * whole for w in system.laws)
+    for what, value, reference, unit, source, allowed in (
+        (f"{over}, uniform approach {approach}", uniform.sum(), k * DEPTH**n, "N",
+         "(4) at all stations", 1.0e-6),
+        ("its place along the boom", uniform @ places / uniform.sum(), 0.5 * (start + end),
+         "m", "middle of the overlap", 1.0e-6),
+        (f"{over}, approach rising to {approach}", tilted.sum(), k * DEPTH**n / (n + 1.0), "N",
+         "integral of the pressure", 1.0e-6),
+        ("contact rows of a surface without weight", weightless, 0.0, "",
+         "Gauss's weights are positive", 0.0),
+    ):  # fmt: skip
+        yield Proof(what, float(value), reference, unit, "analytic", source, allowed)

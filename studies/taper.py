@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cantilevers that taper to half of all their sizes, against what is known of truncated cones.
+
+All sizes of their section shrink alike, so that A ∝ ξ² and J ∝ ξ⁴ with ξ from 1 at the clamp to α.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import iv, jv, kv, yv
+
+from dynamics.excitation import Step
+from geometry.arrays import Array
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, Segment
+from geometry.load import Load
+from geometry.section import BoxSection
+from studies.second_order import (
+    BOX,
+    CLAMP,
+    LENGTH,
+    MODELS,
+    SHEAR_STIFFNESS,
+    STEEL,
+    STIFFNESS,
+    Model,
+)
+from studies.study import Held, Kind, Proof, Tell, titled
+
+ALPHA = 0.5
+HEAD = BoxSection(*(ALPHA * size for size in (BOX.height, BOX.width, BOX.flange, BOX.web)))
+# From the clamp to where the cone would end, in m.
+WHOLE = LENGTH / (1.0 - ALPHA)
+
+ELEMENTS = "shear-flexible elements"
+
+# Of beams, and of the shell, whose walls shear and swell.
+CLOSE, OF_SHELL = 1.0e-4, 5.0e-3
+
+
+def arm(force: float = 0.0) -> Boom:
+    """The cantilever with 1 N across its tip, and a force in N along it."""
+    alone = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, head_section=HEAD, supports=(CLAMP,))
+    pressed = with_compression([alone], [], [Thrust(0, LENGTH, force)])
+    return Boom(pressed, (), (Load(0, "z", 1.0, LENGTH, Step()),))
+
+
+def tip(in_shear: bool) -> float:
+    """In m/N: ∫ (L − x)²/(E J) dx = L³/(3 E J_0 α), and with shear L/(G A_0 α) more."""
+    shear = LENGTH / (SHEAR_STIFFNESS * ALPHA) if in_shear else 0.0
+    return LENGTH**3 / (3.0 * STIFFNESS * ALPHA) + shear
+
+
+def frequency() -> float:
+    """The first in Hz: w = Z_2(2 λ √ξ)/ξ with Z of J, Y, I and K (Kirchhoff 1879), whose k-th
+    derivative is ± λᵏ Z_{2+k}/ξ^(1+k/2); w = w′ = 0 at ξ = 1, w″ = (ξ⁴ w″)′ = 0 at ξ = α.
+    """
+
+    def determinant(eigenvalue: float) -> float:
+        def row(k: int, xi: float) -> Array:
+            z = 2.0 * eigenvalue * np.sqrt(xi)
+            signs = (-1.0) ** k, (-1.0) ** k, 1.0, (-1.0) ** k
+            functions = zip(signs, (jv, yv, iv, kv), strict=True)
+            values = np.array([sign * function(2 + k, z) for sign, function in functions])
+            return np.asarray(eigenvalue**k * xi ** (-1.0 - 0.5 * k) * values)
+
+        rows = row(0, 1.0), row(1, 1.0), row(2, ALPHA), 4.0 * row(2, ALPHA) / ALPHA + row(3, ALPHA)
+        matrix = np.array(rows)
+        return float(np.linalg.det(matrix / np.abs(matrix).max(axis=0)))
+
+    # The first sign change from small λ on.
+    places = np.linspace(2.0, 10.0, 200)
+    signs = np.sign([determinant(place) for place in places])
+    first = int(np.flatnonzero(signs[1:] != signs[:-1])[0])
+    eigenvalue = float(brentq(determinant, places[first], places[first + 1]))
+    mass = BOX.mass_per_length(STEEL.density)
+    return float(eigenvalue**2 * np.sqrt(STIFFNESS / mass) / (2.0 * np.pi * WHOLE**2))
+
+
+def critical() -> float:
+    """The force in N along the tip under which it buckles: M = P times the deflection from the
+    tip's, which is ξ sin(u/α − u/ξ); its slope at ξ = 1 is 0 (Dinnik 1929).
+    """
+    turned = 1.0 / ALPHA - 1.0
+    u = brentq(lambda u: np.sin(u * turned) + u * np.cos(u * turned), 0.5 * np.pi, np.pi)
+    return float(u**2 * STIFFNESS / WHOLE**2)
+
+
+@titled("taper", "Segments that taper")
+def study(tell: Tell) -> Iterator[Proof]:
+    """Every model."""
+    for name, model in MODELS.items():
+        tell(name)
+        yield _deflection(name, model)
+        if name != ELEMENTS:
+            yield from _swing_and_force(name, model)
+
+
+def _deflection(name: str, model: Model) -> Proof:
+    source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
+    system, _ = model.of(arm())
+    found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
+    held: Held = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
+    what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
+    return Proof(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *held)
+
+
+def _swing_and_force(name: str, model: Model) -> Iterator[Proof]:
+    """Against closed forms; of those that shear bends against one another."""
+    exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
+    kind: Kind = "analytic"
+    if model.in_shear:
+        exact, sources, kind = _measured(MODELS[ELEMENTS]), (ELEMENTS, ELEMENTS), "other code"
+    allowed = OF_SHELL if name == "shell" else CLOSE
+    for what, found, asked, unit, source in zip(
+        ("first frequency", "critical force"), _measured(model), exact, ("Hz", "N"), sources,
+        strict=True,
+    ):  # fmt: skip
+        yield Proof(f"{what} of it, {name}", found, asked, unit, kind, source, allowed)
+
+
+def _measured(model: Model) -> tuple[float, float]:
+    """First frequency in Hz, critical force in N."""
+    load = 0.1 * critical()
+    system, _ = model.of(arm())
+    return float(system.frequencies[0]), model.factor(arm(load)) * load

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The paper's two examples, moved as codes of 1997 moved them, and as this program does.
+
+Its elements went by the modal technique in 4375 steps for 7 s, gaps and friction as forces on a few
+modes. Which scheme, how many modes, and whether gaps were iterated, it does not say: all are tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from dynamics.contact import PowerContact
+from dynamics.energy import ENERGIES
+from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion
+from dynamics.predictability.ensemble import changed, perturbations
+from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
+from runs.case.build import build_boom
+from runs.case.schema import Case, Model
+from runs.paper.parting import peaks_apart
+from runs.paper.reading import LITERAL
+from runs.paper.rules import CONFORMITY, DIVERGENCE
+from runs.pipeline.members import slow_below
+from runs.pipeline.motion import Plan
+from studies.motions import gap_system, model_of, side_by_side
+from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
+
+SERIES = ("kantorovich-4", "kantorovich-5")
+ELEMENTS, TIED = "beam-fe", "beam-fe-tied"
+
+# The paper's step, 4375 of which make 7 s, and its neighbours, in s.
+STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
+THEN = STEPS[1]
+# A few modes of both segments, which the modal technique keeps.
+MODES = (6, 8, 10, 12, 14)
+# Loads a little changed: each run is a sample.
+MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
+
+
+@dataclass(frozen=True, slots=True)
+class Numerics:
+    """How a code of then moves modes."""
+
+    scheme: Scheme  #: of its steps
+    settled: bool  #: whether gaps and friction agree with the end of a step, or lag by one
+    step: float  #: in s
+
+    def __str__(self) -> str:
+        gaps = "iterated" if self.settled else "lagged"
+        return f"{self.scheme.name}, gaps {gaps}, {1e3 * self.step:g} ms"
+
+
+def all_numerics() -> list[Numerics]:
+    """Every scheme, gaps iterated and lagged, every step."""
+    parts = product((NEWMARK, WILSON, CENTRAL), (True, False), STEPS)
+    return [Numerics(*one) for one in parts]
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """One run of one model."""
+
+    time: Array  #: (num_times,) in s
+    #: (num_times,) in m.
+    tip: Array
+    head: Array
+    gained: Array  #: (num_times,) energy from nowhere in J, lost if negative
+    put_in: float  #: by the loads at most, where the motion is solved well, in J
+    unsettled: float = 0.0  #: part of the steps in which friction and gaps came to no agreement
+
+    @classmethod
+    def of(cls, run: Trajectory, put_in: float = 0.0, unsettled: float = 0.0) -> Moved:
+        """A trajectory; without ``put_in`` its own."""
+        kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
+        present = kinetic + strain + contact + sum(losses)
+        tip, head = (run.data[place].values for place in ("tip", "head"))
+        scale = put_in or float(np.abs(work).max())
+        return cls(run.time, tip, head, present - present[0] - work, scale, unsettled)
+
+    @property
+    def balance(self) -> Array:
+        """(num_times,) energy from nowhere as a part of that put in, NaN after a finite motion."""
+        return self.gained / self.put_in
+
+    def at(self, time: Array) -> Moved:
+        """The same at other times in s."""
+        curves = self.tip, self.head, self.gained
+        tip, head, gained = (np.interp(time, self.time, curve) for curve in curves)
+        return Moved(time, tip, head, gained, self.put_in, self.unsettled)
+
+    @property
+    def first_peak(self) -> float:
+        """Largest deflection of the tip in the first second in m."""
+        return float(self.tip[self.time <= 1.0].max())
+
+    @property
+    def breaks(self) -> float:
+        """When it has gained more energy than was ever put in, in s; infinite if never."""
+        gained = ~(self.balance < 1.0)
+        return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """The paper's models with play, moved by the same numerics, and the play-free one."""
+
+    models: Sequence[Moved]  #: of ``SERIES`` and ``ELEMENTS``
+    tied: Moved  #: the elements without play, which any numerics moves well
+
+    @property
+    def elements(self) -> Moved:
+        """The finite elements with play."""
+        return self.models[-1]
+
+    def peaks(self, cutoff: float) -> tuple[float, float]:
+        """How far slow peaks are from one another up to six seconds and later (S3).
+
+        Infinite and NaN where the energy of a model has broken out.
+        """
+        if min(one.breaks for one in self.models) < np.inf:
+            return np.inf, np.nan
+        tips = np.array([one.tip for one in self.models])
+        time, apart = peaks_apart(tips, self.elements.time, cutoff)
+        early = time <= CONFORMITY
+        return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
+
+    def conforms_then_parts(self, cutoff: float) -> bool:
+        """Whether it shows S3."""
+        early, late = self.peaks(cutoff)
+        return early <= DIVERGENCE < late
+
+    def apart(self) -> tuple[float, float]:
+        """Largest distance of two tips up to six seconds and after, of the largest range (S7)."""
+        return self._early_and_late(_apart([one.tip for one in self.models]))
+
+    def stratifies(self) -> bool:
+        """Whether it shows S7, as the rule on trajectories asks it."""
+        early, late = self.apart()
+        head = float(_apart([one.head for one in self.models]).max())
+        without = min(float(_apart([one.tip, self.tied.tip]).max()) for one in self.models)
+        return early < DIVERGENCE < without and early < late < head
+
+    def _early_and_late(self, distance: Array) -> tuple[float, float]:
+        early = self.elements.time <= CONFORMITY
+        return float(distance[early].max()), float(distance[~early].max())
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One of the paper's two examples."""
+
+    case: Case  #: its file's
+    systems: Mapping[str, GapSystem]  #: of its models by their names
+    cutoff: float  #: of the slow motion in Hz
+    well: Sequence[Sample]  #: as this program solves it; one where friction makes it regular
+
+    @classmethod
+    def of(cls, case: Case, members: int) -> Example:
+        """With so many members solved well."""
+        boom = build_boom(case)
+        names = (*SERIES, ELEMENTS, TIED)
+        systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
+        cutoff = slow_below(boom, case.time)
+        assert cutoff is not None
+        runs = side_by_side(
+            lambda one: Moved.of(_well(case, systems[one[1]], model_of(case, one[1]), one[0])),
+            list(product(factors(members), names)),
+        )
+        well = [Sample(runs[i : i + 3], runs[i + 3]) for i in range(0, len(runs), len(names))]
+        return cls(case, systems, cutoff, well)
+
+    def samples(self, how: Numerics, modes: Sequence[int] = MODES) -> list[Sample]:
+        """A sample for each number of the elements' modes and each member."""
+        well = self.well[0].models
+        series = [(self.systems[name], run.put_in) for name, run in zip(SERIES, well, strict=False)]
+        whole, put_in = self.systems[ELEMENTS], well[-1].put_in
+        models = [*series, *((lowest(whole, few), put_in) for few in modes)]
+        tasks = [(*model, factor) for model in models for factor in factors(MEMBERS)]
+        runs = side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
+        four, five, *others = (runs[i : i + MEMBERS] for i in range(0, len(runs), MEMBERS))
+        tied = self.well[0].tied.at(four[0].time)
+        return [
+            Sample(played, tied)
+            for other in others
+            for played in zip(four, five, other, strict=True)
+        ]
+
+    def mixed(self, samples: Sequence[Sample]) -> list[Sample]:
+        """The samples with the series solved well, as a general solver does without a limit."""
+        members = [self.well[i % MEMBERS % len(self.well)] for i in range(len(samples))]
+        return [
+            replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
+            for one, well in zip(samples, members, strict=True)
+            for series in [well.models[: len(SERIES)]]
+        ]
+
+    def as_printed(self, how: Numerics) -> list[Moved]:
+        """The elements, whose contacts are linear, with their stiffness as the print has it."""
+        system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
+        laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
+        tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
+        return side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
+
+    def off(self, run: Moved) -> float:
+        """Largest distance of the elements' tip from the one solved well, of its range."""
+        well = self.well[0].elements
+        distance = np.abs(run.tip - np.interp(run.time, well.time, well.tip))
+        return float(distance[run.time <= CONFORMITY].max() / np.ptp(well.tip))
+
+
+def factors(members: int) -> Array:
+    """(members,) of the loads."""
+    return 1.0 + perturbations(members, RELATIVE, SEED)
+
+
+def _well(case: Case, system: GapSystem, model: Model, factor: float) -> Trajectory:
+    """As a run of the case moves the model."""
+    plan = Plan.of(system, case, model)
+    return plan.integrator(changed(plan.motion, "load", factor))
+
+
+def _then(how: Numerics, duration: float, system: GapSystem, put_in: float, factor: float) -> Moved:
+    motion = changed(Motion(system, duration, how.step), "load", factor)
+    run = integrate(motion, how.scheme, how.settled)
+    return Moved.of(run.trajectory, put_in, float(run.unsettled[: run.lasted].mean()))
+
+
+def _apart(curves: Sequence[Array]) -> Array:
+    """(num_times,) largest difference of any two, as a part of the largest range."""
+    return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

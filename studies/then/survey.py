@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Which numerics of 1997 show what the paper says, asked of S3, S7, S8 and S10.
+
+The measures are those of :mod:`runs.paper.rules`; runs of the elements are by the modal technique,
+those of the series by a general solver held to 2000 steps as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from runs import CASES
+from runs.case import reading as case_file
+from runs.paper.rules import ELEMENT_STEPS, INTERVAL, MOST, SERIES_STEPS
+from studies.then.general_solver import METHODS, solve
+from studies.then.samples import (
+    MEMBERS,
+    SERIES,
+    THEN,
+    Example,
+    Moved,
+    Numerics,
+    Sample,
+    all_numerics,
+)
+
+WITHOUT, WITH = CASES / "paper.toml", CASES / "paper-friction.toml"
+
+# Of the general solver, from rough to fine.
+TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
+# In s about the 7 s after which the paper's elements with friction were lost.
+ABOUT = 1.0
+
+
+# Method and tolerance of a general solver, a model of ``SERIES``, and whether it rubs.
+Way = tuple[str, float, str, bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What numerics of then say of a statement."""
+
+    shown: bool  #: whether with some of them most runs show it
+    why: str  #: which, and in how many runs
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Every run of both examples."""
+
+    #: The examples.
+    without: Example
+    with_friction: Example
+    #: Their samples by the numerics.
+    free: Mapping[Numerics, Sequence[Sample]]
+    rubbed: Mapping[Numerics, Sequence[Sample]]
+    #: By the general solver in the steps that the paper allows the series, in s.
+    reached: Mapping[Way, float]
+    #: Elements without and with friction whose contacts are as stiff as printed.
+    printed: Mapping[Numerics, Sequence[Sequence[Moved]]]
+
+    @classmethod
+    def of(cls, tell: Callable[[str], None]) -> Survey:
+        """Run everything."""
+        tell("both examples solved well")
+        free, rubbed = (case_file.load(str(path)) for path in (WITHOUT, WITH))
+        without, with_friction = Example.of(free, MEMBERS), Example.of(rubbed, 1)
+        tell("the general solver")
+        reached = reach(without, False) | reach(with_friction, True)
+        tell("without friction")
+        of_free = {how: without.samples(how) for how in all_numerics()}
+        tell("with friction")
+        of_rubbed = {how: with_friction.samples(how) for how in all_numerics()}
+        tell("with the stiffness as printed")
+        examples = without, with_friction
+        printed = {how: [one.as_printed(how) for one in examples] for how in all_numerics()}
+        return cls(without, with_friction, of_free, of_rubbed, reached, printed)
+
+    @cached_property
+    def outcomes(self) -> dict[str, Outcome]:
+        """By the statement."""
+        return {"S3": self._s3(), "S7": self._s7(), "S8": self._s8(), "S10": self._s10()}
+
+    def _s3(self) -> Outcome:
+        cutoff = self.without.cutoff
+        return _most(named(self.without, self.free), lambda one: one.conforms_then_parts(cutoff))
+
+    def _s7(self) -> Outcome:
+        return _most(named(self.with_friction, self.rubbed), Sample.stratifies)
+
+    def _s8(self) -> Outcome:
+        at_the_step = {how: found for how, found in self.rubbed.items() if how.step == THEN}
+        found = _most({str(how): found for how, found in at_the_step.items()}, lost_then)
+        breaks = {
+            how: sorted(one.elements.breaks for one in found if one.elements.breaks < np.inf)
+            for how, found in at_the_step.items()
+        }
+        how = max(breaks, key=lambda how: max(breaks[how], default=0.0))
+        if not breaks[how]:
+            return Outcome(found.shown, f"{found.why}; energy breaks out in none")
+        part = f"{len(breaks[how])} of {len(at_the_step[how])} runs"
+        when = f"at {breaks[how][0]:.1f} to {breaks[how][-1]:.1f} s"
+        return Outcome(found.shown, f"{found.why}; by {how} energy breaks out in {part}, {when}")
+
+    def _s10(self) -> Outcome:
+        way = max((way for way in self.reached if not way[-1]), key=self.reached.__getitem__)
+        (method, tolerance, *_), farthest = way, self.reached[way]
+        reach = (
+            f"{SERIES_STEPS} steps of a general solver reach {farthest:.2g} s of the "
+            f"{INTERVAL:g} s at most, by {method} at a tolerance of {tolerance:g}"
+        )
+        stand = {
+            round(INTERVAL / how.step)
+            for how, found in self.free.items()
+            if share(one.elements.breaks > INTERVAL for one in found) >= MOST
+        }
+        fewest = f"elements stand in {min(stand)} steps" if stand else "no elements stand so long"
+        shown = farthest >= INTERVAL and bool(stand) and min(stand) > ELEMENT_STEPS
+        return Outcome(shown, f"{reach}; {fewest}")
+
+
+def named(
+    example: Example, samples: Mapping[Numerics, Sequence[Sample]]
+) -> dict[str, Sequence[Sample]]:
+    """All models by the same numerics, and the elements alone, by what they are called."""
+    return {str(how): found for how, found in samples.items()} | {
+        f"{how}, the series solved well": example.mixed(found) for how, found in samples.items()
+    }
+
+
+def lost_then(sample: Sample) -> bool:
+    """Whether the elements are lost about when the paper's were (S8)."""
+    return abs(sample.elements.breaks - INTERVAL) <= ABOUT
+
+
+def reach(example: Example, friction: bool) -> dict[Way, float]:
+    """How far each general solver comes at each tolerance, both series."""
+    return {
+        (method, tolerance, model, friction): float(
+            solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]
+        )
+        for method, tolerance, model in product(METHODS, TOLERANCES, SERIES)
+    }
+
+
+def share(shows: Iterable[bool]) -> float:
+    """Of all, those that show something."""
+    return float(np.mean(list(shows)))
+
+
+def _most(samples: Mapping[str, Sequence[Sample]], shows: Callable[[Sample], bool]) -> Outcome:
+    """By which numerics a statement is shown most often."""
+    shares = {how: share(map(shows, found)) for how, found in samples.items()}
+    best = max(shares, key=lambda how: shares[how])
+    often = f"in {100.0 * shares[best]:.0f} % of runs"
+    if shares[best] == 0.0:
+        return Outcome(False, f"in no run of {len(shares)} numerics")
+    if shares[best] < MOST:
+        return Outcome(False, f"{often} at most, by {best}")
+    return Outcome(True, f"{often} by {best}")

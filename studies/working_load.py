@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Whether the default mesh is fine enough where segments press each other hard.
+
+The paper's boom with friction, with its sections held, over plays from none to the paper's and
+loads up to ten times the paper's, which is what gravity does: each point on the default mesh, and
+with all edges half and twice as long. One reduction serves all points of a mesh: plays and loads
+are the laws' and the load's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.report.tables import Cell, Table
+from studies.mesh import peak_heights
+from studies.motions import finer, friction_case, gap_system, move, shell_of, side_by_side
+from studies.pads import with_pads
+from studies.refined import Refined, refined_table
+from studies.study import Piece, Proof, Tell, titled
+
+# What is allowed of the first peak, and of the tip as a part of its range.
+PEAK, TIP = 0.002, 0.02
+TIP_OF_RANGE = "tip, part of its range"
+# Outputs over which a pad's force is averaged: single blows are a matter of microseconds.
+HELD = 20
+
+
+class Point(NamedTuple):
+    """Play in m, and load over the paper's."""
+
+    play: float
+    load: float
+
+    def __str__(self) -> str:
+        return f"{1e3 * self.play:g} mm, load × {self.load:g}"
+
+    @classmethod
+    def each(cls, plays: Sequence[float], loads: Sequence[float]) -> list[Point]:
+        """Every play with every load."""
+        return [cls(*one) for one in product(plays, loads)]
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What is measured."""
+
+    #: Edge lengths over the default ones, each half the one before.
+    meshes: Sequence[float] = (2.0, 1.0, 0.5)
+    plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
+    pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))  #: lengths and widths in m
+    #: Points, whose motion lasts ``spatial_duration``.
+    in_space: Sequence[Point] = (Point(14.0e-3, 1.0), Point(14.0e-3, 10.0), Point(4.0e-3, 10.0))
+    #: Of both motions in s.
+    duration: float = 5.0
+    spatial_duration: float = 1.0
+    peaks: int = 3  #: how many of the tip's first ones
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """A point's motion."""
+
+    tip: Array  #: (num_times,) in m
+    peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
+    forces: Array  #: (num_stations,) largest of each, in N, over ``HELD`` outputs
+    seconds: float = 0.0  #: that it has taken on one core
+
+    @classmethod
+    def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> Moved:
+        """From rest, in s."""
+        begin = perf_counter()
+        motion = move(system, duration)
+        seconds = perf_counter() - begin
+        held = np.cumsum(np.pad(motion.data["contact_force"].values, ((1, 0), (0, 0))), axis=0)
+        means = (held[HELD:] - held[:-HELD]) / HELD
+        peaks = np.full(num_peaks, np.nan)
+        heights = peak_heights(motion)[:num_peaks]
+        peaks[: len(heights)] = heights
+        tip = np.asarray(motion.data["tip"].values)
+        return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
+
+    def tip_off(self, reference: Moved) -> float:
+        """Its largest distance as a part of the reference's range."""
+        return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
+
+    def peaks_off(self, reference: Moved) -> Array:
+        """(num_peaks,) relative errors."""
+        return np.asarray(np.abs(self.peaks / reference.peaks - 1.0))
+
+    def changes(self, finer: Moved) -> Array:
+        """(num_peaks + 2,) relative changes of the peaks, then of the stations' forces as parts of
+        the largest, and of the tip as a part of its range, from here to a finer mesh.
+        """
+        forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
+        return np.append(self.peaks_off(finer), [forces, self.tip_off(finer)])
+
+
+class Touch(NamedTuple):
+    """A way to touch."""
+
+    name: str  #: of its table
+    where: str  #: segments touch, in words
+    case: Case  #: with it
+    points: Sequence[Point]  #: of motions that last ``duration``, in s
+    duration: float
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A way to touch on every mesh."""
+
+    touch: Touch  #: the way
+    #: Point → its motions, from the coarsest mesh to the finest.
+    moved: Mapping[Point, Sequence[Moved]]
+
+    @property
+    def changes(self) -> Array:
+        """(num_points, num_peaks + 2) from the default mesh to the finest; NaN without a peak."""
+        return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
+
+    def worst(self, which: int) -> tuple[float, Point]:
+        """The largest of a kind of changes over all points, and where; NaN where there is none."""
+        changes = self.changes[:, which]
+        points = list(self.moved)
+        if np.isnan(changes).all():
+            return float("nan"), points[0]
+        at = int(np.nanargmax(changes))
+        return float(changes[at]), points[at]
+
+    @property
+    def proofs(self) -> list[Proof]:
+        """First peaks, if there are any, and tips of the default mesh against half of all edges."""
+        found = []
+        for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
+            compared = int(np.isfinite(self.changes[:, which]).sum())
+            if not compared:
+                continue
+            value, point = self.worst(which)
+            name = f"{what}, {self.touch.where}, worst of {compared} points ({point})"
+            source = "all edges half as long"
+            found.append(Proof(name, value, 0.0, "", "other code", source, allowed))
+        return found
+
+    def hardest(self, sizes: Sizes) -> list[Refined]:
+        """Peaks and pad forces at the largest play and load."""
+        meshes = self.moved[max(self.moved, key=lambda p: (p.load, p.play))]
+        return [
+            Refined(f"{self.touch.where}: {what} {i}", unit, sizes.meshes, values.tolist())
+            for what, unit, each in (
+                ("tip peak", "mm", 1e3 * np.array([moved.peaks for moved in meshes])),
+                ("pad force", "kN", 1e-3 * np.array([moved.forces for moved in meshes])),
+            )
+            for i, values in enumerate(each.T, start=1)
+            if np.isfinite(values).all()
+        ]
+
+
+def at_point(system: GapSystem, point: Point) -> GapSystem:
+    """The system with another play and load, its coordinates as they were."""
+    laws = [law.behind(0.5 * point.play) for law in system.laws]
+    return replace(system, laws=laws, load=point.load * system.load)
+
+
+def in_space(case: Case) -> Case:
+    """The case with play and half its load sideways, too."""
+    joints = tuple(joint.model_copy(update={"lateral_play": joint.play}) for joint in case.joints)
+    segments = tuple(
+        segment.model_copy(update={"lateral_load": 0.5 * segment.load}) for segment in case.segments
+    )
+    return case.model_copy(update={"joints": joints, "segments": segments})
+
+
+def measure(touch: Touch, sizes: Sizes) -> Contact:
+    """All points of a way to touch, on all meshes."""
+    boom, shell = build_boom(touch.case), shell_of(touch.case)
+    systems = [gap_system(touch.case, boom, finer(shell, part)) for part in sizes.meshes]
+    tasks = [at_point(system, point) for point in touch.points for system in systems]
+    moved = side_by_side(lambda task: Moved.of(task, touch.duration, sizes.peaks), tasks)
+    count = len(systems)
+    return Contact(
+        touch, {point: moved[count * i : count * (i + 1)] for i, point in enumerate(touch.points)}
+    )
+
+
+def touches(case: Case, sizes: Sizes) -> list[Touch]:
+    """Near webs, by pads, and in space."""
+    every = Point.each(sizes.plays, sizes.loads)
+    return [
+        Touch("points-webs", "near webs", case, every, sizes.duration),
+        *(
+            Touch(f"points-pads-{i}", f"pads of {length:g} m x {width:g} m",
+                  with_pads(case, length, width), every, sizes.duration)
+            for i, (length, width) in enumerate(sizes.pads, start=1)
+        ),
+        Touch("points-in-space", "in space, near webs", in_space(case), sizes.in_space,
+              sizes.spatial_duration),
+    ]  # fmt: skip
+
+
+def summary_table(contacts: Sequence[Contact], sizes: Sizes) -> Table:
+    """The largest changes of each way to touch."""
+    peaks = [f"peak {which}\n(%)" for which in range(1, sizes.peaks + 1)]
+    changes = [*peaks, "pad forces\n(%)", "tip, part of\nits range (%)"]
+    rows: list[Sequence[Cell]] = []
+    for contact in contacts:
+        worst = [contact.worst(which) for which in range(len(changes))]
+        parts = [100.0 * change for change, _ in worst]
+        rows.append((contact.touch.where, len(contact.moved), *parts, str(worst[-1][1])))
+    return Table.of_rows(
+        "working-load",
+        "From the default mesh to one with all edges half as long",
+        {"contact": "", "points": ".0f", **dict.fromkeys(changes, ".2f"), "where": ""},
+        rows,
+        (
+            f"The largest change over plays of {1e3 * min(sizes.plays):g} to "
+            f"{1e3 * max(sizes.plays):g} mm and loads of {min(sizes.loads):g} to "
+            f"{max(sizes.loads):g} times the paper's, with its friction, over {sizes.duration:g} s "
+            f"(in space {sizes.spatial_duration:g} s). A pad force is the largest mean over "
+            f"{HELD} ms.",
+        ),
+    )
+
+
+def point_table(contact: Contact) -> Table:
+    """First peaks and the changes at every point of one way to touch, a row each."""
+    columns = {
+        "point": "", "first peak (mm)": ".1f", "its change (%)": ".3f", "tip (% of range)": ".2f",
+        "largest pad force (kN)": ".4g",
+    }  # fmt: skip
+    return Table.of_rows(
+        contact.touch.name,
+        f"Every point, {contact.touch.where}",
+        columns,
+        [
+            (str(point), 1e3 * meshes[-2].peaks[0], *(100.0 * changes[[0, -1]]),
+             1e-3 * meshes[-1].forces.max())
+            for (point, meshes), changes in zip(
+                contact.moved.items(), contact.changes, strict=True
+            )
+        ],
+    )  # fmt: skip
+
+
+@titled("working-load", "Meshes under working loads")
+def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
+    """The paper's boom with friction under working loads, on three meshes."""
+    sizes = sizes or Sizes()
+    contacts = []
+    for touch in touches(friction_case(), sizes):
+        tell(touch.where)
+        contacts.append(measure(touch, sizes))
+    yield summary_table(contacts, sizes)
+    hardest = []
+    for contact in contacts:
+        yield point_table(contact)
+        yield from contact.proofs
+        hardest += contact.hardest(sizes)
+    title = "Where refinement leads, at the largest play and load"
+    note = "Order, Richardson's limit and the grid convergence index as for the paper's load."
+    yield refined_table("working-load-limits", title, hardest, "edges × {:g}", (note,))

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a survey of numerics of 1997 makes of motions whose peaks and energies are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.friction import DryFriction
+from geometry.arrays import Array
+from runs.case import reading as case_file
+from runs.paper import then
+from runs.report.verdict import Verdict
+from studies.as_computed_then import leave, tables
+from studies.then.general_solver import METHODS, solve
+from studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
+from studies.then.scheme_errors import oscillator
+from studies.then.survey import TOLERANCES, WITH, WITHOUT, Survey, lost_then
+
+TIME = np.arange(0.0, 10.0, 1.6e-3)
+CUTOFF = 1.7
+
+
+def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0) -> Moved:
+    """A tip, a head of so large a part of it, and an energy in J of 1 J put in."""
+    return Moved(TIME, tip, head * tip, np.where(since <= TIME, gained, 0.0), 1.0)
+
+
+def swing(frequency: float = 0.9, late: float = 0.0) -> Array:
+    """In m, whose phase is off by so many s after six."""
+    return np.sin(2.0 * np.pi * frequency * (TIME - late * np.clip(TIME - 6.0, 0.0, 1.0)))
+
+
+def sample(*tips: Array, gained: float = 0.0, since: float = 0.0) -> Sample:
+    *series, elements = (moved(tip, gained=gained, since=since) for tip in tips)
+    return Sample([*series, elements], moved(0.05 * tips[0]))
+
+
+@pytest.mark.parametrize(
+    ("others", "early", "late"),
+    [
+        (swing(), 0.0, 0.0),
+        (swing(late=0.15), 0.0, 0.135),
+        (swing(late=0.4), 0.0, 0.36),
+    ],
+)
+def test_peaks_conform_and_part(others: Array, early: float, late: float) -> None:
+    """Reference: analytic, sines of the same phase, and of one that slips after 6 s by parts of
+    a period of 1.1 s. The filter smears a slip.
+    """
+    found = sample(swing(), swing(), others)
+    assert found.peaks(CUTOFF) == pytest.approx((early, late), abs=0.04)
+    assert found.conforms_then_parts(CUTOFF) == (late > 0.2)
+
+
+def test_peaks_of_what_breaks_out_are_none() -> None:
+    lost = sample(swing(), swing(), swing(late=0.4), gained=2.0, since=6.5)
+    assert lost.peaks(CUTOFF) == pytest.approx((np.inf, np.nan), nan_ok=True)
+    assert not lost.conforms_then_parts(CUTOFF)
+
+
+def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
+    case = case_file.load(str(WITHOUT))
+    well = sample(swing(), 2.0 * swing(), 3.0 * swing())
+    found = sample(swing(), swing(), swing(late=0.4))
+    (mixed,) = Example(case, {}, CUTOFF, [well]).mixed([found])
+    heights = [np.abs(one.tip).max() for one in mixed.models]
+    assert heights == pytest.approx([1.0, 2.0, 1.0], rel=1e-3)
+    assert mixed.elements is found.elements
+
+
+def test_models_are_as_far_apart_as_their_tips() -> None:
+    """Reference: by hand, a swing between ±1 m and one that is larger by a tenth after six
+    seconds: 0.1 of a range of 2.2.
+    """
+    larger = np.where(TIME > 6.0, 1.1, 1.0) * swing()
+    early, late = sample(swing(), swing(), larger).apart()
+    assert early == 0.0
+    assert late == pytest.approx(0.1 / 2.2, rel=0.01)
+
+
+@pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
+def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
+    """Reference: by hand: the tips part late by 0.05 of their range, the heads, which stand still
+    in all but one model, by nothing or by all of theirs.
+    """
+    tips = swing(), swing(), np.where(TIME > 6.0, 1.1, 1.0) * swing()
+    runs = [moved(tip, 0.1) for tip in tips[:2]] + [moved(tips[2], head)]
+    assert Sample(runs, moved(0.05 * tips[0])).stratifies() == stratifies
+
+
+@pytest.mark.parametrize(("gained", "breaks"), [(0.9, np.inf), (-2.0, np.inf), (1.1, 6.5)])
+def test_what_gains_more_than_was_put_in_breaks(gained: float, breaks: float) -> None:
+    run = moved(swing(), gained=gained, since=6.5)
+    assert run.breaks == pytest.approx(breaks, abs=2e-3)
+    assert lost_then(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
+
+
+def test_every_numerics_is_tried_once() -> None:
+    """Reference: three schemes, gaps iterated or lagged, three steps."""
+    assert len({*all_numerics()}) == 18
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_general_solver_swings_an_oscillator(method: str) -> None:
+    """Reference: analytic, 1 − cos t."""
+    system = replace(oscillator(), load=np.ones(1))
+    found = solve(system, 5.0, method, 1e-8, 2000)
+    assert found.time[-1] == 5.0
+    assert found.states[:, 0] == pytest.approx(1.0 - np.cos(found.time), abs=1e-5)
+    assert found.velocities[:, 0] == pytest.approx(np.sin(found.time), abs=1e-5)
+
+
+def test_a_general_solver_ends_with_its_steps() -> None:
+    found = solve(replace(oscillator(), load=np.ones(1)), 1000.0, "RK45", 1e-8, 50)
+    assert found.time.size == 51
+    assert found.time[-1] < 100.0
+
+
+def test_a_general_solver_slides_against_friction() -> None:
+    """Reference: analytic, (F − R) t²/2 from rest."""
+    friction = DryFriction(coefficient=1.0, station=0, normal_force=0.25)
+    rows = {"friction_rows": np.ones((1, 1)), "frictions": [friction], "stations": [0.0]}
+    system = replace(oscillator(), omega2=np.zeros(1), load=np.ones(1), **rows)
+    found = solve(system, 2.0, "RK45", 1e-6, 2000)
+    assert found.states[-1, 0] == pytest.approx(0.5 * 0.75 * 4.0, rel=1e-3)
+
+
+def survey(samples: Sequence[Sample], reached: float) -> Survey:
+    """All numerics with the same motions, and solvers that all come so far in s."""
+    case = case_file.load(str(WITHOUT)), case_file.load(str(WITH))
+    examples = [Example(one, {}, CUTOFF, [sample(swing(), swing(), swing())]) for one in case]
+    found = dict.fromkeys(all_numerics(), samples)
+    elements = [one.elements for one in samples]
+    ways = product(METHODS, TOLERANCES, SERIES, (False, True))
+    far = dict.fromkeys(ways, reached)
+    printed = {how: [elements, elements] for how in found}
+    return Survey(*examples, found, found, far, printed)
+
+
+def test_outcomes_follow_from_the_runs() -> None:
+    """Reference: by hand: in two of four runs the tips part after 6 s, as S3 and S7 say, in two the
+    energy breaks out at 6.5 s, and a solver reaches 2 of 7 s.
+    """
+    alike, parting = (swing(), swing(), swing()), (swing(), swing(), swing(late=0.4))
+    lost = sample(*alike, gained=2.0, since=6.5)
+    outcomes = survey([sample(*parting), sample(*parting), lost, lost], 2.0).outcomes
+    first = str(Numerics(all_numerics()[0].scheme, True, STEPS[0]))
+    assert (outcomes["S3"].shown, outcomes["S3"].why) == (True, f"in 50 % of runs by {first}")
+    assert outcomes["S7"].shown
+    assert outcomes["S8"].shown
+    assert outcomes["S8"].why.endswith("energy breaks out in 2 of 4 runs, at 6.5 to 6.5 s")
+    assert not outcomes["S10"].shown
+    assert outcomes["S10"].why.startswith("2000 steps of a general solver reach 2 s of the 7 s")
+
+
+def test_the_verdicts_read_what_the_study_leaves(tmp_path: Path) -> None:
+    done = survey([sample(swing(), swing(), swing())], 2.0)
+    made = tables(done)
+    leave(done, made, tmp_path)
+    case = case_file.load(str(WITH))
+    verdict = Verdict("S7", "", None, None, "", "undecided", "")
+    (found,) = then.beside([verdict], tmp_path, case)
+    assert found.then == f"not shown: {done.outcomes['S7'].why}"
+    names = [table.name for table in made]
+    text = (tmp_path / "then.md").read_text(encoding="utf-8")
+    assert len(names) == text.count("| :--")

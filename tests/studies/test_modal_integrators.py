@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Schemes of the 1990s against their textbook, and contacts by them against a spring."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.friction import DryFriction
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import FixedStep
+from dynamics.motion import Motion
+from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
+from studies.then.scheme_errors import (
+    longer_period,
+    lost_amplitude,
+    oscillator,
+    own_root,
+    proofs,
+    textbook_root,
+)
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
+ALL = (NEWMARK, WILSON, CENTRAL)
+DEEP = 100.0
+
+
+def sprung() -> GapSystem:
+    """1 kg without a spring of its own that two stops never leave, which are 1 N/m together."""
+    contact = PowerContact(0.5, 1.0, clearance=-DEEP)
+    return replace(
+        oscillator(),
+        omega2=np.zeros(1),
+        rows=np.ones((1, 1)),
+        laws=[contact],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+    )
+
+
+def rubbing(force: float) -> GapSystem:
+    """1 kg that slides on a friction of so many N."""
+    friction = DryFriction(coefficient=1.0, station=0, normal_force=force)
+    rows = {"friction_rows": np.ones((1, 1)), "frictions": [friction]}
+    return replace(oscillator(), omega2=np.zeros(1), stations=[0.0], **rows)
+
+
+@pytest.mark.parametrize("scheme", ALL, ids=str)
+@pytest.mark.parametrize("phase", [0.1, 0.628, 1.5])
+def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) -> None:
+    """Reference: analytic, roots of the amplification matrix, Bathe 1996, section 9.4."""
+    assert own_root(scheme, phase) == pytest.approx(textbook_root(scheme, phase), rel=1e-9)
+
+
+def test_known_errors_in_ten_steps_a_period() -> None:
+    """Reference: by hand: Newmark's period is longer by (ω h)²/12 less a twentieth of that, central
+    differences' shorter by (ω h)²/24 or more; of the three Wilson alone loses amplitude.
+    """
+    phase = 2.0 * np.pi / 10.0
+    newmark, wilson, central = (textbook_root(scheme, phase) for scheme in ALL)
+    assert longer_period(newmark, phase) == pytest.approx(phase**2 / 12.0, rel=0.05)
+    assert longer_period(central, phase) == pytest.approx(-(phase**2) / 24.0, rel=0.05)
+    assert longer_period(wilson, phase) > longer_period(newmark, phase)
+    assert [lost_amplitude(root) > 1e-9 for root in (newmark, wilson, central)] == [0, 1, 0]
+
+
+@pytest.mark.parametrize("scheme", ALL, ids=str)
+def test_half_the_step_leaves_a_quarter_of_the_error(scheme: Scheme) -> None:
+    """Reference: analytic, cos t after 5 s, and second order, slope 2 within 2 %."""
+    errors = []
+    for step in (0.02, 0.01):
+        run = integrate(Motion(oscillator(), 5.0, step, position=np.ones(1)), scheme, False)
+        errors.append(abs(float(run.trajectory.states[-1, 0]) - np.cos(5.0)))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, rel=0.02)
+
+
+def test_wilson_overshoots_and_newmark_does_not() -> None:
+    """Reference: analytic: let go at 1 m in steps of ω h = 50, Newmark stays within 1 m, and
+    Wilson's first step goes far beyond (Goudreau and Taylor 1973).
+    """
+    far = {
+        scheme: np.abs(integrate(let_go, scheme, False).trajectory.states).max()
+        for scheme in (NEWMARK, WILSON)
+        for let_go in [Motion(oscillator(), 500.0, 50.0, position=np.ones(1))]
+    }
+    assert far[NEWMARK] <= 1.0 + 1e-9
+    assert far[WILSON] > 100.0
+
+
+def test_central_differences_break_out_beyond_two_over_omega() -> None:
+    """Reference: analytic, stable for ω h < 2 alone."""
+    stays, grows = (
+        integrate(Motion(oscillator(), 100.0, step, position=np.ones(1)), CENTRAL, False)
+        for step in (1.98, 2.02)
+    )
+    assert np.abs(stays.trajectory.states).max() < 10.0
+    assert grows.lasted < 100
+    assert np.isnan(grows.trajectory.states[-1]).all()
+
+
+@pytest.mark.parametrize("scheme", ALL, ids=str)
+def test_an_iterated_contact_is_a_spring_of_the_mode(scheme: Scheme) -> None:
+    """Reference: other code, the same spring as the mode's own."""
+    of_mode, of_contact = (
+        integrate(Motion(system, 20.0, 0.1, position=np.ones(1)), scheme, True).trajectory
+        for system in (replace(sprung(), omega2=np.ones(1), rows=np.zeros((1, 1))), sprung())
+    )
+    assert of_contact.states == pytest.approx(of_mode.states, abs=1e-9)
+
+
+def test_a_lagged_contact_gains_energy() -> None:
+    """Reference: analytic: a force a step late is a dashpot of −k h or less, so that the swing of
+    1 kg on 1 N/m grows by exp(h t/4) or more, where iterated it stays.
+    """
+    step, duration = 0.05, 20.0
+    swings = []
+    for settled in (True, False):
+        motion = Motion(sprung(), duration, step, position=np.ones(1))
+        late = integrate(motion, NEWMARK, settled).trajectory.states[-200:, 0]
+        swings.append(np.abs(late).max())
+    assert swings[0] == pytest.approx(1.0, abs=1e-2)
+    assert swings[1] > np.exp(0.25 * step * duration)
+
+
+def test_iterated_impacts_come_near_the_converged_ones() -> None:
+    """Reference: other code, splitting; one blow of 1 kg on a stop in 60 steps, within 1 % of the
+    way back.
+    """
+    stop = replace(sprung(), laws=[PowerContact(100.0, 1.0, clearance=0.5)])
+    motion = Motion(stop, 2.0, 0.005, velocity=np.ones(1))
+    found = integrate(motion, NEWMARK, True).trajectory.states[-1]
+    assert found == pytest.approx(FixedStep(1e-4)(motion).states[-1], abs=1e-2)
+
+
+def test_sliding_loses_what_friction_takes() -> None:
+    """Reference: analytic, v t − F t²/2 while it slides, and the loss F s."""
+    motion = Motion(rubbing(0.5), 1.0, 0.01, velocity=np.ones(1))
+    for settled in (True, False):
+        run = integrate(motion, NEWMARK, settled).trajectory
+        assert float(run.states[-1, 0]) == pytest.approx(0.75, abs=1e-9)
+        assert float(run.data["friction_loss"][-1]) == pytest.approx(0.375, abs=1e-9)
+        assert run.energy_residual < 1e-9
+
+
+def test_friction_that_would_stop_within_a_step_does_not_settle() -> None:
+    """Reference: by hand: at rest after 1 s, the sign of the speed turns with every guess."""
+    run = integrate(Motion(rubbing(1.0), 2.0, 0.03, velocity=np.ones(1)), NEWMARK, True)
+    assert not run.unsettled[:33].any()
+    assert run.unsettled[33:].mean() > 0.4
+
+
+def test_the_lowest_modes_are_kept_in_their_order() -> None:
+    rows = np.arange(3.0)[None]
+    system = replace(
+        oscillator(), omega2=np.array([9.0, 0.0, 4.0]), load=np.array([1.0, 2.0, 3.0]),
+        rows=rows, laws=sprung().laws, station_of_row=np.array([0]), stations=[0.0],
+        damping=np.zeros(3), dashpots=np.zeros((0, 3)), friction_rows=np.zeros((0, 3)),
+        released=np.zeros(3), thrown=np.zeros(3), observers={},
+    )  # fmt: skip
+    cut = lowest(system, 2)
+    assert cut.omega2.tolist() == [0.0, 4.0]
+    assert cut.load.tolist() == [2.0, 3.0]
+    assert cut.rows.tolist() == [[1.0, 2.0]]
+
+
+def test_every_proof_holds_and_is_on_the_page() -> None:
+    """Reference: docs/verification.md, and the bars of the proofs."""
+    page = DOCUMENT.read_text(encoding="utf-8")
+    assert [proof.what for proof in proofs() if not proof.holds] == []
+    assert [proof.what for proof in proofs() if f"\n| {proof.what} |" not in page] == []

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""docs/verification.md has the sections and the rows that the studies write now."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from studies import direct, supports, taper, verification, working_load
+from studies.convergence import STUDIES
+from studies.motions import friction_case
+from studies.reference_models import pressed_plate
+from studies.study import Study
+
+ROOT = Path(__file__).parents[2]
+# Which point is the worst is measured.
+POINT = re.compile(r" \([^)]*\)$")
+
+
+def moved(touch: working_load.Touch, sizes: working_load.Sizes) -> working_load.Contact:
+    motion = working_load.Moved(np.arange(2.0), np.ones(sizes.peaks), np.ones(2))
+    return working_load.Contact(touch, dict.fromkeys(touch.points, [motion] * len(sizes.meshes)))
+
+
+def run(_case: Case, steps: Sequence[float], *_: object) -> list[direct.Run]:
+    hows = ["reduced", "reduced, more coordinates", *["unreduced"] * len(steps)]
+    return [
+        direct.Run(how, 1, 1.0 / i, np.array([0.0, i]), 1.0, 0.0, 1.0)
+        for i, how in enumerate(hows, start=1)
+    ]
+
+
+def pressed(*_: object) -> SimpleNamespace:
+    return SimpleNamespace(boom=build_boom(friction_case()), top=two, shear=two, near=two)
+
+
+def swung(*_: object) -> SimpleNamespace:
+    return SimpleNamespace(measured=two)
+
+
+def two(*_: object) -> tuple[float, float]:
+    return 1.0, 1.0
+
+
+def one(*_: object) -> float:
+    return 1.0
+
+
+# Study → what of it takes long → what stands in for it here.
+STAND_INS: Mapping[str, Mapping[str, object]] = {
+    "contact_size": {
+        "squeezed": lambda *_: np.ones(2),
+        "supported": lambda _, meshes: np.ones(len(meshes)),
+        "first_peaks": lambda _, sizes: np.ones(len(sizes.loads)),
+    },
+    "working_load": {"measure": moved},
+    "direct": {"runs_of": run},
+    "stress": {"Pressed.on_mesh": pressed, "Pressed.reduced": pressed},
+    "stiffeners": {
+        "measure": one,
+        "table": one,
+        "sums": one,
+        "racking_stiffness": one,
+        "ring_flexibility": one,
+    },
+    "damping": {"PressedBoom.of": swung, "_system": one},
+    "histories": {},
+    "second_order": {},
+    "drawn_column": {},
+    "stick_slip": {"_one_way": lambda _: [1.0] * 6},
+    "answers": {},
+    "supports": {"_MODELS": dict.fromkeys(supports._MODELS, supports._elements), "decrement": one},
+    "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
+    "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
+}
+# Studies without a proof have no section.
+PROVING = [name for name in STUDIES if name not in ("refinement", "model_ladder")]
+
+
+def row(cells: Sequence[str]) -> tuple[str, str, str]:
+    """What is held, but where; what is allowed; the kind of reference."""
+    return POINT.sub("", cells[0]), cells[4], cells[7]
+
+
+def sections() -> dict[str, list[tuple[str, str, str]]]:
+    """Title → its rows."""
+    page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+    return {
+        title: [
+            row(cells.split(" | ")) for cells in re.findall(r"^\| (?!what|:--)(.*) \|$", rows, re.M)
+        ]
+        for title, rows in re.findall(r"^## (.*)\n((?:(?!## ).*\n)*)", page, re.M)
+    }
+
+
+def test_each_section_is_that_of_a_study_in_its_order() -> None:
+    for name, title in zip(PROVING, sections(), strict=True):
+        source = (ROOT / "runs" / "studies" / f"{name}.py").read_text(encoding="utf-8")
+        assert name in STAND_INS or f'"{title}"' in source
+
+
+@pytest.mark.parametrize("name", STAND_INS)
+def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: the study itself, all that takes long one; what is measured holds."""
+    if name == "answers":
+        pytest.importorskip("rainflow", reason="the cycles are counted by it")
+    for what, stand_in in STAND_INS[name].items():
+        monkeypatch.setattr(f"studies.{name}.{what}", stand_in)
+    for what in ("shell", "theory"):
+        monkeypatch.setattr(pressed_plate.PressedPlate, what, one)
+    study: Study = import_module(f"studies.{name}").study(lambda what: None)
+    assert sections()[study.title] == [row(cells) for cells in verification.table(study).rows]
+    if not STAND_INS[name]:
+        assert [proof.what for proof in study.proofs if not proof.holds] == []

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Refinements of a regular motion, and the orders that they show."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from runs.case.schema import Case
+from studies.model_ladder import LADDER
+from studies.motions import friction_case, lasting, model_of
+from studies.refinement import orders, refine, with_step
+
+
+@pytest.fixture
+def case() -> Case:
+    """The first press of the paper's example with friction."""
+    return lasting(friction_case(), 0.6)
+
+
+def test_orders_are_those_of_a_power_law() -> None:
+    """Reference: analytic, errors of 3 h²."""
+    sizes = np.array([0.4, 0.2, 0.1, 0.05])
+    assert orders(sizes, np.abs(np.diff(3.0 * sizes**2))) == pytest.approx([2.0, 2.0])
+
+
+def test_a_finer_step_settles_with_its_order(case: Case) -> None:
+    """Reference: analytic. The time step is of second order, with friction too."""
+    model = model_of(case, "kantorovich-5-linear")
+    rows = refine(case, "step", model, [4e-5, 2e-5, 1e-5, 5e-6], with_step)
+    names, _, apart, found, _ = zip(*rows, strict=True)
+    assert set(names) == {"step"}
+    assert apart[0] < 0.1
+    assert (found[0], found[-1], apart[-1]) == (None, None, None)
+    assert np.mean(found[1:-1]) == pytest.approx(2.0, abs=0.4)
+
+
+def test_the_ladder_has_its_models(case: Case) -> None:
+    names = [model.name for model in case.models]
+    assert [name for _, name in LADDER] == names

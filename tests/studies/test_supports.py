@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms on hinges, cylinders, springs and dashpots against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from studies import supports
+from studies.supports import first_frequency, lever, study
+
+
+@pytest.mark.slow
+def test_every_value_is_that_of_its_reference() -> None:
+    proofs = study(lambda what: None).proofs
+    assert [proof.what for proof in proofs if not proof.holds] == []
+
+
+def test_the_closed_forms_have_their_limits() -> None:
+    """Reference: analytic. A rigid boom on a soft spring, a cantilever on a stiff one (Blevins
+    1979); a line from the hinge has no arm.
+    """
+    segment = supports._segment()
+    mass = segment.mass_per_length * segment.length**3 / 3.0
+    soft = np.sqrt(1.0e3 / mass) / (2.0 * np.pi)
+    assert first_frequency(segment, 1.0e3) == pytest.approx(soft, rel=1e-4)
+    rate = np.sqrt(segment.bending_stiffness / segment.mass_per_length) / (2.0 * np.pi)
+    stiff = (1.875104068711961 / segment.length) ** 2 * rate
+    assert first_frequency(segment, 1.0e14) == pytest.approx(stiff, rel=1e-5)
+    through = supports.Cylinder(0, x=2.0, depth=0.4, ground=(1.0, -0.2), stiffness=1.0)
+    assert lever(through) == pytest.approx(0.0, abs=1e-12)

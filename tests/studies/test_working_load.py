@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Two points of the paper's boom on two coarse meshes, and what is told of some motions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from studies.motions import friction_case
+from studies.working_load import Contact, Moved, Point, Sizes, Touch, study
+
+TINY = Sizes(
+    meshes=(16.0, 8.0),
+    plays=(14.0e-3,),
+    loads=(1.0, 10.0),
+    pads=(),
+    in_space=(Point(2.0e-3, 40.0),),
+    duration=0.9,
+    spatial_duration=0.07,
+    peaks=1,
+)
+
+
+def moved(tip: float, peak: float) -> Moved:
+    return Moved(np.array([0.0, tip]), np.array([peak]), np.ones(2))
+
+
+def told(*peaks: float) -> list[tuple[str, float]]:
+    """What and value of the proofs of a point for each peak, on two meshes, the finer one 1 m."""
+    points = [Point(1.0e-3 * i, 1.0) for i in range(len(peaks))]
+    touch = Touch("points", "webs", friction_case(), points, 1.0)
+    meshes = {
+        point: [moved(1.01, peak), moved(1.0, 1.0)]
+        for point, peak in zip(points, peaks, strict=True)
+    }
+    return [(proof.what, proof.value) for proof in Contact(touch, meshes).proofs]
+
+
+def test_a_first_peak_is_proven_where_there_is_one() -> None:
+    """Reference: analytic, changes of 1 % of the tip, and of 2 % of the one peak that there is."""
+    none = float("nan")
+    tip = ("tip, part of its range, webs, worst of 2 points (0 mm, load × 1)", pytest.approx(0.01))
+    peak = ("first tip peak, webs, worst of 1 points (1 mm, load × 1)", pytest.approx(0.02))
+    assert told(none, none) == [tip]
+    assert told(none, 1.02) == [peak, tip]
+
+
+@pytest.mark.slow
+def test_a_mesh_errs_more_under_more_load() -> None:
+    """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls; one
+    reduction serves both loads.
+    """
+    touches: list[str] = []
+    found = study(touches.append, TINY)
+    assert touches == ["near webs", "in space, near webs"]
+    names = ["working-load", "points-webs", "points-in-space", "working-load-limits"]
+    assert list(found.data) == names
+    light, heavy = found.data["points-webs"]
+    assert (light["point"], heavy["point"]) == ("14 mm, load × 1", "14 mm, load × 10")
+    change, force = "tip (% of range)", "largest pad force (kN)"
+    assert 0.0 < light[change] < heavy[change] < 10.0
+    assert heavy[force] > 3.0 * light[force]
+    assert [proof.what for proof in found.proofs] == [
+        "first tip peak, near webs, worst of 2 points (14 mm, load × 10)",
+        "tip, part of its range, near webs, worst of 2 points (14 mm, load × 10)",
+        "tip, part of its range, in space, near webs, worst of 1 points (2 mm, load × 40)",
+    ]
+    assert found.proofs[1].value == pytest.approx(0.01 * heavy[change])
+    (pressed,) = found.data["points-in-space"]
+    assert pressed[force] > 10.0
+    assert found.proofs[2].value == pytest.approx(0.01 * pressed[change])
+    assert 0.0 < pressed[change] < 10.0
