@@ -26,6 +26,7 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
+from runs.case.user_files import read_text
 from runs.folder.files import write_whole
 from runs.paper.reading import (
     CHANGE,
@@ -198,7 +199,7 @@ def load(folder: Path, case: Case) -> list[TextTable]:
         BadInput: the file is damaged, or of another case.
     """
     try:
-        data = json.loads((folder / FILE).read_text(encoding="utf-8"))
+        data = json.loads(read_text(folder / FILE))
         found = data["case_hash"]
         tables = shown(TypeAdapter(list[Judged]).validate_python(data["readings"]))
     except FileNotFoundError:

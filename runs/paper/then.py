@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from runs.case import toml
 from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
+from runs.case.user_files import read_text
 from runs.report.verdict import Verdict
 
 FILE = "then.json"
@@ -50,7 +51,7 @@ def beside(verdicts: Sequence[Verdict], folder: Path, case: Case) -> list[Verdic
         BadInput: the file is damaged, or of another case.
     """
     try:
-        found = Outcomes.model_validate(json.loads((folder / FILE).read_text(encoding="utf-8")))
+        found = Outcomes.model_validate(json.loads(read_text(folder / FILE)))
     except FileNotFoundError:
         return list(verdicts)
     except ValidationError as error:
