@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from dynamics.integrators.integrator import Events, Integrator, Splitting
 
+from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import changed, integrate_ensemble
 from dynamics.predictability.horizon import (
@@ -49,7 +49,7 @@ def test_a_linear_system_has_no_horizon() -> None:
 class Counted:
     """Steps whose runs are counted."""
 
-    way: Splitting
+    way: Integrator
     runs: list[Motion]
 
     def __call__(
@@ -57,6 +57,9 @@ class Counted:
     ) -> Trajectory:
         self.runs.append(motion)
         return self.way(motion, progress)
+
+    def like(self, trajectory: Trajectory) -> Counted:
+        return replace(self, way=self.way.like(trajectory))
 
     def finer(self) -> Counted:
         return replace(self, way=self.way.finer())
@@ -69,7 +72,7 @@ def test_stops_when_it_is_known() -> None:
     sizes = [1e-12, 1e-10, 1e-8, 1e-6]
     for system, begun, ended in ((LINEAR, 1 + 3, 1 + 3), (CHAOTIC, 1 + 4 * 3, 4 * 3)):
         motion = Motion(system, 20.0, 1e-2)
-        counted = Counted(Splitting(1e-3), [])
+        counted = Counted(FixedStep(1e-3), [])
         unchanged = counted.way(motion)
         found = measure_horizons(motion, sizes, "load", integrator=counted, unchanged=unchanged)
         durations = [run.duration for run in counted.runs]
@@ -84,7 +87,7 @@ def test_stops_when_it_is_known() -> None:
 def test_what_parts_early_is_not_run_to_the_end() -> None:
     """Reference: other code, all members over the whole duration."""
     motion, sizes = Motion(CHAOTIC, 20.0, 1e-2), [1e-8, 1e-6]
-    way = Splitting(1e-3)
+    way = FixedStep(1e-3)
     found = measure_horizons(motion, sizes, "load", 1, way)
     tips = [way(changed(motion, "load", 1.0 + size)).data["tip"].values for size in (0.0, *sizes)]
     time = 1e-2 * np.arange(tips[0].size)
@@ -150,7 +153,7 @@ def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
     assert rates[0] == pytest.approx(rates[1], rel=0.2)
 
 
-@pytest.mark.parametrize("integrator", [Splitting(1e-4), Events(1e-7)])
+@pytest.mark.parametrize("integrator", [FixedStep(1e-4), AdaptiveStep(1e-3)])
 def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
     """Reference: other code path. Data changed by as much part from the run at the time at which
     the finer one does, within a tenth of it."""

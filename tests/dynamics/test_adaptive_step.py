@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Integrators are values that choose, keep and repeat their steps, and tell what they miss."""
+
+from __future__ import annotations
+
+import pickle
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics.contact import PowerContact
+from dynamics.excitation import Excitation, Sine
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedule, simulate
+from dynamics.motion import MOST_STEPS, Motion
+from tests.dynamics.reference import runge_kutta, two_modes
+from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
+from tests.dynamics.two_stops import CHAOTIC, LINEAR
+
+OneMass = Callable[..., GapSystem]
+
+MOTION = Motion(CHAOTIC, 2.0, 1e-2, np.array([0.01, 0.0]), np.array([0.5, -1.0]))
+EVERY: list[Integrator] = [FixedStep(1e-3), AdaptiveStep(1e-2), StepSchedule((4, 16, 2), 30)]
+
+
+@pytest.mark.parametrize("integrator", EVERY, ids=str)
+def test_the_steps_of_a_run_can_be_made_again(integrator: Integrator) -> None:
+    """Reference: other code path, to the last bit, of a chaotic motion; progress is told."""
+    parts: list[float] = []
+    run = pickle.loads(pickle.dumps(integrator))(MOTION, parts.append)
+    again = integrator.like(run)(MOTION)
+    np.testing.assert_array_equal(run.states, again.states)
+    for name in ("contact_force", "contact_force_peak", "work"):
+        np.testing.assert_array_equal(run.data[name], again.data[name])
+    assert again.data.attrs["steps"] == run.data.attrs["steps"]
+    assert parts == sorted(parts)
+    assert parts[-1] == 1.0
+
+
+def test_a_schedule_makes_its_steps() -> None:
+    """Reference: by hand. Windows of 30 outputs in 4 and 16 steps each, the rest in 2."""
+    run = StepSchedule((4, 16, 2), 30)(MOTION)
+    assert run.data.attrs["steps"] == 30 * 4 + 30 * 16 + 140 * 2
+    assert run.data.attrs["step"] == pytest.approx(1e-2 / 16.0)
+    assert StepSchedule((4, 1), 30).finer() == StepSchedule((8, 2), 30)
+    assert StepSchedule((4, 1), 30).coarser() == StepSchedule((2, 1), 30)
+    assert FixedStep(0.2).finer().coarser() == FixedStep(0.2)
+    assert AdaptiveStep(1e-3).finer() == AdaptiveStep(2.5e-4)
+    assert StepSchedule.of(run) == StepSchedule((4, 16, 2), 30)
+
+
+def test_the_step_fits_the_output(one_mass: OneMass) -> None:
+    """Reference: by hand. 0.1 s in four steps; the duration is a whole number of outputs."""
+    run = FixedStep(0.03)(Motion(one_mass(1.0, spring=1.0), 1.04, output_step=0.1))
+    assert run.time[-1] == pytest.approx(1.0, rel=1e-15)
+    assert run.data.attrs["step"] == pytest.approx(0.025, rel=1e-12)
+    assert run.data.attrs["steps"] == 40
+
+
+@pytest.mark.parametrize("integrator", EVERY[::2], ids=str)
+def test_a_shorter_motion_is_the_beginning_of_a_longer_one(integrator: Integrator) -> None:
+    """Reference: other code path, to the last bit."""
+    some, whole = (integrator(replace(MOTION, duration=time)) for time in (0.7, 2.0))
+    for name in ("tip", "contact_force", "contact_force_peak", "kinetic_energy"):
+        np.testing.assert_array_equal(some.data[name], whole.data[name][: some.time.size])
+
+
+REGULAR = {
+    "pressed": pressed(2.0), "losses": lossy_press(), "sliding": sliding(),
+    "telescoping": telescoping(), "driven": driven(), "one blow": Motion(two_modes(), 0.6, 0.02),
+    "linear": Motion(LINEAR, 3.0, 0.01),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 2e-4])
+@pytest.mark.parametrize("what", REGULAR)
+def test_a_regular_motion_keeps_its_tolerance(what: str, tolerance: float) -> None:
+    """Reference: the same motion in steps a tenth as long; the error is told, and not far off."""
+    motion = replace(REGULAR[what], output_step=5e-3)
+    run = AdaptiveStep(tolerance)(motion)
+    substeps = run.data.attrs["substeps"]
+    fine = StepSchedule(tuple(10 * n for n in substeps), run.data.attrs["window"])(motion)
+    seen = list(motion.system.observers)
+    span = max(float(np.ptp(fine.data[name].values)) for name in seen)
+    error = max(float(np.abs(run.data[name] - fine.data[name]).max()) for name in seen) / span
+    assert error < tolerance
+    assert run.data.attrs["step_error"] < 1.01 * tolerance
+    assert error < 2.0 * run.data.attrs["step_error"] + 1e-9
+
+
+def test_half_the_step_leaves_a_quarter_of_the_error() -> None:
+    """Reference: other code, scipy's DOP853."""
+    motion = driven()
+    expected = runge_kutta(motion)
+    one = FixedStep(1e-3)
+    found = [
+        np.abs(way(motion).states - expected).max() for way in (one.coarser(), one, one.finer())
+    ]
+    assert found[0] / found[1] == pytest.approx(4.0, abs=0.3)
+    assert found[1] / found[2] == pytest.approx(4.0, abs=0.3)
+
+
+def test_chaos_ends_the_refinement() -> None:
+    """Reference: by hand, the most steps; the energy is there, and the error is told."""
+    run = AdaptiveStep()(Motion(CHAOTIC, 40.0, 1e-2))
+    assert run.data.attrs["steps"] <= 1.1 * MOST_STEPS
+    assert run.data.attrs["step_error"] > 1e-3
+    assert run.energy_residual < 1e-9
+
+
+def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
+    """Reference: analytic, h times 2π · 300 Hz is half at most, though the tip hardly feels it."""
+    push = Excitation(np.array([1.0]), Sine(300.0))
+    system = replace(one_mass(1.0, spring=4.0, force=3.0), excitations=[push])
+    run = AdaptiveStep(0.1)(Motion(system, 1.0, 1e-2))
+    assert run.data.attrs["step"] * 2.0 * np.pi * 300.0 < 0.5
+
+
+def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
+    """Reference: analytic, the weight. A stiff floor is pressed at 32 rad a step: forces of single
+    steps swing about their mean, means of pairs do not."""
+    system = one_mass(1.0, PowerContact(1.0e9, 1.0, 0.0).lower(), force=-1000.0)
+    start = np.array([-1.0e-6]), np.array([-0.028])
+    pairs, single = (FixedStep(1e-3)(Motion(system, 0.1, h, *start)) for h in (2e-3, 1e-3))
+    assert np.ptp(single.data["contact_force"].values[1:, 0]) > 80.0
+    assert pairs.data["contact_force"].values[1:, 0] == pytest.approx(-1000.0, abs=4.0)
+    assert AdaptiveStep(0.5)(Motion(system, 0.1, 1e-3, *start)).data.attrs["steps"] >= 200
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "exponent", "within"), [(1e8, 1.0, 0.05), (1e10, 1.5, 0.08), (1e12, 2.0, 0.08)]
+)
+def test_a_peak_that_no_step_resolves_is_marked(
+    one_mass: OneMass, stiffness: float, exponent: float, within: float
+) -> None:
+    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1). The told step finds it; the slope of a
+    coarse one is not yet that of the deepest place, so that a second one may be told."""
+    depth = ((exponent + 1.0) * 0.5 * 0.5**2 / stiffness) ** (1.0 / (exponent + 1.0))
+    system = one_mass(2.0, PowerContact(stiffness, exponent, 1e-3))
+    motion = Motion(system, 0.02, 1e-3, velocity=np.array([0.5]))
+    steps, peaks = [1e-3], []
+    while steps[-1] < np.inf:
+        run = FixedStep(steps[-1])(motion)
+        steps.append(run.data.attrs["resolving_step"])
+        peaks.append(float(np.abs(run.data["contact_force_peak"]).max()))
+    assert len(peaks) <= 3
+    assert peaks[0] < 0.5 * stiffness * depth**exponent
+    assert peaks[1] == pytest.approx(stiffness * depth**exponent, rel=within)
+    assert peaks[-1] == pytest.approx(stiffness * depth**exponent, rel=0.03)
+
+
+def test_what_is_simulated_is_the_motion() -> None:
+    """Reference: other code path."""
+    start = {"position": [0.01, 0.0], "velocity": [0.5, -1.0]}
+    run = simulate(CHAOTIC, 2.0, 1e-2, **start)
+    np.testing.assert_array_equal(run.states, AdaptiveStep()(MOTION).states)
+    run = simulate(CHAOTIC, 2.0, 1e-2, **start, integrator=FixedStep(1e-3))
+    np.testing.assert_array_equal(run.states, FixedStep(1e-3)(MOTION).states)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1.0, float("nan")])
+def test_refuses_what_is_no_tolerance(tolerance: float) -> None:
+    message = f"tolerance must be between 0 and 1, got {tolerance}"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        AdaptiveStep(tolerance)
