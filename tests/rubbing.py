@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A motion that rubs, told to the last bit, and whether a worker of the tests has compiled it."""
+"""Motions told to the last bit, and whether a worker of the tests has compiled their loop."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
+from dynamics.drive.travel import SCurve
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels.march import march
 from dynamics.motion import Motion
+from tests.dynamics.test_drawn_out import lossy
+from tests.dynamics.test_moving_thrust import pressed_along
 
 
 def compiled_in(factory: pytest.TempPathFactory) -> Path:
@@ -29,7 +32,7 @@ def compile_loop(file: Path) -> None:
 
 
 def told() -> str:
-    """All numbers of the motion."""
+    """All numbers of motions that rub, telescope and carry axial forces along."""
     random = np.random.default_rng(3)
     rows = random.normal(size=(2, 12))
     system = GapSystem(
@@ -43,8 +46,9 @@ def told() -> str:
         friction_rows=random.normal(size=(2, 12)),
         frictions=[DryFriction(0.2, 0, 1.0, (0,)), DryFriction(0.2, 1, 2.0)],
     )
-    data = FixedStep(1.0e-4)(Motion(system, 0.5, 0.01)).data
-    return f"{ {name: values.values.tolist() for name, values in data.items()} }\n"
+    drawn = lossy(SCurve(5.0, 0.4)), pressed_along(SCurve(2.0, 1.0))
+    runs = [FixedStep(1.0e-4)(Motion(one, 0.2, 0.01)).data for one in (system, *drawn)]
+    return f"{[[values.values.tolist() for values in run.values()] for run in runs]}\n"
 
 
 if __name__ == "__main__":
