@@ -46,12 +46,15 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
         a, v = state[:n], state[n:]
         rows = {kind: getattr(system, kind).copy() for kind in KINDS}
         drift = {kind: np.zeros(len(rows[kind])) for kind in KINDS}
+        pull = np.zeros(n)
         for travel in system.travels:
             ahead, behind = travel.history(np.array([time + _APART, abs(time - _APART)]))
             way, speed = float(travel.history(np.array(time))), (ahead - behind) / (2.0 * _APART)
             now, slopes = travel.table(way), travel.table.slope(way)
             for (kind, j), row, slope in zip(travel.moving, now, slopes, strict=True):
                 rows[kind][j], drift[kind][j] = row, speed * (slope @ a)
+            for thrust in travel.thrusts:
+                pull += thrust.softening(way) @ a
         stacked = np.concatenate([rows[kind] for kind in KINDS])
         speeds = stacked @ v + np.concatenate([drift[kind] for kind in KINDS])
         closing, sliding, dragged = np.split(speeds, parts)
@@ -63,7 +66,7 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
                   for f in system.frictions]  # fmt: skip
         limits = np.array([f.coefficient for f in system.frictions]) * normal
         forces = np.concatenate([pressed, limits * np.sign(sliding), dragged])
-        pull = system.load - system.omega2 * a - system.damping * v - stacked.T @ forces
+        pull = pull + system.load - system.omega2 * a - system.damping * v - stacked.T @ forces
         for x in system.excitations:
             pull = pull + x.load * x.history(np.array(time))
         return np.concatenate([v, pull])

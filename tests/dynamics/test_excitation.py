@@ -127,27 +127,6 @@ def test_the_line_that_stands_for_a_history() -> None:
     assert change == pytest.approx([12.0 * 0.75 * 0.125, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize("damping", [0.0, 0.3])
-@pytest.mark.parametrize("spring", [0.0, 1.0e-6, 40.0, 4.0e8])
-def test_a_ramp_is_followed_exactly(one_mass: OneMass, spring: float, damping: float) -> None:
-    """Reference: analytic. t³/6 per unit of mass and slope for ω = c = 0; else the particular
-    solution (t − c/k)/k and a free motion. The shortest and the longest step agree."""
-    system = driven(one_mass(1.0, spring=spring, dashpot=damping), 6.0, Ramp(2.0))
-    coarse, fine = (FixedStep(h)(Motion(system, 2.0, output_step=0.25)) for h in (0.25, 1e-4))
-    if spring == damping == 0.0:
-        np.testing.assert_allclose(coarse.data["tip"], coarse.time**3 / 2.0, rtol=1e-13)
-    elif spring == 40.0:
-        t, decay = coarse.time, damping / 2.0
-        omega = np.sqrt(spring - decay**2)
-        # x = 3 (t − c/k + e^{−δt}(A cos + B sin))/k with x = ẋ = 0 at first
-        a = damping / spring
-        b = (decay * a - 1.0) / omega
-        free = np.exp(-decay * t) * (a * np.cos(omega * t) + b * np.sin(omega * t))
-        np.testing.assert_allclose(coarse.data["tip"], 3.0 * (t - a + free) / spring, atol=1e-13)
-    size = float(np.abs(fine.data["tip"]).max())
-    np.testing.assert_allclose(coarse.data["tip"], fine.data["tip"], atol=1e-10 * size)
-
-
 def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: float) -> Array:
     """Closed form for 1 kg from rest under 1 N sin(2π f t + φ)."""
     omega = 2.0 * np.pi * frequency
@@ -171,21 +150,6 @@ def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> No
         errors.append(np.abs(run.data["tip"].values - expected).max() / np.abs(expected).max())
     assert slopes(np.array(errors)) == pytest.approx(4.0, abs=0.1)
     assert errors[-1] < 1e-6
-
-
-def test_work_and_damping_loss_of_a_steady_swing(one_mass: OneMass) -> None:
-    """Reference: analytic. In the steady state both gain c ω² X²/2 per time."""
-    spring, dashpot, frequency = 30.0, 2.0, 0.8
-    system = driven(one_mass(1.0, spring=spring, dashpot=dashpot), 1.0, Sine(frequency))
-    period = 1.0 / frequency
-    run = FixedStep(period / 100.0)(Motion(system, 30.0 * period, output_step=period / 100.0))
-    omega = 2.0 * np.pi * frequency
-    square = 1.0 / ((spring - omega**2) ** 2 + (dashpot * omega) ** 2)
-    power = 0.5 * dashpot * omega**2 * square
-    last = run.data.isel(time=[-501, -1])
-    for name in ("work", "damping_loss"):
-        gain = float(np.diff(last[name])[0])
-        assert gain == pytest.approx(power * 5.0 * period, rel=1e-4), name
 
 
 def test_excitations_add_up() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,23 +71,6 @@ def test_contact_never_pulls(one_mass: OneMass) -> None:
     tip = run.data["tip"].values
     assert (force[1:, 0][(tip[1:] > 0.01) & (tip[1:] < 0.09)] == 0.0).any()
     assert float(run.data["contact_loss"][-1]) > 0.5 * 0.5 * 1.0e4 * 0.1**2
-
-
-def test_no_damping_is_no_damping(one_mass: OneMass) -> None:
-    """Reference: the same system without. The compiled path is another, the motion is not."""
-    stop = PowerContact(stiffness=1.0e5, exponent=1.5, clearance=0.02)
-    plain = one_mass(2.0, stop, spring=50.0, force=10.0)
-    # A damped law on the side that is never touched takes the other path.
-    other = replace(
-        plain,
-        rows=np.repeat(plain.rows, 2, axis=0),
-        laws=[stop, PowerContact(1.0, 1.0, 1.0e3, damping=1.0)],
-        station_of_row=np.zeros(2, dtype=np.int64),
-    )
-    one, two = (FixedStep(2e-5)(Motion(s, 1.0, output_step=0.01)) for s in (plain, other))
-    assert one.data.attrs["contact_changes"] == two.data.attrs["contact_changes"] >= 2
-    np.testing.assert_allclose(two.data["tip"], one.data["tip"], atol=1e-11)
-    assert not two.data["contact_loss"].values.any()
 
 
 @pytest.mark.parametrize(

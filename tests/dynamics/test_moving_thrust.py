@@ -8,8 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicSpline
 from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
@@ -19,9 +17,9 @@ from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Table
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import FixedStep
 from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
 from dynamics.motion import Motion
+from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
 
 # Sines of a beam of 10 m, from its middle on, in two planes that share no mode.
 WAVES = np.pi * np.arange(1, 4) / 10.0
@@ -121,59 +119,15 @@ def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
         Motion(stands, 1.0)
 
 
-def by_runge_kutta(drawn: GapSystem, history: SCurve, times: np.ndarray) -> np.ndarray:
-    """(num_times, 2) tip in m and work of the drive in J, without a table and without modes."""
-    (row,) = drawn.rows
-    integral = [softer(s) for s in np.linspace(0.0, 2.0, 401)]
-    spline = CubicSpline(np.linspace(0.0, 2.0, 401), integral)
-
-    def change(time: float, state: np.ndarray) -> np.ndarray:
-        a, v = state[:6], state[6:12]
-        part = time / history.duration
-        s = history.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi))
-        speed = history.travel / history.duration * (1.0 - np.cos(2.0 * np.pi * part))
-        y = row @ a
-        force = 1e4 * np.sign(y) * max(abs(y) - 1e-4, 0.0)
-        pull = drawn.load - drawn.omega2 * a + spline(s) @ a - row * force
-        return np.concatenate([v, pull, [-0.5 * FORCE * speed * ((slope(s) @ a) ** 2).sum()]])
-
-    found = solve_ivp(
-        change, (0.0, times[-1]), np.zeros(13), "DOP853", times, rtol=1e-10, atol=1e-13,
-        max_step=2e-3,
-    )  # fmt: skip
-    return np.array([row @ found.y[:6], found.y[12]]).T
-
-
 def test_a_motion_by_an_integration_of_its_own() -> None:
-    """Reference: other code, Runge and Kutta's method (DOP853) on all of the matrix; the tip and
-    the work of the drive, and the order of both.
-    """
-    history = SCurve(2.0, 1.0)
-    drawn = replace(pressed_along(history), damping=np.zeros(6))
-    runs = [FixedStep(step)(Motion(drawn, 1.0, 1e-2)) for step in (1e-3, 5e-4, 2.5e-4)]
-    expected = by_runge_kutta(drawn, history, runs[0].time)
-    found = [np.array([run.data["tip"].values, run.data["drive_work"].values]).T for run in runs]
-    errors = [np.abs(one - expected).max(axis=0) / np.ptp(expected, axis=0) for one in found]
-    assert (errors[2] < 1e-4).all()
-    assert np.array(errors[:2]) / np.array(errors[1:]) == pytest.approx(4.0, abs=0.6)
-    put_in = float(np.abs(runs[2].data["work"]).max())
-    assert float(np.abs(expected[:, 1]).max()) > 0.02 * put_in
-    plain = replace(drawn, travels=[replace(drawn.travels[0], thrusts=())])
-    off = FixedStep(5e-4)(Motion(plain, 1.0, 1e-2)).data["tip"].values - expected[:, 0]
-    assert np.abs(off).max() > 0.05 * np.ptp(expected[:, 0])
-
-
-def test_what_has_not_moved_yet_moves_as_the_softened_boom() -> None:
-    """Reference: analytic, the same without a drive: to round-off before it begins, and to the
-    last bit where it never does.
-    """
-    later, never = (
-        replace(pressed_along(history), damping=np.zeros(6))
-        for history in (SCurve(2.0, 1.0, start=5.0), Table([0.0, 1.0], [0.0, 0.0]))
-    )
-    later, never, rest = (
-        FixedStep(1e-3)(Motion(one, 0.3, 1e-2))
-        for one in (later, never, replace(later, travels=()))
-    )
-    np.testing.assert_array_equal(never.states, rest.states)
-    assert later.states == pytest.approx(rest.states, abs=1e-10 * np.abs(rest.states).max())
+    """Reference: other code, scipy's DOP853 on the matrix: order two, the error, and what the force
+    changes. By the balance of energy the work of the drive is right with the motion."""
+    drawn = pressed_along(SCurve(2.0, 1.0))
+    motion = Motion(replace(drawn, damping=np.zeros(6)), 1.0, 1e-2)
+    expected = runge_kutta(motion, 2e-3)
+    errors = errors_in_the_step(motion, expected, np.array([1e-3, 5e-4, 2.5e-4]))
+    assert slopes(errors) == pytest.approx(2.0, abs=0.2)
+    assert errors[-1] < 1e-4
+    plain = replace(motion.system, travels=[replace(drawn.travels[0], thrusts=())])
+    (off,) = errors_in_the_step(replace(motion, system=plain), expected, np.array([5e-4]))
+    assert off > 0.05

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -171,26 +170,3 @@ def test_forces_that_never_converge_end_the_run(monkeypatch: pytest.MonkeyPatch)
     )
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
         FixedStep(1e-2)(Motion(wedge(0.3), 1.0, 1e-2, velocity=np.array([0.4, -0.7])))
-
-
-def test_rows_that_depend_on_each_other_share_the_load() -> None:
-    """Reference: other code path, one row. Two equal contacts of half the stiffness, and two equal
-    friction rows of half the force, move as one of each."""
-    one = wedge(0.3)
-    one = replace(
-        one, rows=one.rows[1:], laws=one.laws[1:], station_of_row=np.array([0]),
-        friction_rows=one.friction_rows[:1], frictions=[DryFriction(0.3, 0, 8.0, (0,))],
-    )  # fmt: skip
-    two = replace(
-        one, rows=one.rows[[0, 0]], laws=[one.laws[0].shared(0.5)] * 2,
-        station_of_row=np.array([0, 0]), friction_rows=one.friction_rows[[0, 0]],
-        frictions=[DryFriction(0.3, 0, 4.0, (0,)), DryFriction(0.3, 0, 4.0, (1,))],
-    )  # fmt: skip
-    runs = [
-        FixedStep(1e-4)(Motion(s, 0.1, 1e-3, velocity=np.array([0.4, 0.7]))) for s in (one, two)
-    ]
-    for name in ("tip", "contact_force", "friction_force"):
-        expected = runs[0].data[name].values
-        size = np.abs(expected).max()
-        np.testing.assert_allclose(runs[1].data[name], expected, atol=1e-8 * size)
-    assert runs[0].data["friction_loss"][-1] > 0.0

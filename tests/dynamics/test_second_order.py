@@ -12,7 +12,6 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.damping import pressed_ratios, with_ratio
 from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, Ramp
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
@@ -77,16 +76,6 @@ def test_what_tips_over_rests_on_its_stop(tipping: GapSystem) -> None:
     rest = (5.0 + STIFFNESS * CLEARANCE) / (STIFFNESS + NEGATIVE)
     found = equilibrium(pushed, pushed.load) / np.sqrt(MASS)
     np.testing.assert_allclose(found, [rest], rtol=1e-9)
-
-
-def test_a_load_that_changes_moves_what_tips_over(tipping: GapSystem) -> None:
-    """Reference: analytic. Under P t/T, y = P (sinh κt/κ − t)/(m κ² T) until the stop."""
-    free = replace(tipping, rows=np.zeros((0, 1)), laws=[], station_of_row=np.zeros(0, dtype=int))
-    pull = Excitation(np.array([2.0 / np.sqrt(MASS)]), Ramp(0.5))
-    run = FixedStep(0.05)(Motion(replace(free, excitations=[pull]), 0.5, 0.05))
-    t = run.time
-    expected = 2.0 * (np.sinh(GROWTH * t) / GROWTH - t) / (MASS * GROWTH**2 * 0.5)
-    np.testing.assert_allclose(run.data["tip"].values, expected, rtol=1e-10, atol=1e-16)
 
 
 def test_the_pressed_boom_is_damped_as_asked_for() -> None:

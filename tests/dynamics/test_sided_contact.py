@@ -64,16 +64,6 @@ def test_refuses_what_is_no_contact(above: ContactLaw, below: ContactLaw, messag
         SidedContact(above, below)
 
 
-def test_a_mass_pressed_from_both_sides_swings_on_both_springs(one_mass: OneMass) -> None:
-    """Reference: analytic, √(2 k/m) about F/(2 k), as long as both sides stay pressed."""
-    stiffness, load = 1.0e4, 10.0
-    law = PowerContact(stiffness, 1.0, clearance=-2.0e-3)
-    motion = FixedStep(1e-5)(Motion(one_mass(1.0, law, force=load), 0.2))
-    time = motion.data["time"].values
-    exact = load / (2.0 * stiffness) * (1.0 - np.cos(np.sqrt(2.0 * stiffness) * time))
-    assert np.abs(motion.data["tip"].values - exact).max() < 1e-5 * exact.max()
-
-
 def test_a_mass_leaves_one_side_of_what_presses_it(one_mass: OneMass) -> None:
     """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
     k, pressed, load = 1.0e4, 2.0e-3, 60.0

@@ -352,37 +352,6 @@ def test_units_do_not_matter() -> None:
         assert error < 1e-9 * np.abs(expected).max(), name
 
 
-def test_damping_takes_what_the_ledger_says(one_mass: OneMass) -> None:
-    """Reference: analytic, the step response of a damped oscillator, at a step of a period."""
-    mass, spring, dashpot, force = 4.0, 100.0, 2.0, 30.0
-    decay, omega = dashpot / (2.0 * mass), np.sqrt(spring / mass - 0.0625)
-    system = one_mass(mass, spring=spring, dashpot=dashpot, force=force)
-    run = FixedStep(1.0)(Motion(system, 5.0, 1.0))
-    t, rest = run.time, force / spring
-    swing = np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(omega * t))
-    speed = rest * np.exp(-decay * t) * np.sin(omega * t) * (omega + decay**2 / omega)
-    place = rest * (1.0 - swing)
-    kinetic, strain, work = 0.5 * mass * speed**2, 0.5 * spring * place**2, force * place
-    found = {"tip": place, "kinetic_energy": kinetic, "strain_energy": strain, "work": work}
-    for name, expected in (found | {"damping_loss": work - kinetic - strain}).items():
-        np.testing.assert_allclose(run.data[name], expected, atol=1e-11)
-    assert run.data["damping_loss"].values[-1] > 3.0
-
-
-def test_damping_and_contact_share_one_ledger(one_mass: OneMass) -> None:
-    """Reference: analytic. In the end all of the work not held at rest is dissipated."""
-    stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.1)
-    system = one_mass(4.0, stop, spring=100.0, dashpot=20.0, force=30.0)
-    run = AdaptiveStep()(Motion(system, 20.0, output_step=0.01))
-    depth = (30.0 - 10.0) / 1.01e4
-    end = run.data.isel(time=-1)
-    assert run.data.attrs["contact_changes"] >= 3
-    assert float(end["tip"]) == pytest.approx(0.1 + depth, rel=1e-6)
-    assert float(end["contact_force"][0]) == pytest.approx(1.0e4 * depth, rel=1e-6)
-    held = 0.5 * 100.0 * (0.1 + depth) ** 2 + 0.5 * 1.0e4 * depth**2
-    assert float(end["damping_loss"]) == pytest.approx(30.0 * (0.1 + depth) - held, rel=1e-6)
-
-
 def test_a_dashpot_hands_one_mode_the_speed_of_another() -> None:
     """Reference: other code, Runge and Kutta's method. A mass at 1 m/s drags one at rest by a
     dashpot across 0.02 mm to its stop, where it comes with 0.06 m/s.
