@@ -191,8 +191,7 @@ class Thrown:
 class Excitation:
     """A modal load that follows a history.
 
-    Between kinks it is integrated exactly where the history is straight, else over one time step
-    as a straight line.
+    Within a time step the straight line with its mean and first moment stands for the history.
 
     >>> lifted = replace(ball, excitations=[pt.Excitation(np.array([12.0]), pt.Ramp(0.1))])
     >>> height = pt.simulate(lifted, 1.0).data["height"]
