@@ -32,5 +32,8 @@ class RungeKutta:
         run = solve_ivp(rates, time[[0, -1]], start, "DOP853", time, rtol=fine, atol=fine)
         return pt.Trajectory.of_states(system, time, run.y[:n].T, run.y[n:].T)
 
+    def like(self, trajectory: pt.Trajectory) -> "RungeKutta":
+        return self
+
     def finer(self) -> "RungeKutta":
         return replace(self, tolerance=0.01 * self.tolerance)

@@ -153,7 +153,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
-    """Reference: analytic, the balance within 1e-5 of the load's work, with friction and dashpots
+    """Reference: analytic, the balance to round-off, with friction and dashpots
     as well, and errors that fall with the square of the step.
     """
     joint = {"friction": 0.2, "normal_forces": (45.0, 50.0), "dashpot": 50.0}
@@ -163,9 +163,7 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
         system = finite_element_system(boom, [LAW], element_length=1.0)
         steps = (4.0e-5, 2.0e-5, 1.0e-5)
         runs = [FixedStep(step)(Motion(system, 1.5, 5.0e-3)) for step in steps]
-        assert runs[-1].energy_residual < 1.0e-5
-        residuals = [run.energy_residual for run in runs]
-        assert residuals[1] < 0.35 * residuals[0]
+        assert max(run.energy_residual for run in runs) < 1.0e-11
         ends = [run.data["tip"].values for run in runs]
         first, then = (np.abs(b - a).max() for a, b in pairwise(ends))
         assert then < 0.35 * first

@@ -19,7 +19,7 @@ from dynamics.motion import Motion
 from geometry.boom import Boom
 
 # Nearly three times the default step: what is shown here does not need that.
-STEP = 1.2e-5
+STEP = 4.0e-6
 
 
 @pytest.fixture
@@ -55,9 +55,10 @@ def test_friction_takes_energy_and_the_ledger_closes(five_terms: GapSystem) -> N
     """Reference: analytic. The loss is force times way: never less, and all but what is held."""
     run = FixedStep(STEP)(Motion(five_terms, 3.0))
     loss = run.data["friction_loss"].values
-    assert np.diff(loss).min() >= 0.0
+    # Where it sticks, round-off is left.
+    assert np.diff(loss).min() >= -1e-15 * loss[-1]
     assert loss[-1] > 0.5 * float(run.data["work"][-1])
-    assert run.energy_residual < 1e-5
+    assert run.energy_residual < 1e-11
     force = np.abs(run.data["friction_force"].values)
     assert (force <= np.array([900.0, 1000.0]) * (1.0 + 1e-12)).all()
     # Both joints rub as hard as they can, and hold at times.
@@ -76,11 +77,13 @@ def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> Non
 
 
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
-    """Reference: a finer step, 4e-6 s. A quarter of the step leaves well below half the error."""
+    """Reference: a finer step, 1e-6 s. A sixteenth of the step leaves a tenth of the error at most:
+    where a joint begins to stick or to slip within a step, the order is one.
+    """
     tips = [
         FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
-        for step in (6.4e-5, 1.6e-5, 4e-6)
+        for step in (2.56e-4, 1.6e-5, 1e-6)
     ]
     errors = [np.abs(tip - tips[-1]).max() / np.ptp(tips[-1]) for tip in tips[:-1]]
-    assert errors[0] < 5e-5
-    assert errors[1] < errors[0] / 6.0
+    assert errors[0] < 1e-3
+    assert errors[1] < errors[0] / 10.0

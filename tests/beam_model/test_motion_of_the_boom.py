@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -15,7 +14,6 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
-from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
@@ -30,20 +28,24 @@ def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> Gap
 
 
 def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
-    """Reference: analytic, nothing is lost: below 1e-4 of the work of the load."""
+    """Reference: analytic, nothing is lost: below 1e-9 of the work of the load."""
     run = AdaptiveStep()(Motion(five_terms, 10.0))
     assert run.data.attrs["contact_changes"] > 1000
     held = sum(run.data[f"{kind}_energy"].values for kind in ("kinetic", "strain", "contact"))
     work = run.data["work"].values
-    assert np.abs(held - work).max() < 1e-4 * np.abs(work).max()
-    assert run.energy_residual < 1e-4
+    assert np.abs(held - work).max() < 1e-9 * np.abs(work).max()
+    assert run.energy_residual < 1e-9
 
 
-def test_the_step_of_the_paper_is_refused(five_terms: GapSystem) -> None:
-    """7 s in 4375 steps, as the paper's finite element run with friction."""
-    message = "the motion is not finite at a step of 0.0016 s; halve the step"
-    with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
-        FixedStep(1.6e-3)(Motion(five_terms, 7.0, output_step=1.6e-3))
+def test_the_step_of_the_paper_keeps_the_first_peak(five_terms: GapSystem) -> None:
+    """Reference: other code, a finer step; 7 s in 4375 steps, as the paper's finite element run
+    with friction. Micro-impacts before the peak scatter it by 2 %.
+    """
+    coarse = FixedStep(1.6e-3)(Motion(five_terms, 7.0, output_step=1.6e-3))
+    fine = FixedStep(1.0e-5)(Motion(five_terms, 0.7))
+    assert coarse.data.attrs["steps"] == 4375
+    assert coarse.energy_residual < 1e-10
+    assert coarse.first_peak() == pytest.approx(fine.first_peak(), rel=0.02)
 
 
 def test_four_and_five_terms_coincide_until_they_touch(

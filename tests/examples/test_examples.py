@@ -38,7 +38,8 @@ def test_a_ball_bounces(example: ModuleType) -> None:
     fall = np.sqrt(2.0 * example.HEIGHT / example.GRAVITY)
     omega = np.sqrt(example.STIFFNESS)
     contact = 2.0 / omega * (np.pi - np.arctan(fall * omega))
-    assert motion.first_contact == pytest.approx(fall, rel=1e-9)
+    # The straight line through a step misses the parabola by g h²/8v.
+    assert motion.first_contact == pytest.approx(fall, rel=1e-7)
     height = motion.data["height"].interp(time=2.0 * fall + contact, method="quadratic")
     assert float(height) == pytest.approx(example.HEIGHT, rel=1e-6)
     assert motion.energy_residual < 1e-9
@@ -87,7 +88,7 @@ def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
 
 @of("own_integrator")
 def test_another_integrator_finds_the_same(example: ModuleType) -> None:
-    """Reference: other code, the motion from contact to contact; before chaos parts the two."""
+    """Reference: other code, the time step; before chaos parts the two."""
     system = pt.GapSystem(
         omega2=np.array([4.0, 31.0]),
         load=np.array([2.0, 3.0]),
@@ -98,7 +99,7 @@ def test_another_integrator_finds_the_same(example: ModuleType) -> None:
         observers={"tip": pt.Observer(np.array([1.0, 0.4]))},
     )
     other = pt.simulate(system, 2.0, 1e-2, integrator=example.RungeKutta())
-    ours = pt.simulate(system, 2.0, 1e-2, integrator=pt.AdaptiveStep())
+    ours = pt.simulate(system, 2.0, 1e-2, integrator=pt.FixedStep(1e-5))
     assert ours.data.attrs["contact_changes"] >= 2
     np.testing.assert_allclose(other.data["tip"], ours.data["tip"], atol=1e-6)
     assert other.first_contact == pytest.approx(ours.first_contact, abs=1e-2)

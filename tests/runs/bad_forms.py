@@ -11,7 +11,7 @@ FORMS = {
     "unknown key": (
         "duration = 0.6",
         "colour = 1",
-        "time.colour: unknown key; known ones are duration, output_step, step",
+        "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
     ),
     "misspelled key": (
         "duration = 0.6",
@@ -235,12 +235,13 @@ FORMS = {
     "controls in a key": (
         "duration = 0.6",
         '"\\u001b[31m" = 1',
-        "time.\\x1b[31m: unknown key; known ones are duration, output_step, step",
+        "time.\\x1b[31m: unknown key; known ones are duration, output_step, step, tolerance",
     ),
     "key that nobody can read": (
         "duration = 0.6",
         f"{'k' * 5000} = 1",
-        f"time.{'k' * 52} ... {'k' * 57}: unknown key; known ones are duration, output_step, step",
+        f"time.{'k' * 52} ... {'k' * 57}: unknown key; known ones are duration, output_step, step, "
+        "tolerance",
     ),
     "more supports than anybody builds": (
         "supports = [0.0, 2.0]",

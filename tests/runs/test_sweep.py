@@ -351,7 +351,7 @@ def test_a_model_that_fails_leaves_a_gap(planned: Planned, ran: list[Case]) -> N
     assert data["failed"].values.tolist() == [[1, 0], [0, 0]]
     assert np.isnan(data["tip_amplitude"].values).tolist() == [[True, False], [False, False]]
     (failure,) = outcomes[0].failures.values()
-    assert failure == "a step of 1e-12 s makes 9e+11 steps; make it longer"
+    assert failure == "a step of 1e-12 s makes 2e+11 steps; make it longer"
     with open("out/sweep.csv", newline="", encoding="utf-8") as file:
         assert [row["failure"] for row in csv.DictReader(file)] == [failure, "", "", ""]
 
