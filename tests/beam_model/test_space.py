@@ -232,8 +232,8 @@ def test_the_vertical_plane_is_the_flat_boom(
     spatial_boom: Boom, kind: str, duration: float
 ) -> None:
     """Reference: the flat model. Without load sideways and without friction nothing leaves the
-    plane. Every press amplifies round-off, the series' more so: the tips differ by 1e-14 of their
-    range after 0.15 s, the series' by 3e-8 after 0.25 s, the elements' by 5e-9 after 0.5 s.
+    plane. Every press amplifies round-off: the elements' heads differ by 8e-15 of their range after
+    0.15 s, by 9e-11 after 0.4 s and by 3e-8 after 0.5 s.
     """
     (joint,) = spatial_boom.joints
     flat = replace(spatial_boom, joints=(replace(joint, lateral_clearance=None),))
@@ -245,7 +245,7 @@ def test_the_vertical_plane_is_the_flat_boom(
             else [kantorovich_segment(s, 6, "complete", True) for s in boom.segments]
         )
         system = gap_system(boom, models, [LAW], lateral)
-        runs.append(FixedStep(2.0e-5)(Motion(system, duration)))
+        runs.append(FixedStep(1.0e-4)(Motion(system, duration)))
     plane, space = runs
     assert plane.data.attrs["contact_changes"] > 10
     same(plane, space, {name: name for name in ("tip", "head", "tail")}, 1e-9)
@@ -255,18 +255,18 @@ def test_the_vertical_plane_is_the_flat_boom(
 
 def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
     """Reference: analytic, the exchange of y and z. Loads, sections, plays and laws with it;
-    friction too, which couples the planes. The presses amplify round-off to 4e-9."""
+    friction too, which couples the planes. The presses amplify round-off to 1e-13."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
     upright = gap_system(boom, beams(boom), [LAW], [LATERAL_LAW])
     side = rolled(boom)
     lying = gap_system(side, beams(side), [LATERAL_LAW], [LAW])
     assert len(upright.frictions) == 16
-    one, other = (FixedStep(2.0e-5)(Motion(system, 0.25)) for system in (upright, lying))
+    one, other = (FixedStep(1.0e-4)(Motion(system, 0.25)) for system in (upright, lying))
     assert one.data["friction_loss"].values[-1] > 0.3
     names = ("tip", "head", "tail")
-    same(one, other, {name: f"{name}_lateral" for name in names}, 1e-7)
-    same(one, other, {f"{name}_lateral": name for name in names}, 1e-7)
+    same(one, other, {name: f"{name}_lateral" for name in names}, 1e-9)
+    same(one, other, {f"{name}_lateral": name for name in names}, 1e-9)
 
 
 def test_friction_rows_rub_across_what_presses(spatial_boom: Boom) -> None:

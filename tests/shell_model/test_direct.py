@@ -133,7 +133,7 @@ def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
 @pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
 def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: float) -> None:
     """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
-    one has many moments and moves by the splitting with a short step.
+    one has many moments and moves in short steps of exact flow.
     """
     stop = Stop(0, 10.0, 1.0e-3, stiffness, 0.0, exponent)
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
@@ -172,7 +172,7 @@ def test_friction_below_its_limit_holds_exactly() -> None:
 
 @pytest.mark.slow
 def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
-    """Reference: other code, the splitting of the reduced shell, through the first blow.
+    """Reference: other code, the reduced shell in steps of exact flow, through the first blow.
 
     Where a station presses and sticks at once, the sum of both forces moves the boom; which part is
     whose hangs on how the last slip ended.

@@ -20,7 +20,6 @@ TINY = Sizes(
     hard_steps=(2.5e-4, 1.25e-4),
     shifts=(5.0, 50.0, 300.0, 1500.0, 8000.0),
     moments=4,
-    fine_step=2.5e-6,
 )
 
 
