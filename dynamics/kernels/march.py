@@ -20,7 +20,7 @@ from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow
 from dynamics.kernels.moving_rows import Moving, average_rows, copy_rows, place_rows
 from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
-from dynamics.kernels.terms import contact_energy, term_force, term_slope
+from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 
 # Positions in the tally. From the work on as in ``dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
@@ -156,19 +156,46 @@ def _note_contacts(state: State, laws: Laws, end: Array, free: Array, time: floa
 
 
 @njit(**LOOP)
+def _stored(laws: Laws, j: int, y: float) -> tuple[float, float]:
+    """Return the energy in J of contact j at a gap in m, and the slope of its force in N/m."""
+    energy, slope = 0.0, 0.0
+    for t in range(laws.first_term[j], laws.first_term[j + 1]):
+        energy += term_energy(laws.terms[t], y)
+        slope += term_slope(laws.terms[t], y)
+    return energy, slope
+
+
+@njit(**LOOP)
+def _slope_at(laws: Laws, j: int, side: float, energy: float) -> float:
+    """Return the slope in N/m of the force of contact j where a side has stored an energy in J."""
+    onset = laws.limits[j]["high"] if side > 0.0 else laws.limits[j]["low"]
+    low, high = 0.0, 1.0e-12
+    while _stored(laws, j, onset + side * high)[0] < energy:
+        low, high = high, 2.0 * high
+    for _ in range(10):
+        middle = 0.5 * (low + high)
+        if _stored(laws, j, onset + side * middle)[0] < energy:
+            low = middle
+        else:
+            high = middle
+    return _stored(laws, j, onset + side * high)[1]
+
+
+@njit(**LOOP)
 def _note_peaks(
     state: State, laws: Laws, compliance: Array, time: float, end: Array, force: Array,
-    peaks: Array,
+    free: Array, peaks: Array,
 ) -> None:  # fmt: skip
     """Keep the largest contact forces: at the end of a step that resolves the press, else its mean.
 
-    An unresolved press swings about its mean from step to step.
+    An unresolved press swings about its mean from step to step. What resolves it is told by the
+    slope at its deepest place, where the row's kinetic energy, (y_free − y₀)²/(4 C), is stored too.
     """
     for j in range(laws.limits.size):
-        largest, slope = 0.0, 0.0
+        largest = 0.0
         for t in range(laws.first_term[j], laws.first_term[j + 1]):
             largest += term_force(laws.terms[t], end[j])
-            slope += term_slope(laws.terms[t], end[j])
+        before, slope = state.y[j], _stored(laws, j, end[j])[1]
         phase = np.sqrt(2.0 * max(slope, 0.0) * compliance[j, j])
         if phase > RESOLVED:
             largest = force[j]
@@ -176,7 +203,12 @@ def _note_peaks(
             peaks[j] = largest
         if abs(largest) > state.crest[j]:
             state.crest[j] = abs(largest)
-            state.resolving[j] = time * RESOLVED / phase if phase > RESOLVED else np.inf
+            state.resolving[j] = np.inf
+            if phase > RESOLVED:
+                moving = (free[j] - before) ** 2 / (4.0 * compliance[j, j])
+                most = _slope_at(laws, j, largest, _stored(laws, j, before)[0] + moving)
+                phase = np.sqrt(2.0 * max(most, slope) * compliance[j, j])
+                state.resolving[j] = time * RESOLVED / phase
 
 
 @njit(**SUMS)
@@ -314,7 +346,7 @@ def march(
                     rise = stored[1, t] - stored[0, t] + stored[3, t] - stored[2, t]
                     state.driven[m + t] -= 0.5 * rise
             _note_contacts(state, laws, y_end, free, time)
-            _note_peaks(state, laws, matrix, time, y_end, now, peak)
+            _note_peaks(state, laws, matrix, time, y_end, now, free, peak)
             work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
             tally[WORK] += work
             tally[DAMPING] += lost

@@ -130,26 +130,27 @@ def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
     assert AdaptiveStep(0.5)(Motion(system, 0.1, 1e-3, *start)).data.attrs["steps"] >= 200
 
 
+@pytest.mark.parametrize("speed", [0.3, 0.45, 0.77])
 @pytest.mark.parametrize(
-    ("stiffness", "exponent", "within"), [(1e8, 1.0, 0.05), (1e10, 1.5, 0.08), (1e12, 2.0, 0.08)]
+    ("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e12, 2.0), (1e15, 3.0)]
 )
 def test_a_peak_that_no_step_resolves_is_marked(
-    one_mass: OneMass, stiffness: float, exponent: float, within: float
+    one_mass: OneMass, stiffness: float, exponent: float, speed: float
 ) -> None:
-    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1). The told step finds it; the slope of a
-    coarse one is not yet that of the deepest place, so that a second one may be told."""
-    depth = ((exponent + 1.0) * 0.5 * 0.5**2 / stiffness) ** (1.0 / (exponent + 1.0))
+    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), which the step that is told finds: half
+    of √(m/F′(p))."""
+    depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
+    force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)
     system = one_mass(2.0, PowerContact(stiffness, exponent, 1e-3))
-    motion = Motion(system, 0.02, 1e-3, velocity=np.array([0.5]))
-    steps, peaks = [1e-3], []
-    while steps[-1] < np.inf:
-        run = FixedStep(steps[-1])(motion)
-        steps.append(run.data.attrs["resolving_step"])
-        peaks.append(float(np.abs(run.data["contact_force_peak"]).max()))
-    assert len(peaks) <= 3
-    assert peaks[0] < 0.5 * stiffness * depth**exponent
-    assert peaks[1] == pytest.approx(stiffness * depth**exponent, rel=within)
-    assert peaks[-1] == pytest.approx(stiffness * depth**exponent, rel=0.03)
+    motion = Motion(system, 0.02, 1e-3, velocity=np.array([speed]))
+    coarse = FixedStep(1e-3)(motion)
+    told = coarse.data.attrs["resolving_step"]
+    assert told == pytest.approx(0.5 * np.sqrt(2.0 / slope), rel=0.02)
+    fine = FixedStep(told)(motion)
+    assert fine.data.attrs["resolving_step"] == np.inf
+    peaks = [float(np.abs(run.data["contact_force_peak"]).max()) for run in (coarse, fine)]
+    assert peaks[0] < 0.5 * force
+    assert peaks[1] == pytest.approx(force, rel=0.05)
 
 
 def test_what_is_simulated_is_the_motion() -> None:
