@@ -178,7 +178,8 @@ def _slope_at(laws: Laws, j: int, side: float, energy: float) -> float:
             low = middle
         else:
             high = middle
-    return _stored(laws, j, onset + side * high)[1]
+    slope: float = _stored(laws, j, onset + side * high)[1]
+    return slope
 
 
 @njit(**LOOP)

@@ -180,16 +180,6 @@ def test_two_coupled_rows_against_located_events() -> None:
     assert error < run.data.attrs["step_error"] < 1e-3
 
 
-def test_friction_never_exceeds_its_limit_nor_gives_energy() -> None:
-    run = FixedStep(1e-3)(Motion(COUPLED, 20.0, output_step=1e-3, velocity=THROWN))
-    force = np.abs(run.data["friction_force"].values)
-    assert (force <= LIMITS * (1.0 + 1e-12)).all()
-    assert (force.max(axis=0) > 0.999 * LIMITS).all()
-    loss = np.diff(run.data["friction_loss"].values)
-    assert loss.min() >= -1e-15
-    assert float(run.data["friction_loss"][-1]) > 0.5
-
-
 def test_what_sticks_does_not_creep() -> None:
     """100 000 steps of shaken modes, of which friction holds two places to the last digits."""
     generator = np.random.default_rng(4)

@@ -352,26 +352,6 @@ def test_units_do_not_matter() -> None:
         assert error < 1e-9 * np.abs(expected).max(), name
 
 
-def test_a_dashpot_hands_one_mode_the_speed_of_another() -> None:
-    """Reference: other code, Runge and Kutta's method. A mass at 1 m/s drags one at rest by a
-    dashpot across 0.02 mm to its stop, where it comes with 0.06 m/s.
-    """
-    system = GapSystem(
-        omega2=np.zeros(2),
-        load=np.zeros(2),
-        rows=np.array([[1.0, 0.0]]),
-        laws=[PowerContact(1.0e8, 1.0, clearance=2.0e-5)],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"tip": Observer(np.array([1.0, 0.0]))},
-        dashpots=10.0 * np.ones((1, 2)),
-    )
-    motion = Motion(system, 1.0e-3, 1.0e-5, velocity=np.array([0.0, 1.0]))
-    run, states = FixedStep(2e-6)(motion), runge_kutta(motion, 1e-6)
-    np.testing.assert_allclose(run.states, states, atol=1e-4 * np.abs(states[:, 0]).max())
-    assert run.first_contact > 5e-4
-
-
 def test_a_closed_contact_is_a_spring() -> None:
     """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms, and
     the impulse that momentum and loads ask for."""
