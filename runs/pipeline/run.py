@@ -322,18 +322,18 @@ def _move(
     if summary.step_error is None and system.frictions and case.regular:
         with stages.stage("twice the step") as told:
             summary.step_error = plan.step_error(trajectory, told)
+    ensemble = None
+    if case.ensemble is not None and system.laws:
+        with stages.stage("ensemble") as told:
+            ensemble = plan.ensemble(case.ensemble, trajectory, executor, told)
+        peaks = members.common_peaks(ensemble, cutoff)
+        summary.ensemble = members.sum_up(ensemble, peaks)
+        with stages.stage("horizons") as told:
+            summary.horizons = plan.horizons(case.ensemble, trajectory, executor, told)
+        if cutoff is not None and peaks is not None and motion.from_rest:
+            with stages.stage("step counts"):
+                summary.steps_for_peaks = steps_for_peaks(motion, peaks, cutoff)
     summary.seconds = stages.seconds
-    if case.ensemble is None or not system.laws:
-        return Finished(trajectory, summary, None)
-    with stages.stage("ensemble") as told:
-        ensemble = plan.ensemble(case.ensemble, trajectory, executor, told)
-    peaks = members.common_peaks(ensemble, cutoff)
-    summary.ensemble = members.sum_up(ensemble, peaks)
-    with stages.stage("horizons") as told:
-        summary.horizons = plan.horizons(case.ensemble, trajectory, executor, told)
-    if cutoff is not None and peaks is not None and motion.from_rest:
-        with stages.stage("step counts"):
-            summary.steps_for_peaks = steps_for_peaks(motion, peaks, cutoff)
     return Finished(trajectory, summary, ensemble)
 
 

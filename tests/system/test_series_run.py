@@ -224,11 +224,11 @@ def test_a_summary_of_another_version_is_one_line(
     shutil.copytree(series, again)
     (again / ".manifest").unlink()
     summary = json.loads((series / "summary.json").read_text(encoding="utf-8"))
-    del summary["models"]["kantorovich-5"]["step_error"]
+    del summary["models"]["kantorovich-5"]["contact_changes"]
     (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     assert protractile(command, again) == 2
     assert capsys.readouterr().err == (
-        f"protractile: {again}: summary.json: models: kantorovich-5: step_error: Field "
+        f"protractile: {again}: summary.json: models: kantorovich-5: contact_changes: Field "
         "required; is damaged or another version's; run the case again\n"
     )
 
