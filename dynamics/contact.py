@@ -110,11 +110,13 @@ class ContactLaw(ABC):
                 found = float(abs(law.force(np.array(side * np.exp(log_depth)))))
                 return float(np.log(max(found, _LEAST)) - wanted)
 
-            deepest = excess(_DEEPEST) > 0.0
-            depth = brentq(excess, -_DEEPEST, _DEEPEST) if deepest else _DEEPEST
+            ends = excess(-_DEEPEST), excess(_DEEPEST)
+            depth = brentq(excess, -_DEEPEST, _DEEPEST) if ends[0] < 0.0 < ends[1] else 0.0
             return float(law.slope(np.array(side * np.exp(depth))))
 
-        return max(slope(side) for side in {term.side for term in law.terms})
+        # What overflows far beyond the force is none that matters.
+        with np.errstate(over="ignore"):
+            return max(slope(side) for side in {term.side for term in law.terms})
 
     def _sum(self, of_term: OfTerm, y: Array) -> Array:
         gaps = np.asarray(y, dtype=np.float64)

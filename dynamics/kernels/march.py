@@ -29,6 +29,9 @@ TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = r
 # 1 − cos(hω/2), 3 %, of a half-sine at most.
 RESOLVED = 0.5
 
+# Penetration in m beyond which no energy is sought.
+_DEEPEST = 1.0
+
 # Iterations of the forces of moving thrusts, and their change, as a part of them, that ends these.
 _MOST_ROUNDS, _AGREED = 40, 1.0e-10
 
@@ -167,10 +170,11 @@ def _stored(laws: Laws, j: int, y: float) -> tuple[float, float]:
 
 @njit(**LOOP)
 def _slope_at(laws: Laws, j: int, side: float, energy: float) -> float:
-    """Return the slope in N/m of the force of contact j where a side has stored an energy in J."""
+    """Return the slope in N/m of the force of contact j where a side, ±1, stores an energy in J."""
     onset = laws.limits[j]["high"] if side > 0.0 else laws.limits[j]["low"]
     low, high = 0.0, 1.0e-12
-    while _stored(laws, j, onset + side * high)[0] < energy:
+    # A side without a law stores nothing, which round-off of a force may ask for.
+    while high < _DEEPEST and _stored(laws, j, onset + side * high)[0] < energy:
         low, high = high, 2.0 * high
     for _ in range(10):
         middle = 0.5 * (low + high)
@@ -207,7 +211,7 @@ def _note_peaks(
             state.resolving[j] = np.inf
             if phase > RESOLVED:
                 moving = (free[j] - before) ** 2 / (4.0 * compliance[j, j])
-                most = _slope_at(laws, j, largest, _stored(laws, j, before)[0] + moving)
+                most = _slope_at(laws, j, np.sign(largest), _stored(laws, j, before)[0] + moving)
                 phase = np.sqrt(2.0 * max(most, slope) * compliance[j, j])
                 state.resolving[j] = time * RESOLVED / phase
 

@@ -106,7 +106,7 @@ def sections() -> dict[str, list[tuple[str, str, str]]]:
 
 def test_each_section_is_that_of_a_study_in_its_order() -> None:
     for name, title in zip(PROVING, sections(), strict=True):
-        source = (ROOT / "runs" / "studies" / f"{name}.py").read_text(encoding="utf-8")
+        source = (ROOT / "studies" / f"{name}.py").read_text(encoding="utf-8")
         assert name in STAND_INS or f'"{title}"' in source
 
 
