@@ -4,8 +4,8 @@
 Within a step of length h all row forces are constant and every mode moves exactly. Contact forces
 are discrete gradients of their energy (Gonzalez 1996), friction obeys its set-valued law on the
 displacement of the step (Moreau 1988), dashpots resist its mean rate. The energy balances to
-round-off at every h; the step is second order, and reversible where nothing is lost. The time loop
-is :func:`dynamics.kernels.march.march`.
+round-off at every h. The step is second order, through stick-slip first order, and reversible where
+nothing is lost. The time loop is :func:`dynamics.kernels.march.march`.
 """
 
 from __future__ import annotations

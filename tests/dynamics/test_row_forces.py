@@ -17,6 +17,7 @@ from dynamics.failure import NumericsError
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
+from dynamics.kernels import march
 from dynamics.kernels.row_forces import row_laws, row_problem, solve_rows
 from dynamics.kernels.terms import discrete_gradient
 from dynamics.motion import Motion
@@ -170,3 +171,20 @@ def test_forces_that_never_converge_end_the_run(monkeypatch: pytest.MonkeyPatch)
     )
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
         FixedStep(1e-2)(Motion(wedge(0.3), 1.0, 1e-2, velocity=np.array([0.4, -0.7])))
+
+
+@pytest.mark.parametrize(("side", "slope"), [(-1.0, 1.0e9), (1.0, 0.0)])
+def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
+    side: float, slope: float
+) -> None:
+    """Reference: analytic, a linear stop below. Round-off may give a force above it a sign."""
+    system = GapSystem(
+        omega2=np.zeros(1),
+        load=np.zeros(1),
+        rows=np.ones((1, 1)),
+        laws=[PowerContact(1.0e9, 1.0, 0.0).lower()],
+        station_of_row=np.array([0]),
+        stations=[0.0],
+        observers={},
+    )
+    assert march._slope_at(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)
