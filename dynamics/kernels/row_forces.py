@@ -30,7 +30,7 @@ from dynamics.kernels.terms import discrete_gradient
 _MOST_ITERATIONS = 25
 
 # Residual, as a part of the largest force, that is converged, and the round-off of displacements.
-_CONVERGED, _ROUND_OFF = 1.0e-12, 4.0e-16
+_CONVERGED, _ROUND_OFF = 1.0e-13, 4.0e-16
 
 # A pivot below this part of its diagonal: the row depends on those before it and keeps its force.
 _DEPENDENT = 1.0e-11
