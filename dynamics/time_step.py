@@ -29,9 +29,9 @@ from dynamics.kernels.march import (
     STEPS,
     TALLY,
     Course,
+    LoopSystem,
     Output,
     State,
-    System,
     march,
 )
 from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
@@ -94,12 +94,12 @@ class Integration:
         return cls(motion, output, state)
 
     @cached_property
-    def _system(self) -> System:
+    def _system(self) -> LoopSystem:
         system = self.motion.system
         loads = np.array([x.load for x in system.excitations]).reshape(-1, system.num_modes)
         omega2, load = (np.ascontiguousarray(x) for x in (system.omega2, system.load))
         moving, thrusts = moving_rows(system), thrust_arrays(system)
-        return System(omega2, load, loads, row_laws(system), moving, thrusts)
+        return LoopSystem(omega2, load, loads, row_laws(system), moving, thrusts)
 
     @cached_property
     def _tables(self) -> dict[int, tuple[Flow, Array]]:

@@ -36,7 +36,7 @@ _DEEPEST = 1.0
 _MOST_ROUNDS, _AGREED = 40, 1.0e-10
 
 
-class System(NamedTuple):
+class LoopSystem(NamedTuple):
     """The parts of a gap system that stay as they are.
 
     Args:
@@ -218,7 +218,7 @@ def _note_peaks(
 
 @njit(**SUMS)
 def _set_loads(
-    system: System, mean: Array, change: Array, middle: float, part: float,
+    system: LoopSystem, mean: Array, change: Array, middle: float, part: float,
     load: Array, tilt: Array,
 ) -> None:  # fmt: skip
     """Set the mean loads (num_modes,) and their changes within a part of a step.
@@ -248,7 +248,7 @@ def _agree(found: Array, used: Array) -> bool:
 
 @njit(**LOOP)
 def march(
-    system: System, flow: Flow, compliances: Array, state: State, course: Course, substeps: int,
+    system: LoopSystem, flow: Flow, compliances: Array, state: State, course: Course, substeps: int,
     problem: Problem, output: Output,
 ) -> bool:  # fmt: skip
     """Advance by as many output intervals as ``output`` has; return whether all steps converged.
