@@ -278,8 +278,11 @@ def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
         text=True,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (room, room)),
     )
-    assert (ended.returncode, ended.stderr.count("\n")) == (3, 1)
-    assert ended.stderr.startswith("protractile: out of memory (")
+    assert ended.stderr.count("\n") == 1
+    # Debian 13's OpenBLAS ends the process itself.
+    if not ended.stderr.startswith("OpenBLAS error: Memory allocation still failed"):
+        assert ended.returncode == 3
+        assert ended.stderr.startswith("protractile: out of memory (")
 
 
 def test_a_contact_without_digits_is_one_line(protractile: Protractile) -> None:
