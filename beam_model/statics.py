@@ -21,7 +21,7 @@ from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import gap_system, standing_system
 from dynamics.contact import ContactLaw
-from dynamics.equilibrium import equilibrium
+from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
@@ -40,7 +40,7 @@ class Hold(NamedTuple):
     moment: float
 
 
-class Rest(NamedTuple):
+class StaticState(NamedTuple):
     """A boom at rest under the loads of t = 0.
 
     Args:
@@ -82,12 +82,12 @@ class Elements:
         return [_unsupported(self.boom, number) for number in range(len(self.boom.segments))]
 
 
-def at_rest(
+def static_state(
     boom: Boom,
     laws: Sequence[ContactLaw],
     lateral_laws: Sequence[ContactLaw],
     elements: Elements | None = None,
-) -> Rest:
+) -> StaticState:
     """A boom of beam elements at rest, of Timoshenko's where all sections are known.
 
     Args:
@@ -101,21 +101,19 @@ def at_rest(
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
     system = standing_system(boom, modes, laws, lateral_laws).gathered()
-    now = np.zeros(1)
-    load = system.load + sum(x.history(now)[0] * x.load for x in system.excitations)
-    position = equilibrium(system, load)
+    position = rest_at(system)
     holds = [
         hold
         for number, component in enumerate(elements.unsupported)
         for hold in _holds(boom, number, component, modes, position)
     ]
-    return Rest(boom, system, position, holds)
+    return StaticState(boom, system, position, holds)
 
 
 def drawn_out(
     boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[ContactLaw]
 ) -> GapSystem:
-    """The beams of :func:`at_rest`, and all that its drives move."""
+    """The beams of :func:`static_state`, and all that its drives move."""
     return gap_system(boom, _segments(boom), laws, lateral_laws).gathered()
 
 

@@ -97,6 +97,17 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     return np.asarray(unit * unscaled @ found.x)
 
 
+def rest_at(system: GapSystem, time: float = 0.0) -> Array:
+    """Return where a system rests, (num_modes,) in √kg·m, at a time in s.
+
+    It is extended as it is then, under the loads of then.
+
+    Raises:
+        NumericsError: nothing holds it against them.
+    """
+    return equilibrium(system.standing(time), system.load_at(time))
+
+
 def _of_rows(of_term: OfTerm, y: Array, terms: Terms) -> Array:
     """(num_rows,) what the terms of each row say of its gap.
 

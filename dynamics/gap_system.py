@@ -203,6 +203,11 @@ class GapSystem:
         excited = [np.abs(x.load) * x.history.peak for x in self.excitations]
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
+    def load_at(self, time: float) -> Array:
+        """Return what acts at a time in s, (num_modes,) in N/√kg."""
+        changing = (x.load * x.history(np.array([time]))[0] for x in self.excitations)
+        return sum(changing, self.load.copy())
+
     def gathered(self) -> GapSystem:
         """The same motion, with all that stays constant from t = 0 on in ``load``."""
         constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]

@@ -264,12 +264,8 @@ def rest_of(system: GapSystem, case: Case, position: Array) -> Array | None:
 
 def _held(system: GapSystem, case: Case) -> Array:
     """(num_modes,) in N/√kg, what has acted for ever before t = 0."""
-    held = system.released.copy()
-    if case.start.state == "equilibrium":
-        held += system.load
-        for excitation in system.excitations:
-            held += excitation.load * excitation.history(np.zeros(1))[0]
-    return held
+    resting = case.start.state == "equilibrium"
+    return system.released + system.load_at(0.0) if resting else system.released
 
 
 def series_notes(case: Case) -> list[str]:

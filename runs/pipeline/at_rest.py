@@ -11,7 +11,7 @@ import numpy as np
 
 from dynamics.contact import ContactLaw
 from dynamics.drive.travel import Travel
-from dynamics.equilibrium import equilibrium
+from dynamics.equilibrium import rest_at
 from dynamics.excitation import Excitation, followed
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
@@ -31,21 +31,6 @@ _SIGNS: tuple[Side, Side] = (1, -1)
 
 # A part of the farthest way that is none.
 _SAME_WAY = 1.0e-12
-
-
-def load_at(system: GapSystem, time: float) -> Array:
-    """(num_modes,) what acts at a time in s, in N/√kg."""
-    changing = (x.load * x.history(np.array([time]))[0] for x in system.excitations)
-    return sum(changing, system.load.copy())
-
-
-def rest_at(system: GapSystem, time: float) -> Array:
-    """(num_modes,) where it rests, drawn out as it is at a time in s and under the loads of then.
-
-    Raises:
-        NumericsError: it has no rest.
-    """
-    return equilibrium(system.standing(time), load_at(system, time))
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer knows by heart: weights, and what the boom at rest does and what holds it."""
+"""Statics of a boom as beam elements: masses, deflection at rest, reactions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from beam_model.statics import Elements, Hold, Rest, at_rest, handed_on
+from beam_model.statics import Elements, StaticState, handed_on, static_state
 from dynamics.contact import ContactLaw
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
@@ -38,8 +38,8 @@ class Statics(NamedTuple):
     Both are without play where no model of the case has any.
     """
 
-    played: Rest
-    tied: Rest
+    played: StaticState
+    tied: StaticState
 
 
 def statics(case: Case, boom: Boom) -> Statics | None:
@@ -48,8 +48,10 @@ def statics(case: Case, boom: Boom) -> Statics | None:
     try:
         with np.errstate(all="ignore"):
             elements = Elements(boom)
-            tied = at_rest(boom.play_free, [], [], elements)
-            return Statics(at_rest(boom, *laws(case, boom), elements) if with_play else tied, tied)
+            tied = static_state(boom.play_free, [], [], elements)
+            if not with_play:
+                return Statics(tied, tied)
+            return Statics(static_state(boom, *laws(case, boom), elements), tied)
     except NUMERICS:
         return None
 
@@ -61,37 +63,72 @@ def laws(case: Case, boom: Boom) -> tuple[Sequence[ContactLaw], Sequence[Contact
     return seen.laws, seen.lateral_laws
 
 
-def reactions(rest: Rest) -> list[Reaction]:
-    """What holds the boom to the ground."""
-    boom, deep, along = rest.boom, _depths(rest), _along(rest)
-    return [
-        Reaction(
-            boom.segments[number].name,
-            x,
-            force,
-            moment,
-            deep.get((number, x)),
-            along[number, x],
-        )
-        for number, x, force, moment in _told(rest)
-        if (number, x) not in _stands(boom)
-    ]
+def reactions(state: StaticState) -> list[Reaction]:
+    """Return what holds the boom to the ground."""
+    between = _between_segments(state.boom)
+    return [one for place, one in _held(state).items() if place not in between]
 
 
-def _stands(boom: Boom) -> set[tuple[int, float]]:
-    """Where segments stand in others."""
+def _between_segments(boom: Boom) -> set[tuple[int, float]]:
+    """Stations of joints by the inner segment and x in m."""
     return {(joint.inner, x) for joint in boom.joints for x in joint.stations}
 
 
-def _told(rest: Rest) -> list[Hold]:
-    """Holds of the ground and of joints, each once and without round-off."""
-    boom = rest.boom
-    grounded = {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
-    grounded |= {(stop.segment, stop.x) for stop in boom.stops}
-    grounded |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
-    holds = [hold for hold in handed_on(boom, rest.holds) if hold[:2] in grounded | _stands(boom)]
+def _held(state: StaticState) -> dict[tuple[int, float], Reaction]:
+    """By segment and x in m what the ground and joints do, each once and without round-off."""
+    boom, depths, along = state.boom, _depths(state), _along(state)
+    places = _between_segments(boom)
+    places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
+    places |= {(stop.segment, stop.x) for stop in boom.stops}
+    places |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
+    holds = [hold for hold in handed_on(boom, state.holds) if hold[:2] in places]
     least = ROUND_OFF * max((abs(hold.force) for hold in holds), default=0.0)
-    return [hold._replace(force=hold.force if abs(hold.force) > least else 0.0) for hold in holds]
+    return {
+        hold[:2]: Reaction(
+            segment=boom.segments[hold.segment].name,
+            x=hold.x,
+            force=hold.force if abs(hold.force) > least else 0.0,
+            moment=hold.moment,
+            depth=depths.get(hold[:2]),
+            along=along[hold[:2]],
+        )
+        for hold in holds
+    }
+
+
+def _along(state: StaticState) -> dict[tuple[int, float], float]:
+    """What feet and cylinders push along the boom in N, by the segment and x in m; else 0."""
+    boom = state.boom
+    found: dict[tuple[int, float], float] = defaultdict(float)
+    for number, segment in enumerate(boom.segments):
+        if segment.foot is not None:
+            found[number, segment.foot.x] = on_foot(boom.segments, boom.joints, number)
+    for number, cylinder in enumerate(boom.cylinders, start=1):
+        push = cylinder.direction[0] * cylinder_force(state, number)
+        foot = boom.segments[cylinder.segment].foot
+        found[cylinder.segment, cylinder.x] += push
+        if foot is not None:
+            found[cylinder.segment, foot.x] -= push
+    return found
+
+
+def _depths(state: StaticState) -> dict[tuple[int, float], float]:
+    """How far in m stations along z are pressed in, by the inner segment and x in m."""
+    boom = state.boom
+    joints = [joint for joint in boom.joints if not joint.tied]
+    inner = [one.inner for _ in boom.directions for one in joints for _ in one.stations]
+    owners = [*inner, *(stop.segment for stop in boom.stops)]
+    found = pressed(boom, state.system, state.position)
+    return {
+        (number, one.x): one.depth
+        for number, one in zip(owners, found, strict=True)
+        if one.direction == "z"
+    }
+
+
+def cylinder_force(state: StaticState, number: int) -> float:
+    """Return the force of a cylinder's spring in N, of the first one with number 1."""
+    return float(state.system.observers[force_name(number)].row @ state.position)
 
 
 def print_statics(case: Case, boom: Boom, console: Console) -> None:
@@ -101,56 +138,26 @@ def print_statics(case: Case, boom: Boom, console: Console) -> None:
     if found is None:
         console.print("No rest under the loads of t = 0 is found.")
         return
-    console.print(_holds(found.played, case.system))
+    played, tied = found
+    console.print(_reactions(played, case.system))
     if boom.cylinders:
-        console.print(_cylinders(found.played, case.system))
-    hertz = [_first_frequency(rest) for rest in found]
-    console.print(_line(found, hertz), highlight=False)
-    for tilt in tilts(found.played.boom, found.played.system, found.played.position):
-        console.print(
-            f"Play turns {tilt.inner!r} by {tilt.rotation * TO_MILLI:.4g} mrad in {tilt.outer!r}, "
-            f"which moves the tip by {tilt.tip * TO_MILLI:.4g} mm.",
-            highlight=False,
-            markup=False,
-        )
-    told = "as beam elements"
-    for caution in (*of_tip(told, found.played.tip, boom), *of_period(told, hertz[0], case)):
-        console.print(caution, markup=False, highlight=False)
-
-
-def _along(rest: Rest) -> dict[tuple[int, float], float]:
-    """What feet and cylinders push along the boom in N, by the segment and x in m; else 0."""
-    boom = rest.boom
-    found: dict[tuple[int, float], float] = defaultdict(float)
-    for number, segment in enumerate(boom.segments):
-        if segment.foot is not None:
-            found[number, segment.foot.x] = on_foot(boom.segments, boom.joints, number)
-    for number, cylinder in enumerate(boom.cylinders, start=1):
-        push = cylinder.direction[0] * cylinder_force(rest, number)
-        foot = boom.segments[cylinder.segment].foot
-        found[cylinder.segment, cylinder.x] += push
-        if foot is not None:
-            found[cylinder.segment, foot.x] -= push
-    return found
-
-
-def _depths(rest: Rest) -> dict[tuple[int, float], float]:
-    """How far in m stations along z are pressed in, by the inner segment and x in m."""
-    boom = rest.boom
-    inner = [
-        joint.inner
-        for _ in boom.directions
-        for joint in boom.joints
-        if not joint.tied
-        for _ in joint.stations
+        console.print(_cylinders(played, case.system))
+    hertz = [
+        float(pressed_modes(state.system, state.position)[0][0]) / (2.0 * np.pi) for state in found
     ]
-    owners = [*inner, *(stop.segment for stop in boom.stops)]
-    found = pressed(boom, rest.system, rest.position)
-    return {
-        (number, one.x): one.depth
-        for number, one in zip(owners, found, strict=True)
-        if one.direction == "z"
-    }
+    lines = [
+        f"At rest the tip is at {played.tip * TO_MILLI:.4g} mm, without play at "
+        f"{tied.tip * TO_MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
+        f"joints pressed, {hertz[1]:.4g} Hz without play."
+    ]
+    lines += [
+        f"Play turns {tilt.inner!r} by {tilt.rotation * TO_MILLI:.4g} mrad in {tilt.outer!r}, "
+        f"which moves the tip by {tilt.tip * TO_MILLI:.4g} mm."
+        for tilt in tilts(played.boom, played.system, played.position)
+    ]
+    model = "as beam elements"
+    for line in (*lines, *of_tip(model, played.tip, boom), *of_period(model, hertz[0], case)):
+        console.print(line, markup=False, highlight=False)
 
 
 def _masses(boom: Boom, system: System) -> Table:
@@ -175,58 +182,37 @@ def _masses(boom: Boom, system: System) -> Table:
     return table
 
 
-def _holds(rest: Rest, system: System) -> Table:
+def _reactions(state: StaticState, system: System) -> Table:
     """Forces on the segments where something holds them, and how deep contacts are pressed."""
+    held = list(_held(state).values())
+    pushed = any(one.along for one in held)
+    along = ["along (kN)"] if pushed else []
     x = f"x ({system.label('m')})"
-    headings = ["force (kN)", "moment (kN m)", "pressed in (mm)"]
-    along = _along(rest)
-    if any(along.values()):
-        headings.insert(1, "along (kN)")
-    table = Table("holds at rest", x, *headings)
-    deep = _depths(rest)
-    for hold in _told(rest):
-        moment = f"{hold.moment * TO_KILO:.4g}" if abs(hold.moment) > _NO_MOMENT else ""
-        depth = f"{deep[hold[:2]] * TO_MILLI:.3g}" if hold[:2] in deep else ""
-        cells = [f"{hold.force * TO_KILO:.4g}", moment, depth]
-        if any(along.values()):
-            here = along.get(hold[:2])
-            cells.insert(1, f"{here * TO_KILO:.4g}" if here else "")
-        where = f"{system.of(hold.x, 'm'):g}"
-        table.add_row(rest.boom.segments[hold.segment].name, where, *cells)
+    table = Table("holds at rest", x, "force (kN)", *along, "moment (kN m)", "pressed in (mm)")
+    for one in held:
+        table.add_row(
+            one.segment,
+            f"{system.of(one.x, 'm'):g}",
+            f"{one.force * TO_KILO:.4g}",
+            *([f"{one.along * TO_KILO:.4g}" if one.along else ""] if pushed else []),
+            f"{one.moment * TO_KILO:.4g}" if abs(one.moment) > _NO_MOMENT else "",
+            "" if one.depth is None else f"{one.depth * TO_MILLI:.3g}",
+        )
     return table
 
 
-def _cylinders(rest: Rest, system: System) -> Table:
+def _cylinders(state: StaticState, system: System) -> Table:
     """Their lines, and the forces along them: of two side by side together."""
     lengths = [f"{name} ({system.label('m')})" for name in ("x", "length", "arm")]
     table = Table("cylinder of", *lengths, "force (kN)")
-    for number, cylinder in enumerate(rest.boom.cylinders, start=1):
-        segment = rest.boom.segments[cylinder.segment]
-        force = cylinder_force(rest, number)
+    for number, cylinder in enumerate(state.boom.cylinders, start=1):
+        segment = state.boom.segments[cylinder.segment]
         arm = None if segment.foot is None else cylinder.arm(segment.foot)
         table.add_row(
             segment.name,
             f"{system.of(cylinder.x, 'm'):g}",
             f"{system.of(cylinder.length, 'm'):.5g}",
             "" if arm is None else f"{system.of(arm, 'm'):.5g}",
-            f"{force * TO_KILO:.4g}",
+            f"{cylinder_force(state, number) * TO_KILO:.4g}",
         )
     return table
-
-
-def cylinder_force(rest: Rest, number: int) -> float:
-    """Of a cylinder's spring in N, from 1 on."""
-    return float(rest.system.observers[force_name(number)].row @ rest.position)
-
-
-def _first_frequency(rest: Rest) -> float:
-    """In Hz, with the joints pressed."""
-    return float(pressed_modes(rest.system, rest.position)[0][0]) / (2.0 * np.pi)
-
-
-def _line(found: Statics, hertz: Sequence[float]) -> str:
-    return (
-        f"At rest the tip is at {found.played.tip * TO_MILLI:.4g} mm, without play at "
-        f"{found.tied.tip * TO_MILLI:.4g} mm; the first frequency is {hertz[0]:.4g} Hz with the "
-        f"joints pressed, {hertz[1]:.4g} Hz without play."
-    )

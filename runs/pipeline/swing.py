@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.drive.travel import Travel
+from dynamics.equilibrium import rest_at
 from dynamics.excitation import followed
 from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
@@ -17,7 +18,6 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Swing
-from runs.pipeline.at_rest import rest_at
 from runs.pipeline.motion import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from

@@ -15,7 +15,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system, tied_system
-from beam_model.statics import at_rest
+from beam_model.statics import static_state
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
@@ -122,7 +122,7 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
     (segment,) = boom.segments
     rest_at = Support(5.0, stiffness=1.0e9)
     held = replace(segment, supports=(*segment.supports, rest_at))
-    pin, prop = at_rest(replace(boom, segments=(held,), cylinders=()), [], []).holds
+    pin, prop = static_state(replace(boom, segments=(held,), cylinders=()), [], []).holds
     expected = (10.0e3 * 10.0 - 50.0e3 * 0.35) / 5.0
     assert prop.force == pytest.approx(expected, rel=1e-3)
     assert pin.force == pytest.approx(10.0e3 - expected, rel=1e-3)

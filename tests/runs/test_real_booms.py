@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from beam_model.boom_modes import BoomModes
-from beam_model.statics import Elements, Rest, at_rest
+from beam_model.statics import Elements, StaticState, static_state
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
@@ -111,19 +111,19 @@ def level(name: str) -> Case:
     return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
 
 
-def rest_of(case: Case, boom: Boom) -> tuple[Rest, list[float]]:
+def rest_of(case: Case, boom: Boom) -> tuple[StaticState, list[float]]:
     """At rest, and the stiffness of each joint's contacts along z."""
     model = next(model for model in case.models if not model.play_free)
     found = joined(case, boom, model)
     stiffness = [law.terms[0].stiffness for law in found.laws]
-    return at_rest(boom, found.laws, found.lateral_laws), stiffness
+    return static_state(boom, found.laws, found.lateral_laws), stiffness
 
 
 # Those that ship with the depth of a lug, and may have one of their pin.
 LUFFED = [path.stem for path in sorted(CASES.glob("*.toml")) if "depth =" in path.read_text()]
 
 
-def second_order(boom: Boom, rest: Rest) -> float:
+def second_order(boom: Boom, rest: StaticState) -> float:
     """∫ P w′ dx of all segments in N·m: what axial forces do about the foot as the boom bends."""
     modes = BoomModes(boom, Elements(boom).segments)
     found = 0.0

@@ -12,6 +12,7 @@ import pytest
 from beam_model.finite_element import finite_element_segments
 from beam_model.lines import lines
 from beam_model.segment_model import gap_system
+from dynamics.equilibrium import rest_at
 from dynamics.excitation import Step
 from dynamics.line import Line
 from geometry.boom import Boom, Load, Material, Segment, Support
@@ -19,7 +20,6 @@ from geometry.compression import Compression
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
-from runs.pipeline.at_rest import rest_at
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
