@@ -10,9 +10,18 @@ from functools import cached_property
 import numpy as np
 
 from geometry.arrays import Array, Indices
-from geometry.section import COMPONENT, Direction, Face, Offset, Plate, Section, SectionError, Side
+from geometry.section import (
+    COMPONENT,
+    BoxSection,
+    Direction,
+    Face,
+    Offset,
+    Plate,
+    Section,
+    SectionError,
+    Side,
+)
 from geometry.shear_flow import ShearFlow, carriers
-from geometry.unequal_box import UnequalBox
 from geometry.walls import trapezoids
 
 # Places closer than this part of a section's size are one.
@@ -185,7 +194,7 @@ def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> S
     if len(section.plates) != 4 or len(section.faces) != 4:
         return section.in_order
     bottom, right, top, left = (plate.thickness for plate in section.plates)
-    return UnequalBox(section.size("z"), section.size("y"), top, bottom, right, left)
+    return BoxSection(section.size("z"), section.size("y"), top, right, bottom, left)
 
 
 def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:

@@ -259,6 +259,9 @@ def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
 class BoxSection(Section):
     """Rectangular box, described by the mid-lines and thicknesses of its four walls.
 
+    Its corners are filled: all properties but those of shear and torsion are those of the outer
+    rectangle less the inner one.
+
     >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     >>> print(f"{1e4 * box.area:.0f} cm²")
     96 cm²
@@ -266,8 +269,10 @@ class BoxSection(Section):
     Args:
         height: distance of the flange mid-lines (along z) in m.
         width: distance of the web mid-lines (along y) in m.
-        flange: thickness of the two flanges (z = ±height/2) in m.
-        web: thickness of the two webs (y = ±width/2) in m.
+        flange: thickness of the upper flange in m, and of the lower one unless that is given.
+        web: thickness of the right web (y > 0) in m, and of the left one unless that is given.
+        bottom_flange: thickness of the lower flange in m; None where it is ``flange``.
+        left_web: thickness of the left web in m; None where it is ``web``.
 
     Raises:
         SectionError: a dimension is not positive and finite, or the walls fill the box.
@@ -277,62 +282,92 @@ class BoxSection(Section):
     width: float
     flange: float
     web: float
+    bottom_flange: float | None = None
+    left_web: float | None = None
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if not (np.isfinite(value) and value > 0.0):
+            if value is not None and not (np.isfinite(value) and value > 0.0):
                 raise SectionError(f"{field.name} must be a positive number of m, got {value}")
-        if self.flange >= self.height or self.web >= self.width:
+        for name, other in (("bottom_flange", self.flange), ("left_web", self.web)):
+            if getattr(self, name) == other:
+                object.__setattr__(self, name, None)
+        flange, web = (0.5 * sum(pair) for pair in self._walls)
+        if flange >= self.height or web >= self.width:
+            flanges, webs = (
+                " and ".join(f"{thickness} m" for thickness in dict.fromkeys(pair))
+                for pair in self._walls
+            )
             raise SectionError(
-                f"walls of {self.flange} m (flange) and {self.web} m (web) leave no room in a box "
+                f"walls of {flanges} (flange) and {webs} (web) leave no room in a box "
                 f"of {self.height} m x {self.width} m; the walls must be thinner"
             )
 
     @property
+    def _walls(self) -> tuple[Offset, Offset]:
+        """Thicknesses in m of the upper and the lower flange, and of the right and the left web."""
+        flanges = self.flange, self.bottom_flange or self.flange
+        return flanges, (self.web, self.left_web or self.web)
+
+    @property
     def area(self) -> float:
         """Cross-sectional area in m²."""
-        return 2.0 * (self.height * self.web + self.width * self.flange)
+        return self.shear_area + self.lateral_shear_area
 
     @property
     def second_moment_of_area(self) -> float:
         """Second moment about y (bending in the plane x-z) in m⁴."""
-        return _hollow_rectangle(self.width, self.height, self.web, self.flange)
+        return _hollow_rectangle(self.width, self.height, *reversed(self._walls))[1]
 
     @property
     def lateral_second_moment_of_area(self) -> float:
         """Second moment about z (bending in the plane x-y) in m⁴."""
-        return _hollow_rectangle(self.height, self.width, self.flange, self.web)
+        return _hollow_rectangle(self.height, self.width, *self._walls)[1]
 
     @property
     def torsion_constant(self) -> float:
         """Bredt's second formula, 4 A² / ∮ ds/t, in m⁴ (Bredt 1896)."""
-        enclosed = self.height * self.width
-        return 4.0 * enclosed**2 / (2.0 * self.height / self.web + 2.0 * self.width / self.flange)
+        (top, bottom), (right, left) = self._walls
+        around = self.height / right + self.height / left
+        around += self.width / top + self.width / bottom
+        return 4.0 * (self.height * self.width) ** 2 / around
 
     @property
     def shear_area(self) -> float:
         """Area that carries a shear force along z: the two webs, in m²."""
-        return 2.0 * self.height * self.web
+        return self.height * sum(self._walls[1])
 
     @property
     def lateral_shear_area(self) -> float:
         """Area that carries a shear force along y: the two flanges, in m²."""
-        return 2.0 * self.width * self.flange
+        return self.width * sum(self._walls[0])
+
+    @property
+    def centroid(self) -> Offset:
+        """(y, z) in m from the middle of the mid-lines."""
+        y, _ = _hollow_rectangle(self.height, self.width, *self._walls)
+        z, _ = _hollow_rectangle(self.width, self.height, *reversed(self._walls))
+        return y, z
 
     def __str__(self) -> str:
-        wall = " / ".join(dict.fromkeys(f"{1e3 * t:.4g}" for t in (self.flange, self.web)))
-        return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {wall}"
+        flanges, webs = self._walls
+        walls = [f"{1e3 * thickness:.4g}" for thickness in (*flanges, *webs)]
+        if self.mirrors == ("y", "z"):
+            walls = list(dict.fromkeys(walls))
+        return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {' / '.join(walls)}"
 
     def turned(self) -> BoxSection:
         """The box lying on its side, y and z exchanged."""
-        return BoxSection(self.width, self.height, self.web, self.flange)
+        (top, bottom), (right, left) = self._walls
+        return BoxSection(self.width, self.height, right, top, left, bottom)
 
     @property
     def plates(self) -> tuple[Plate, ...]:
         """Bottom, right, top and left."""
-        b, h = 0.5 * self.width, 0.5 * self.height
-        return rectangle((-b, -h), (b, h), self.flange, self.web, self.flange, self.web)
+        (y, z), b, h = self.centroid, 0.5 * self.width, 0.5 * self.height
+        (top, bottom), (right, left) = self._walls
+        return rectangle((-b - y, -h - z), (b - y, h - z), bottom, right, top, left)
 
     @property
     def faces(self) -> tuple[Face, ...]:
@@ -341,19 +376,39 @@ class BoxSection(Section):
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """Both."""
-        return "y", "z"
+        """That of y where the webs are alike, that of z where the flanges are."""
+        alike: dict[Direction, bool] = {"y": not self.left_web, "z": not self.bottom_flange}
+        return tuple(axis for axis, same in alike.items() if same)
 
     def carriers(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """The webs along z, the flanges along y."""
-        return ((1, 0.5), (3, -0.5)) if direction == "z" else ((2, -0.5), (0, 0.5))
+        """The webs along z, the flanges along y, by the law of the lever."""
+        y, z = self.centroid
+        if direction == "z":
+            return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)
+        return (2, -0.5 - z / self.height), (0, 0.5 - z / self.height)
 
 
-def _hollow_rectangle(width: float, height: float, web: float, flange: float) -> float:
-    """Second moment of a hollow rectangle about the axis parallel to its width, in m⁴."""
-    outside = (width + web) * (height + flange) ** 3
-    inside = (width - web) * (height - flange) ** 3
-    return (outside - inside) / 12.0
+def _hollow_rectangle(
+    width: float, height: float, webs: Offset, flanges: Offset
+) -> tuple[float, float]:
+    """Return the centroid of a hollow rectangle and its second moment about that.
+
+    Args:
+        width, height: of the mid-lines in m.
+        webs, flanges: thicknesses in m, of flanges that of the upper one first.
+
+    Returns:
+        The height above the middle of the mid-lines in m, and the moment about the axis parallel
+        to the width in m⁴, by the parallel axes' theorem (Steiner).
+    """
+    web, flange = 0.5 * sum(webs), 0.5 * sum(flanges)
+    # The outer rectangle's middle is as far above that of the mid-lines as the hole's is below it.
+    middle = 0.25 * (flanges[0] - flanges[1])
+    whole, hole = (width + web) * (height + flange), (width - web) * (height - flange)
+    centre = middle * (whole + hole) / (whole - hole)
+    outside, inside = (width + web) * (height + flange) ** 3, (width - web) * (height - flange) ** 3
+    steiner = whole * (middle - centre) ** 2 - hole * (middle + centre) ** 2
+    return centre, (outside - inside) / 12.0 + steiner
 
 
 def infer_outer_section(

@@ -86,7 +86,7 @@ class ShearFlow:
 def shear_centre(plates: Sequence[Plate]) -> Offset:
     """(y, z) in m from the axis, through which a force does not twist the section.
 
-    >>> box = pt.UnequalBox(0.6, 0.4, top=0.02, bottom=0.02, right=0.02, left=0.01)
+    >>> box = pt.BoxSection(0.6, 0.4, flange=0.02, web=0.02, left_web=0.01)
     >>> print(f"{1e3 * pt.shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
     50.0 mm to the thicker web's side
     """

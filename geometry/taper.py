@@ -31,6 +31,8 @@ def between(tail: Section, head: Section, part: float) -> Section:
 
 
 def _mixed(tail: Any, head: Any, part: float) -> Any:
+    if tail is None:
+        return None
     if isinstance(tail, tuple):
         return tuple(_mixed(one, other, part) for one, other in zip(tail, head, strict=True))
     return head if part == 1.0 else tail + part * (head - tail)

@@ -75,7 +75,6 @@ if TYPE_CHECKING:
     from geometry.segment import Segment as Segment
     from geometry.shear_flow import shear_centre as shear_centre
     from geometry.support import Support as Support
-    from geometry.unequal_box import UnequalBox as UnequalBox
     from protractile.cases import change as change
     from protractile.cases import load_case as load_case
     from protractile.cases import run_case as run_case
@@ -124,7 +123,6 @@ _HOMES = {
         "geometry.segment": "Collar Diaphragm Lateral Material PointMass Segment",
         "geometry.support": "Support",
         "geometry.shear_flow": "shear_centre",
-        "geometry.unequal_box": "UnequalBox",
         "protractile.cases": "change load_case run_case",
         "runs": "CASES",
         "runs.case.messages": "BadInput",

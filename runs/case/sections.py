@@ -12,7 +12,6 @@ from pydantic import Discriminator, Field, Tag
 from geometry.polygon import closed_polygon
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
-from geometry.unequal_box import UnequalBox
 from runs.case.limits import MOST_FACETS, Few, In, Length, Number, Table
 
 
@@ -64,8 +63,8 @@ class UnequalBoxTable(ShapeTable):
     web: Length
     """the thickness of the two webs in m"""
 
-    def section(self) -> UnequalBox:
-        return UnequalBox(self.height, self.width, self.top, self.bottom, self.web, self.web)
+    def section(self) -> BoxSection:
+        return BoxSection(self.height, self.width, self.top, self.web, bottom_flange=self.bottom)
 
 
 class PolygonTable(ShapeTable):

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -174,7 +174,9 @@ def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
 def _inferred(case: Case) -> Plates:
     sections = [segment.section for segment in build_boom(case).segments]
     return [
-        SectionTable(**asdict(section))
+        SectionTable(
+            height=section.height, width=section.width, flange=section.flange, web=section.web
+        )
         if given.section is None and isinstance(section, BoxSection)
         else None
         for given, section in zip(case.segments, sections, strict=True)

@@ -21,8 +21,8 @@ from dynamics.excitation import Step
 from geometry.axial import with_compression
 from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from geometry.load import Load
+from geometry.profiles import octagon
 from geometry.section import BoxSection
-from geometry.unequal_box import UnequalBox
 from runs.case.kinds.finite_element import FiniteElementTable
 from studies import taper
 
@@ -191,7 +191,7 @@ def test_sections_fit_where_they_touch() -> None:
 
 def test_ends_are_alike() -> None:
     """Reference: the messages."""
-    other = UnequalBox(0.3, 0.35, 0.01, 0.01, 0.008, 0.008)
+    other = octagon(0.3, 0.35, 0.05, 0.01, 0.01, 0.008)
     with pytest.raises(ValueError, match=r"segment\[1\].head_section: has other shapes than the"):
         Boom((replace(arm(), head_section=other),), ())
     loaded = replace(arm(), masses=(PointMass(8.0, 10.0),), section=None)

@@ -236,6 +236,13 @@ def test_no_outer_box_so_compact(
             "walls of 0.04 m (flange) and 0.4 m (web) leave no room in a box of 0.6 m x 0.4 m; "
             "the walls must be thinner",
         ),
+        ("bottom_flange", 0.0, "bottom_flange must be a positive number of m, got 0.0"),
+        (
+            "bottom_flange",
+            1.3,
+            "walls of 0.04 m and 1.3 m (flange) and 0.01 m (web) leave no room in a box of 0.6 m "
+            "x 0.4 m; the walls must be thinner",
+        ),
         (
             "flange",
             0.7,

@@ -9,7 +9,6 @@ import pytest
 from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Direction, Section
 from geometry.shear_flow import ShearFlow, shear_centre
-from geometry.unequal_box import UnequalBox
 from tests.geometry.test_polygon import ALL, HEXAGON, OCTAGON, TRAPEZOID, U
 
 
@@ -94,7 +93,7 @@ def test_shear_areas_and_centre_against_small_steps(section: PolygonSection) -> 
 
 def test_the_shear_centre_of_a_box_with_unequal_webs() -> None:
     """Reference: other code, sums over small steps; with equal webs it is on the axis."""
-    box = UnequalBox(0.6, 0.4, 0.02, 0.02, 0.02, 0.01)
+    box = BoxSection(0.6, 0.4, 0.02, 0.02, left_web=0.01)
     assert shear_centre(box.plates)[0] == pytest.approx(_by_small_steps(box, "z")[1], abs=1e-7)
     assert shear_centre(box.plates)[0] > 0.04
     assert shear_centre(BoxSection(0.6, 0.4, 0.02, 0.01).plates) == pytest.approx((0, 0), abs=1e-15)

@@ -14,7 +14,6 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Segment
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import BoxSection, Section
-from geometry.unequal_box import UnequalBox
 from runs import cli
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
@@ -83,7 +82,7 @@ def boom_of(sections: Sequence[str]) -> Boom:
         ),
         (
             polygon(0.6, 0.5, (0.01, 0.006, 0.008, 0.006)),
-            UnequalBox(0.6, 0.5, 0.008, 0.01, 0.006, 0.006),
+            BoxSection(0.6, 0.5, 0.008, 0.006, bottom_flange=0.01),
         ),
     ],
     ids=["hexagon", "octagon", "U", "U with one facet", "polygon"],

@@ -17,14 +17,13 @@ from geometry.boom import PointMass, Support
 from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection, Section
-from geometry.unequal_box import UnequalBox
 from shell_model.reduction.segment import ShiftedSolver
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)
-UNEQUAL = UnequalBox(0.4889, 0.3259, top=0.010, bottom=0.005, right=0.0065, left=0.0065)
+UNEQUAL = BoxSection(0.4889, 0.3259, flange=0.010, web=0.0065, bottom_flange=0.005)
 
 
 @cache

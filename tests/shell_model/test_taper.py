@@ -20,7 +20,6 @@ from geometry.load import Load
 from geometry.profiles import hexagon, u_section
 from geometry.section import COMPONENT, BoxSection, Section
 from geometry.taper import mean_area
-from geometry.unequal_box import UnequalBox
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
@@ -32,8 +31,8 @@ ENDS: Mapping[str, tuple[Section, Section]] = {
     "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
     "wider head": (BoxSection(0.25, 0.2, 0.006, 0.006), BoxSection(0.4, 0.3, 0.008, 0.006)),
     "unequal box": (
-        UnequalBox(0.4, 0.3, 0.006, 0.010, 0.006, 0.006),
-        UnequalBox(0.22, 0.25, 0.006, 0.008, 0.005, 0.005),
+        BoxSection(0.4, 0.3, 0.006, 0.006, bottom_flange=0.010),
+        BoxSection(0.22, 0.25, 0.006, 0.005, bottom_flange=0.008),
     ),
     "hexagon": (
         hexagon(0.40, 0.36, 0.2, 0.0065, 0.0065, 0.0065),

@@ -15,8 +15,7 @@ from beam_model.finite_element import finite_element_segment, finite_element_seg
 from beam_model.segment_model import tied_system
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Support
-from geometry.section import Section
-from geometry.unequal_box import UnequalBox
+from geometry.section import BoxSection, Section
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
@@ -67,7 +66,7 @@ def _boom(outer: Section, inner: Section) -> Boom:
     )
 
 
-INNER = UnequalBox(0.46, 0.28, top=0.008, bottom=0.005, right=0.005, left=0.005)
+INNER = BoxSection(0.46, 0.28, flange=0.008, web=0.005, bottom_flange=0.005)
 
 
 def _reduced(boom: Boom, options: ShellOptions) -> ReducedShell:
