@@ -70,6 +70,23 @@ def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
     return np.array([law.slope(y) for law, y in zip(system.laws, gaps, strict=True)])
 
 
+def add_damping(
+    system: GapSystem, ratio: float, rayleigh: tuple[float, float], rest: Array | None = None
+) -> GapSystem:
+    """Return the system with damping besides its segments' own.
+
+    Args:
+        system: of a boom.
+        ratio: as of :func:`with_ratio`.
+        rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
+        rest: as of :func:`pressed_modes`.
+    """
+    mass, stiffness = rayleigh
+    rates = system.damping + mass + stiffness * np.maximum(system.omega2, 0.0)
+    system = replace(system, damping=rates)
+    return system if ratio == 0.0 else with_ratio(system, ratio, rest)
+
+
 def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
     """The system with ζ = ``ratio`` in the first modes of the pressed boom, beside its own damping.
 

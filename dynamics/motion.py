@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from dynamics.arrays import Array
+from dynamics.damping import add_damping
+from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 
 # Steps of a motion at the default tolerance at most: chaotic motion has no step that keeps it.
@@ -65,3 +67,52 @@ class Motion:
     def from_rest(self) -> bool:
         """Whether nothing moves or is bent at t = 0."""
         return not (self.position.any() or self.velocity.any())
+
+
+def begin(
+    system: GapSystem,
+    duration: float,
+    output_step: float,
+    at_rest: bool,
+    damping_ratio: float = 0.0,
+    rayleigh: tuple[float, float] = (0.0, 0.0),
+) -> Motion:
+    """Return the motion of a boom's system under its loads from t = 0 on.
+
+    Args:
+        system: of the boom with all its loads, those that are over at t = 0 among them.
+        duration, output_step: of the motion in s.
+        at_rest: whether it starts from rest under the loads of t = 0; straight and unloaded else.
+        damping_ratio: of the boom's modes with its joints pressed.
+        rayleigh: factors of the mass in 1/s and of the stiffness in s.
+
+    Raises:
+        NumericsError: there is no static equilibrium to start from.
+    """
+    system, position, velocity = initial_state(system, at_rest)
+    rest = rest_of(system, at_rest, position)
+    moving = add_damping(system, damping_ratio, rayleigh, rest)
+    return Motion(moving, duration, output_step, position, velocity)
+
+
+def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:
+    """Return the system from t = 0 on, and its initial a and ȧ, (num_modes,) each.
+
+    Arguments and errors as of :func:`begin`.
+    """
+    system = system.gathered()
+    held = _held(system, at_rest)
+    # Straight, though shims may press.
+    straight = not at_rest and not held.any()
+    position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
+    return system, position, system.thrown
+
+
+def rest_of(system: GapSystem, at_rest: bool, position: Array) -> Array | None:
+    """Return the initial a, (num_modes,), if the system rests there under constant loads alone."""
+    return position if at_rest and (_held(system, at_rest) == system.load).all() else None
+
+
+def _held(system: GapSystem, at_rest: bool) -> Array:
+    """Return (num_modes,) in N/√kg, what has acted for ever before t = 0."""
+    return system.released + system.load_at(0.0) if at_rest else system.released

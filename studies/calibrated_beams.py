@@ -19,7 +19,7 @@ from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
 from dynamics.reduction.condensation import condensed
 from geometry.arrays import Array
-from runs.case.kinds.finite_element import FIELDS, FiniteElementTable
+from runs.case.kinds.finite_element import FIELDS, BeamElements
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from studies.motions import all_built, friction_case, model_of, shell_of, side_by_side
@@ -138,7 +138,7 @@ class Compared:
 
 def calibrated(case: Case, model: Model, fields: bool) -> Model:
     """A beam that a shell of the case calibrates, with its contact."""
-    return FiniteElementTable.model_validate(
+    return BeamElements.model_validate(
         {
             "name": "calibrated",
             "kind": "finite-element",

@@ -25,11 +25,11 @@ from geometry.boom import Boom
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.model import Built, of_kind
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.model import Built, Workshop, of_kind
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 
 CASE = CASES / "friction-walk.toml"
@@ -69,9 +69,9 @@ def model_of(case: Case, name: str) -> Model:
     return next(model for model in case.models if model.name == name)
 
 
-def shell_of(case: Case) -> ShellTable:
+def shell_of(case: Case) -> Shell:
     """The shell by the name that the cases give it."""
-    (shell,) = of_kind(ShellTable, [model_of(case, "shell")])
+    (shell,) = of_kind(Shell, [model_of(case, "shell")])
     return shell
 
 
@@ -79,7 +79,7 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
     """Any model of a case as a gap system, shells on this process alone."""
     from mpi4py import MPI
 
-    return build(case, boom, model, workshop(MPI.COMM_SELF)).system
+    return build(case, boom, model, Workshop(MPI.COMM_SELF)).system
 
 
 def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
@@ -88,11 +88,11 @@ def all_built(case: Case, models: Mapping[str, Model]) -> dict[str, Built]:
 
     boom = build_boom(case)
     with TemporaryDirectory(prefix="protractile-") as scratch:
-        tools = workshop(MPI.COMM_SELF, cache=Cache(Path(scratch)))
+        tools = Workshop(MPI.COMM_SELF, cache=Cache(Path(scratch)))
         return {name: build(case, boom, model, tools) for name, model in models.items()}
 
 
-def finer(shell: ShellTable, part: float) -> ShellTable:
+def finer(shell: Shell, part: float) -> Shell:
     """The shell with all edges this part of what they were."""
     tolerance = shell.contact_tolerance
     if tolerance != "any":

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
 from studies.motions import finer, friction_case, model_of, trajectories
@@ -90,7 +90,7 @@ def with_step(model: Model, step: float) -> Model:
 
 
 def _with_terms(model: Model, terms: float) -> Model:
-    (series,) = of_kind(KantorovichTable, [model])
+    (series,) = of_kind(Kantorovich, [model])
     return series.model_copy(update={"terms": (round(terms),) * len(series.terms)})
 
 
@@ -99,5 +99,5 @@ def _with_elements(model: Model, length: float) -> Model:
 
 
 def _with_mesh(model: Model, size: float) -> Model:
-    (shell,) = of_kind(ShellTable, [model])
+    (shell,) = of_kind(Shell, [model])
     return finer(shell, size / shell.mesh_size)

@@ -5,13 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from scipy.special import cosdg, sindg
 
-from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
 from geometry.axial import Thrust
 from geometry.boom import BoomError, Cylinder, Direction, Segment, Stop, check_place
 from geometry.load import Load, Moment, PartialLoad, Turn
@@ -34,7 +30,7 @@ STANDARD_GRAVITY = 9.80665
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     """Weights and loads from t = 0 on, those released then, those whose impulse throws a segment.
 
-    :func:`start` makes of the last two what they leave at t = 0.
+    :func:`dynamics.motion.begin` makes of the last two what they leave at t = 0.
 
     Raises:
         BoomError: a name that is no segment, a history that cannot be, a payload's own gravity
@@ -236,36 +232,6 @@ def cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
         for number, table in enumerate(case.cylinders, start=1)
         for index in [called(f"cylinder[{number}].segment", table.segment, segments)]
     )
-
-
-def start(system: GapSystem, case: Case) -> tuple[GapSystem, Array, Array]:
-    """The system under the loads from t = 0 on, and its initial a and ȧ, (num_modes,) each.
-
-    Args:
-        system: of a boom with the loads of :func:`loads`.
-        case: of this boom.
-
-    Raises:
-        NumericsError: there is no static equilibrium to start from.
-    """
-    system = system.gathered()
-    held = _held(system, case)
-    # Straight, though shims may press.
-    straight = case.start.state == "rest" and not held.any()
-    position = np.zeros(system.num_modes) if straight else equilibrium(system, held)
-    return system, position, system.thrown
-
-
-def rest_of(system: GapSystem, case: Case, position: Array) -> Array | None:
-    """The initial a, (num_modes,), if the system rests there under its constant loads alone."""
-    resting = case.start.state == "equilibrium"
-    return position if resting and (_held(system, case) == system.load).all() else None
-
-
-def _held(system: GapSystem, case: Case) -> Array:
-    """(num_modes,) in N/√kg, what has acted for ever before t = 0."""
-    resting = case.start.state == "equilibrium"
-    return system.released + system.load_at(0.0) if resting else system.released
 
 
 def series_notes(case: Case) -> list[str]:

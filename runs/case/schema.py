@@ -251,6 +251,11 @@ class StartTable(Table):
     velocity: dict[str, Velocity] = Field(default_factory=dict)
     """segment = velocity along z in m/s, or a table with a turn besides"""
 
+    @property
+    def at_rest(self) -> bool:
+        """Whether it is at rest under the loads of t = 0."""
+        return self.state == "equilibrium"
+
 
 class ObserveTable(Table):
     """What is recorded of every model besides the ends of the segments."""

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from geometry.arrays import Array
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
 from runs.pipeline.results import Results
@@ -174,7 +174,7 @@ def _there(model: Model, what: str, value: _Found | None) -> _Found:
 
 def terms(model: Model) -> tuple[int, ...]:
     """The numbers of a series' functions; none for other models."""
-    return next((series.terms for series in of_kind(KantorovichTable, [model])), ())
+    return next((series.terms for series in of_kind(Kantorovich, [model])), ())
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from beam_model.kantorovich import Base
 from dynamics.failure import NumericsError
 from dynamics.predictability.ensemble import perturbations
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
 from runs.folder.memory import Memory
@@ -97,7 +97,7 @@ class Reading:
         models = tuple(
             model.model_copy(
                 update={"contact": None}
-                | ({"base": self.base} if of_kind(KantorovichTable, [model]) else {})
+                | ({"base": self.base} if of_kind(Kantorovich, [model]) else {})
             )
             for model in paper.models
             if model.name in MODELS

@@ -17,7 +17,7 @@ from scipy.stats import t as student
 
 from geometry.arrays import Array, Mask
 from runs.case.build import contact_laws
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
 from runs.paper.parting import apart_at_the_end, peaks_apart
@@ -351,7 +351,7 @@ def _s11(run: Run) -> Finding:
     if count < SEGMENTS:
         raise Lacking(f"This case has {count} segments; it takes the case of three segments.")
     series = max(
-        of_kind(KantorovichTable, run.case.models),
+        of_kind(Kantorovich, run.case.models),
         key=lambda model: sum(model.terms),
         default=None,
     )

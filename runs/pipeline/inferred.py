@@ -12,6 +12,7 @@ from rich.table import Table
 
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NUMERICS
+from dynamics.motion import rest_of
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from runs.case import actions
@@ -178,7 +179,7 @@ def _ratios(foreseen: Foreseen, model: Model, beam: ModelTable) -> list[str]:
     try:
         with np.errstate(all="ignore"):
             motion = foreseen.motion(model, beam)
-            rest = actions.rest_of(motion.system, foreseen.declared.case, motion.position)
+            rest = rest_of(motion.system, foreseen.declared.case.start.at_rest, motion.position)
             found = pressed_ratios(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]

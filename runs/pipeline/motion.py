@@ -12,12 +12,10 @@ import numpy as np
 
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.motion import Motion
+from dynamics.motion import Motion, begin
 from dynamics.trajectory import Trajectory
-from runs.case import actions
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, EnsembleTable
-from runs.pipeline.models import damped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -145,7 +143,12 @@ def begun(system: GapSystem, case: Case) -> Motion:
     Raises:
         NumericsError: there is no equilibrium to start from.
     """
-    system, position, velocity = actions.start(system, case)
-    time = case.time
-    moving = damped(system, case, actions.rest_of(system, case, position))
-    return Motion(moving, time.duration, time.output_step, position, velocity)
+    time, damping = case.time, case.damping
+    return begin(
+        system,
+        time.duration,
+        time.output_step,
+        case.start.at_rest,
+        damping.modal,
+        (damping.mass, damping.stiffness),
+    )

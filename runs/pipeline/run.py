@@ -19,7 +19,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.kinds.model import Built
+from runs.case.kinds.model import Built, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
@@ -31,7 +31,7 @@ from runs.pipeline.comparisons import compare_models
 from runs.pipeline.fewest_steps import steps_for_peaks
 from runs.pipeline.finished import Finished, finished
 from runs.pipeline.means import Means, Progress
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.proportions import static_tip
 from runs.pipeline.results import CONVENTIONS, Results, label
@@ -263,7 +263,7 @@ def _run_model(
     """What a model leaves, on rank 0; None elsewhere."""
     comm, stages = means.comm, Stages(model.name, means.progress)
     if model.needs_shell or means.first_rank:
-        tools = None if comm is None else workshop(comm, stages.tell, means.cache)
+        tools = None if comm is None else Workshop(comm, stages.tell, means.cache)
         try:
             built = build(case, boom, model, tools)
         except NUMERICS as error:

@@ -27,13 +27,13 @@ from geometry.contact_places import pads
 from geometry.section import Direction
 from runs.case.build import build_boom
 from runs.case.build import joined as joined_as_seen_by
-from runs.case.kinds.finite_element import FiniteElementTable
-from runs.case.kinds.model import Joined, of_kind
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.model import Joined, Workshop, of_kind
 from runs.case.messages import BadInput, choices
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.folder.files import write_whole
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -88,9 +88,7 @@ class _Nodes:
         return self.component.turning
 
 
-def script(
-    case: Case, joined: Joined, model: FiniteElementTable, calibration: Calibration | None
-) -> str:
+def script(case: Case, joined: Joined, model: BeamElements, calibration: Calibration | None) -> str:
     """The script.
 
     Args:
@@ -161,7 +159,7 @@ def _touching(boom: Boom, *, calibrated: bool) -> list[tuple[int, float]]:
 
 
 def _part(
-    boom: Boom, number: int, model: FiniteElementTable, touching: Sequence[tuple[int, float]]
+    boom: Boom, number: int, model: BeamElements, touching: Sequence[tuple[int, float]]
 ) -> Part:
     segment = boom.segments[number]
     sheared = model.theory == "timoshenko" or model.calibrated_by is not None
@@ -181,7 +179,7 @@ def _part(
     return Part(nodes, component, np.setdiff1d(np.arange(2 * nodes.size), held))
 
 
-def _segment(boom: Boom, number: int, part: Part, model: FiniteElementTable) -> dict[str, object]:
+def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[str, object]:
     """What the script has of a segment, SI units."""
     segment = boom.segments[number]
     material = segment.material
@@ -296,7 +294,7 @@ def _nearest(nodes: Array, x: float) -> int:
     return int(np.argmin(np.abs(nodes - x)))
 
 
-def exported(case: Case, file: str, name: str | None = None) -> FiniteElementTable:
+def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
     """The model of a name, or the last of beam elements with play.
 
     Args:
@@ -307,7 +305,7 @@ def exported(case: Case, file: str, name: str | None = None) -> FiniteElementTab
     Raises:
         BadInput: there is no such model.
     """
-    of = {m.name: m for m in of_kind(FiniteElementTable, case.models) if not m.tied}
+    of = {m.name: m for m in of_kind(BeamElements, case.models) if not m.tied}
     if not of:
         raise BadInput(file, "--model", "must be beam elements with play, and there are none")
     if name is not None and name not in of:
@@ -337,7 +335,7 @@ def write(
     calibration = None
     if model.needs_shell:
         assert comm is not None
-        calibration = build(case, boom, model, workshop(comm, cache=cache)).calibration
+        calibration = build(case, boom, model, Workshop(comm, cache=cache)).calibration
     try:
         text = script(case, joined_as_seen_by(case, boom, model), model, calibration)
     except BoomError as error:

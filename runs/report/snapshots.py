@@ -15,7 +15,7 @@ import xarray as xr
 
 from geometry.typography import TO_MILLI, signed
 from runs.case.kinds.model import of_kind
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
@@ -149,7 +149,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         path: as :func:`shell_model.pictures.rendering.render_stills` names it, with the shell's
             name before it where the case has several.
     """
-    lines = {m.name: m.contact_line for m in of_kind(ShellTable, results.case.models)}
+    lines = {m.name: m.contact_line for m in of_kind(Shell, results.case.models)}
     shells = list(lines)
     several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
     model = max(several, key=len) if len(shells) > 1 and several else shells[0]

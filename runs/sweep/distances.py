@@ -20,8 +20,9 @@ from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
 from runs.pipeline.results import Results
 from runs.sweep.quantities import Measured, Quantity
@@ -140,7 +141,7 @@ def comparable_until(
     end = float(time[-1])
     if model.play_free or case.regular:
         return end
-    tools = None if comm is None else workshop(comm, cache=cache)
+    tools = None if comm is None else Workshop(comm, cache=cache)
     plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:

@@ -17,12 +17,12 @@ import xarray as xr
 
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
+from dynamics.motion import initial_state
 from geometry.arrays import Array
-from runs.case import actions
 from runs.case.build import build_boom, joined
+from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
 from runs.folder.files import alone, changed_folder, whole
-from runs.pipeline.models import workshop
 from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import Column, Table
 from runs.sweep.figures import draw_frequencies
@@ -58,10 +58,10 @@ def first_frequencies(
     for row, booms in enumerate((with_play, replace(with_play, boom=tied))):
         if row == 0 and model.play_free:
             continue
-        tools = None if comm is None else workshop(comm, cache=cache)
+        tools = None if comm is None else Workshop(comm, cache=cache)
         try:
             with np.errstate(all="ignore"):
-                system, _, _ = actions.start(model.build(booms, tools).system, case)
+                system, _, _ = initial_state(model.build(booms, tools).system, case.start.at_rest)
                 omega = pressed_modes(system)[0][:MODES]
         except NUMERICS:
             continue

@@ -17,7 +17,7 @@ from protractile.cases import change
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.process import notices
 from runs.report.tables import Table, wide_console
@@ -37,7 +37,7 @@ RESISTED: Mapping[str, Mapping[str, Any]] = {
     "dashpots": {"joint.dashpot": 300.0},
 }
 
-_SHELL = ShellTable.model_validate(
+_SHELL = Shell.model_validate(
     {"name": "shell", "kind": "shell", "mesh_size": 0.1, "contact_tolerance": "any"}
 )
 _PAD = 0.1

@@ -28,7 +28,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.process import notices
 from runs.report.tables import Table, wide_console
 from studies.cost.timing import leave
@@ -164,7 +164,7 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED[name]))
     boom = build_boom(case)
-    model = of_kind(ShellTable, case.models)[0]
+    model = of_kind(Shell, case.models)[0]
     options = ShellOptions(float(size), contact_line=model.contact_line)
     idle = comm.allreduce(_peak())
     peaks: dict[str, float] = {}

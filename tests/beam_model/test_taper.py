@@ -23,14 +23,14 @@ from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from geometry.load import Load
 from geometry.profiles import octagon
 from geometry.section import BoxSection
-from runs.case.kinds.finite_element import FiniteElementTable
+from runs.case.kinds.finite_element import BeamElements
 from studies import taper
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 ROOT = BoxSection(height=0.8, width=0.5, flange=0.02, web=0.012)
 HEAD = BoxSection(height=0.3, width=0.35, flange=0.01, web=0.008)
 CLAMP = Support(0.0, "clamped")
-LENGTH = FiniteElementTable(name="beam", kind="finite-element").element_length
+LENGTH = BeamElements(name="beam", kind="finite-element").element_length
 
 
 def arm(start: float = 0.0, supports: tuple[Support, ...] = (CLAMP,)) -> Segment:

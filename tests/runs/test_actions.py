@@ -12,7 +12,7 @@ from dynamics.excitation import Ramp, Sine, Step, Table
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.kinds.finite_element import FiniteElementTable
+from runs.case.kinds.finite_element import BeamElements
 from runs.case.messages import BadInput
 from runs.pipeline.models import build
 from runs.pipeline.motion import Plan
@@ -194,7 +194,7 @@ def test_constant_loads_are_weights_and_forces(tmp_path: Path) -> None:
     path.write_text(CANTILEVER + "[payload]\nmass = 500.0\n" + load + ELEMENTS, encoding="utf-8")
     case = case_file.load(str(path))
     (model,) = case.models
-    assert isinstance(model, FiniteElementTable)
+    assert isinstance(model, BeamElements)
     plan = Plan.of(build(case, build_boom(case), model).system, case, model)
     expected = (900.0 - 500.0 * 9.80665) * plan.motion.system.observers["tip"].row
     np.testing.assert_allclose(plan.motion.system.load, expected, rtol=1e-12)

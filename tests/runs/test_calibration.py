@@ -20,12 +20,12 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.kinds.model import Built
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.model import Built, Workshop
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.pipeline.means import Means
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.pipeline.run import run_case as run_models
 from runs.report.output import write
 from studies.motions import move
@@ -81,7 +81,7 @@ def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bu
     boom, cache = build_boom(case), Cache(tmp_path_factory.mktemp("cache"))
     wanted = ("timoshenko", "series", "shell", "sprung", "fielded", "sprung-series")
     return {
-        model.name: build(case, boom, model, workshop(MPI.COMM_SELF, cache=cache))
+        model.name: build(case, boom, model, Workshop(MPI.COMM_SELF, cache=cache))
         for model in case.models
         if model.name in wanted
     }
@@ -141,7 +141,7 @@ def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> No
     (read,) = case_file.load(str(path)).models
     shell = read.model_dump()["calibrated_by"]
     assert (shell["name"], shell["mesh_size"]) == ("shell", 0.5)
-    assert isinstance(read.calibrated_by, ShellTable)
+    assert isinstance(read.calibrated_by, Shell)
 
 
 def test_runs_answer_as_the_shell(case: Case) -> None:

@@ -14,7 +14,7 @@ from geometry.walls import free_room
 from runs import CASES
 from runs.case import toml
 from runs.case.build import build_boom, contact_laws
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.reading import load, select
 from runs.case.schema import Case
@@ -274,7 +274,7 @@ def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, li
 @pytest.mark.parametrize(("modes", "chosen"), [("auto", "auto"), ("12", 12)])
 def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> None:
     case = select(load(str(CASES / "coarse.toml")), "coarse.toml", modes=modes)
-    assert [m.modes for m in case.models if isinstance(m, ShellTable)] == [chosen]
+    assert [m.modes for m in case.models if isinstance(m, Shell)] == [chosen]
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,10 @@ from dynamics.excitation import Sine
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from tests.runs.test_actions import BENDING, CANTILEVER, ELEMENTS
 
 PART = '[[load]]\nsegment = "beam"\nfrom = 3.0\nto = 7.0\nmagnitude = -500.0\n'
@@ -34,7 +35,7 @@ def case_with(folder: Path, load: str, model: str = ELEMENTS, beam: str = CANTIL
 
 def tip_at_rest(case: Case) -> float:
     """Deflection of the tip in m under all loads at the value 1 of their histories."""
-    tools = workshop(MPI.COMM_SELF)
+    tools = Workshop(MPI.COMM_SELF)
     system = build(case, build_boom(case), case.models[0], tools).system
     load = system.load + np.sum([x.load for x in system.excitations], axis=0)
     return float(system.observers["tip"].row @ system.static_response(load))

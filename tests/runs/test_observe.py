@@ -12,9 +12,10 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading, toml
 from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 
@@ -129,7 +130,7 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
         from mpi4py import MPI
 
-        tools = workshop(MPI.COMM_SELF)
+        tools = Workshop(MPI.COMM_SELF)
     system = build(case, build_boom(case), model, tools).system
     rates = {name: float(seen.row @ system.thrown) for name, seen in system.observers.items()}
     expected = {

@@ -14,7 +14,7 @@ from rich.console import Console
 from dynamics.contact import PowerContact
 from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
@@ -69,7 +69,7 @@ def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
     for model in case.models:
         (law,) = contact_laws(case, model)
         assert (law.clearance, law.stiffness, law.exponent) == (0.014, 1.01e6, 1.5)
-        assert not isinstance(model, KantorovichTable) or model.base == "pinned"
+        assert not isinstance(model, Kantorovich) or model.base == "pinned"
     assert [segment.load for segment in boom.segments] == [1.5 * 83.16, 1.5 * 55.07]
 
 

@@ -20,13 +20,14 @@ from dynamics.excitation import Ramp
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom, joined
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.model import Workshop
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, LoadTable
 from runs.case.sections import SectionTable
 from runs.folder import records
 from runs.folder.cache import Cache
 from runs.folder.shell_cache import remembered
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from runs.process.shown import shown
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 
@@ -39,7 +40,7 @@ def case() -> Case:
 
 
 def reduce(case: Case, cache: Cache | None) -> ReducedShell:
-    tools = workshop(MPI.COMM_SELF, cache=cache)
+    tools = Workshop(MPI.COMM_SELF, cache=cache)
     shell = build(case, build_boom(case), case.models[0], tools).shell
     assert shell is not None
     return shell
@@ -96,7 +97,7 @@ def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) ->
     found = reduce(other, cache).system
     assert len(list(cache.folder.iterdir())) == 1
     boom, (model,) = build_boom(other), other.models
-    assert isinstance(model, ShellTable)
+    assert isinstance(model, Shell)
     contacts = joined(other, boom, model)
     own = reduce_boom(boom, contacts.laws, model.options(), MPI.COMM_SELF).system
     assert found.laws == own.laws

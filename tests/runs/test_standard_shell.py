@@ -14,8 +14,9 @@ from mpi4py import MPI
 
 from dynamics.equilibrium import equilibrium
 from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
 from runs.case.reading import load
-from runs.pipeline.models import build, workshop
+from runs.pipeline.models import build
 from tests.runs.case_texts import STEEL, box
 
 RESTING = f"""
@@ -46,7 +47,7 @@ def test_a_boom_that_its_weight_holds_down_becomes_a_shell(tmp_path: Path) -> No
     path.write_text(RESTING, encoding="utf-8")
     case = load(str(path))
     boom = build_boom(case)
-    tools = workshop(MPI.COMM_SELF)
+    tools = Workshop(MPI.COMM_SELF)
     system = build(case, boom, case.models[0], tools).system.gathered()
     (gap,) = system.rows @ equilibrium(system, system.load)
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
@@ -88,7 +89,7 @@ def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) 
     case = load(str(path))
     boom = build_boom(case)
     assert boom.segments[0].mass_per_length == pytest.approx(80.0)
-    system = build(case, boom, case.models[0], workshop(MPI.COMM_SELF)).system.gathered()
+    system = build(case, boom, case.models[0], Workshop(MPI.COMM_SELF)).system.gathered()
     position = equilibrium(system, system.load)
     force = system.observers["cylinder_force"].row @ position
     assert force == pytest.approx(55.89e3, rel=1e-3)

@@ -3,16 +3,16 @@
 
 from collections.abc import Mapping
 
-from runs.case.kinds.finite_element import FiniteElementTable
-from runs.case.kinds.kantorovich import KantorovichTable
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import ModelTable
-from runs.case.kinds.rigid import RigidTable
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.rigid import Rigid
+from runs.case.kinds.shell import Shell
 
 # What a case file calls each.
 KINDS: Mapping[str, type[ModelTable]] = {
-    "kantorovich": KantorovichTable,
-    "finite-element": FiniteElementTable,
-    "shell": ShellTable,
-    "rigid": RigidTable,
+    "kantorovich": Kantorovich,
+    "finite-element": BeamElements,
+    "shell": Shell,
+    "rigid": Rigid,
 }

@@ -14,7 +14,7 @@ from pydantic import Discriminator, Tag
 
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.limits import Name
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def _named_or_table(given: Any) -> str:
 
 # The tag of the table is its kind, by which messages know its keys.
 _Shell = Annotated[
-    Annotated[Name, Tag("name")] | Annotated[ShellTable, Tag("shell")],
+    Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
     Discriminator(_named_or_table),
 ]
 
@@ -63,14 +63,14 @@ class CalibratedTable(BeamTable):
         return super().not_drawn
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
-        if not isinstance(self.calibrated_by, ShellTable):
+        if not isinstance(self.calibrated_by, Shell):
             return self
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
     def calibrated_among(self, models: Mapping[str, ModelTable]) -> Self:
         """The model with the shell that its name stands for; as it is where there is none."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
-        if not isinstance(shell, ShellTable):
+        if not isinstance(shell, Shell):
             return self
         unused: dict[str, object] = dict.fromkeys(_OF_MOTION)
         return self.model_copy(update={"calibrated_by": shell.model_copy(update=unused)})
@@ -80,7 +80,7 @@ class CalibratedTable(BeamTable):
         if self.calibrated_by is None:
             super().check(where, joined)
             return
-        if not isinstance(self.calibrated_by, ShellTable):
+        if not isinstance(self.calibrated_by, Shell):
             raise BoomError(
                 key, f"{self.calibrated_by!r} is not a shell of the case; give the name of one"
             )
@@ -105,7 +105,7 @@ class CalibratedTable(BeamTable):
         super().check(where, joined)
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
-        if not isinstance(self.calibrated_by, ShellTable):
+        if not isinstance(self.calibrated_by, Shell):
             return super().build(joined, workshop)
         from beam_model.calibration import calibrate
 
@@ -153,7 +153,7 @@ class CalibratedTable(BeamTable):
 
     def stand_in(self, boom: Boom) -> StandIn:
         own = self.beam_stand_in(boom)
-        if not isinstance(self.calibrated_by, ShellTable):
+        if not isinstance(self.calibrated_by, Shell):
             return own
         shell = self.calibrated_by.stand_in(boom)
         beam = own.beam.model_copy(update={"calibrated_by": None})

@@ -14,7 +14,7 @@ from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import Built, Joined, StandIn
-from runs.case.kinds.shell import ShellTable
+from runs.case.kinds.shell import Shell
 from runs.case.limits import Flag, Length
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
 _BUILT = 400
 
 
-class FiniteElementTable(CalibratedTable):
+class BeamElements(CalibratedTable):
     """Beam finite elements."""
 
     kind: Literal["finite-element"]
@@ -80,7 +80,7 @@ class FiniteElementTable(CalibratedTable):
         super().check(where, joined)
 
     def describe(self) -> str:
-        if isinstance(self.calibrated_by, ShellTable):
+        if isinstance(self.calibrated_by, Shell):
             more = " and section fields" if self.section_fields else ""
             return (
                 f"elements of {self.element_length:g} m, with springs{more} by a shell of "

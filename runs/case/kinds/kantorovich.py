@@ -16,7 +16,7 @@ from runs.case.limits import Count, Few, Flag
 MOST_TERMS = 60
 
 
-class KantorovichTable(CalibratedTable):
+class Kantorovich(CalibratedTable):
     """The semi-discrete Ritz series of the paper."""
 
     smooth: ClassVar[bool] = True

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
     from dynamics.line import Line
+    from runs.folder.cache import Cache
     from shell_model.reduced_shell import ReducedShell
 
 
@@ -74,12 +75,25 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Workshop:
-    """What a model on a mesh is made with."""
+    """What a model on a mesh is made with.
 
-    comm: MPI.Comm  #: the ranks that share the work
-    tell: Callable[[str, float], None]  #: told the stage and the part of it that is done
-    #: Gives what has been computed of the same content before, or computes it.
-    remember: Callable[[Sequence[Any], Callable[[], ReducedShell]], ReducedShell]
+    Args:
+        comm: the ranks that share the work.
+        tell: called with the stage and the part of it that is done.
+        cache: where the same shell may be already, and is kept; computed unless given.
+    """
+
+    comm: MPI.Comm
+    tell: Callable[[str, float], None] = lambda *_: None
+    cache: Cache | None = None
+
+    def remember(self, content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
+        """Return the shell of a content from the cache, or compute it. Collective."""
+        from runs.folder.shell_cache import remembered
+
+        if self.cache is None:
+            return compute()
+        return remembered(self.cache, content, self.comm, compute)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, Joined, StandIn
 
 
-class RigidTable(BeamTable):
+class Rigid(BeamTable):
     """Rigid bodies, which play, contacts and elastic supports alone let move."""
 
     kind: Literal["rigid"]

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from geometry.contact_places import pads
 from geometry.rests import rests
 from geometry.spots import spots
-from runs.case.kinds.model import Built, Joined, ModelTable, StandIn, Workshop
+from runs.case.kinds.model import BeamTable, Built, Joined, ModelTable, StandIn, Workshop
 from runs.case.limits import ContactTolerance, Count, In, Length, Modes, Part, Positive
 
 if TYPE_CHECKING:
@@ -36,7 +38,25 @@ _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 1.0e-4
 _ELEMENTS = 20
 
 
-class ShellTable(ModelTable):
+class _BeamOfShell(BeamTable):
+    """Shear-flexible beam elements, which stand for a shell in estimates."""
+
+    kind: str = "beam of a shell"
+    """the kind of model"""
+    element_length: Length
+    """the length of an element in m, at most"""
+
+    def describe(self) -> str:
+        return self.kind
+
+    def segments(self, boom: Boom) -> list[SegmentModel]:
+        return finite_element_segments(boom, self.element_length, "timoshenko", True)
+
+    def stand_in(self, boom: Boom) -> StandIn:
+        return StandIn(self, 0)
+
+
+class Shell(ModelTable):
     """Flat facet shells on the folded box, reduced to the contact's inputs."""
 
     meshed: ClassVar[bool] = True
@@ -143,23 +163,15 @@ class ShellTable(ModelTable):
         return self.stand_in(joined.boom).beam.critical_factor(joined)
 
     def stand_in(self, boom: Boom) -> StandIn:
-        from runs.case.kinds.finite_element import FiniteElementTable
-
         dofs = self.estimated_dofs(boom)
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
         if isinstance(self.modes, int):
             coordinates = min(coordinates, self.modes * len(boom.segments))
-        beam = FiniteElementTable(
+        beam = _BeamOfShell(
             name=self.name,
-            kind="finite-element",
             contact=self.contact,
             step=self.step,
             element_length=max(segment.length for segment in boom.segments) / _ELEMENTS,
-            theory="timoshenko",
-            rotary_inertia=True,
-            tied=False,
-            calibrated_by=None,
-            section_fields=False,
         )
         memory = dofs * (_OF_DOF + _OF_DOF_AND_COORDINATE * coordinates)
         return StandIn(beam, coordinates, memory, _REDUCTION * dofs)
