@@ -14,7 +14,7 @@ from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.march import Output, State
 from dynamics.motion import MOST_STEPS, Motion
-from dynamics.time_step import Integration, histories_of
+from dynamics.time_step import Integration
 from dynamics.trajectory import Trajectory
 
 # Part of the range of the observed deflections by which the step may change them.
@@ -159,7 +159,9 @@ class AdaptiveStep:
         run, error = Integration.begin(motion), _WindowError.of(motion.system)
         outputs, output_step = motion.outputs, motion.output_step
         window = _whole_power(error.period / output_step, 1, _LONGEST)
-        fastest = max((history.fastest for history in histories_of(motion.system)), default=0.0)
+        histories = [x.history for x in motion.system.excitations]
+        histories += [travel.history for travel in motion.system.travels]
+        fastest = max((history.fastest for history in histories), default=0.0)
         fewest = _whole_power(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
         most = _whole_power(affordable, fewest, MOST_STEPS)

@@ -10,7 +10,6 @@ nothing is lost. The time loop is :func:`dynamics.kernels.march.march`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -193,14 +192,14 @@ class Integration:
 
     def _with_drives(self, found: Trajectory) -> Trajectory:
         """Add the results of drives to a trajectory."""
-        system, moving = self.motion.system, self._system.moving.stretches
+        system, moving = self.motion.system, self._system.moving.rows
         at_rows, at_thrusts = np.split(self.output.drives, [len(self.state.rows)], axis=1)
         of_thrust = self._system.thrusts.place[:, 0]
         added, told = {}, {}
         for number, travel in enumerate(system.travels):
             if travel.suffix is None:
                 continue
-            rows = np.unique(moving[moving[:, 1] == number, 0])
+            rows = moving[moving[:, 1] == number, 0]
             work = at_rows[:, rows].sum(axis=1) + at_thrusts[:, of_thrust == number].sum(axis=1)
             way, friction = (
                 travel.history(found.time),
@@ -272,8 +271,3 @@ def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
             friction = system.frictions[row]
             total += friction.coefficient * friction.normal_force
     return total
-
-
-def histories_of(system: GapSystem) -> Sequence[History]:
-    """Return all histories that the time step must follow."""
-    return [*(x.history for x in system.excitations), *(x.history for x in system.travels)]

@@ -17,7 +17,7 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP, SUMS, borrowed
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
-from dynamics.kernels.moving_rows import Moving, average_rows, copy_rows, place_rows
+from dynamics.kernels.moving_rows import Moving, move_rows
 from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
@@ -270,7 +270,7 @@ def march(
     a, v, rows, y, force, thrust = state.a, state.v, state.rows, state.y, state.force, state.thrust
     tally, free, now = state.tally, problem.free, problem.force
     n, m, contacts, frictions = a.size, y.size, laws.limits.size, laws.friction.shape[1]
-    moves, excited = moving.stretches.shape[0] > 0, system.excitations.shape[0] > 0
+    moves, excited = moving.rows.shape[0] > 0, system.excitations.shape[0] > 0
     pushed, travels = thrusts.force.size > 0, course.ways.shape[1]
     end, load, total, pull = system.load.copy(), system.load.copy(), np.zeros(n), np.zeros(n)
     tilt, y_end = np.zeros(n if excited else 0), np.zeros(m)
@@ -291,8 +291,7 @@ def march(
                 way[t] = course.ways[step, t] + done * length
                 way_end[t] = way[t] + part * length
             if moves:
-                place_rows(way_end, moving, then)
-                average_rows(rows, then, moving, middle)
+                move_rows(way_end, moving, rows, then, middle)
                 matrix = compliance(then, middle, flow.rise[depth])
             elif m > 0:
                 matrix = compliances[depth]
@@ -360,7 +359,7 @@ def march(
             y[:] = y_end
             force[:] = now
             if moves:
-                copy_rows(then, moving, rows)
+                rows[:] = then
             done += part
             while depth > 0 and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
                 depth -= 1
