@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from time import perf_counter
 
 import numpy as np
@@ -22,16 +22,16 @@ from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
+from geometry.observation import Quantity, Read
 from geometry.plating import PlatedMesh, plated
 from geometry.rests import rests
 from geometry.spots import spots
 from geometry.tapered_mesh import tapered_mesh
 from shell_model.contact.rows import Touching, ties
 from shell_model.contact.surface import SurfaceOptions
-from shell_model.observers import observers
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import Folding
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Outline, Reading, Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 
 
@@ -103,7 +103,7 @@ class BoomShell:
         comm: the ranks that share it.
         shells: of its segments.
         stations: x in m and direction of each.
-        touching: what may press, rub and drag wherever joints are drawn to.
+        touching: what may press, rub and drag at any extension.
         rows: that do at t = 0.
         ties: what stays at zero.
         own_loads: (num_owned,) of each segment in N, applied at t = 0 and kept.
@@ -236,8 +236,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     seen = (place.x for place in boom.observations if place.segment == number)
     breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
-    drawn = boom.drawn_over(number)
-    breaks |= {f"drawn-{k}": x for k, x in enumerate(drawn, start=1)}
+    breaks |= {f"extension-{k}": x for k, x in enumerate(boom.drawn_over(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)
     box = segment.widest, breaks, options.mesh_size
     closed = tuple(diaphragm_breaks(segment))
@@ -249,3 +248,29 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         mesh = graded_mesh(*box, fine, closed=closed)
     built = plated(segment, mesh)
     return built if segment.head_section is None else tapered_mesh(segment, built)
+
+
+def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, Observed[Reading]]:
+    """What is reported of the boom's ends, and what is observed besides. Collective."""
+    ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
+    if boom.spatial:
+        ends += ("lateral", "twist")
+    outlines: dict[tuple[int, float], Outline] = {}
+    observed = {}
+    for place in boom.recorded(ends):
+        at = place.segment, place.x
+        if at not in outlines:
+            outlines[at] = shells[place.segment].outline(place.x)
+        kind = place.kind
+        row = _READ[kind.read](outlines[at])
+        observed[place.name] = Observed(Reading({place.segment: row}), kind.unit, kind.derivative)
+    return observed
+
+
+_READ: Mapping[Read, Callable[[Outline], Row]] = {
+    "deflection": Outline.mean_deflection,
+    "rotation": Outline.rotation,
+    "distortion": Outline.distortion,
+    "lateral": partial(Outline.mean_deflection, direction="y"),
+    "twist": Outline.twist,
+}

@@ -6,7 +6,11 @@ Everything else in this room is written to today's interface.
 
 from __future__ import annotations
 
+import fcntl
 import inspect
+from collections.abc import Callable
+from contextlib import suppress
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +23,6 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from geometry.arrays import Array, Indices
-from shell_model import form_cache
 
 try:
     import basix.ufl
@@ -34,8 +37,37 @@ _JIT_DEFAULTS = getattr(jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or (
     jit.DOLFINX_DEFAULT_JIT_PARAMETERS
 )
 _FORMS, *_MEANING = _JIT_DEFAULTS["cache_dir"]
-_JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / form_cache.OWN, *_MEANING)
-jit.ffcx_jit = form_cache.one_at_a_time(jit.ffcx_jit, lambda: Path(_JIT_OPTIONS()["cache_dir"]))
+_JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
+
+
+def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a compiler so that it waits until no other process compiles. Collective.
+
+    FFCx marks a form as begun before it compiles it. Another process that meets the mark waits ten
+    seconds at most, and fails: behind a slow process, and for ever behind one that was killed. So
+    this program's forms lie in a folder of their own, in which one process compiles at a time; a
+    form that is only begun there was left by a killed process, and is removed.
+    """
+
+    @wraps(compile_form)
+    def compiled(comm: MPI.Comm, *arguments: Any, **options: Any) -> Any:
+        folder = Path(_JIT_OPTIONS()["cache_dir"])
+        if comm.rank != 0 or folder.name != "protractile":
+            return compile_form(comm, *arguments, **options)
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / "lock").open("w") as lock:
+            # Some disks of clusters have no locks.
+            with suppress(OSError):
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            for begun in folder.glob("*.c"):
+                if not begun.with_suffix(".c.cached").exists():
+                    begun.unlink()
+            return compile_form(comm, *arguments, **options)
+
+    return compiled
+
+
+jit.ffcx_jit = _compile_one_at_a_time(jit.ffcx_jit)
 
 # Two walls and a diaphragm meet on an edge.
 _CELLS_OF_AN_EDGE = 3

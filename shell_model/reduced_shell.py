@@ -12,25 +12,26 @@ import xarray as xr
 from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
+from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction
 from geometry.far_field import FarField
 from geometry.plating import PlatedMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
-from shell_model.buckling import critical_factor
 from shell_model.contact.local_compliance import (
     compliance,
     extrapolated_error,
+    far_field,
     full_compliance,
     local_compliance,
 )
+from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
-from shell_model.drive.drawn_shell import MOMENTS, DrawnShell
-from shell_model.far_field import far_field
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.stress.fields import gather_fields
+from shell_model.telescoping import MOMENTS, TelescopingShell
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +96,7 @@ def reduce_boom(
     stages = Stages(progress)
     planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
     full = assemble_boom(boom, planes, options, comm, stages)
-    found = (_drawn if boom.driven else _resting)(boom, full, options, stages)
+    found = (_telescoping if boom.driven else _resting)(boom, full, options, stages)
     with stages.stage("fields"):
         fields = gather_fields(boom, full.shells, found.segments, found.coordinates, found.system)
     with stages.stage("mesh error"):
@@ -150,7 +151,7 @@ class _Reduction(NamedTuple):
 
 
 def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
-    """Of a boom whose pads stay where they are."""
+    """Reduce a boom whose pads stay where they are."""
     reduced = [_reduced(full, number, options, stages) for number in range(len(full.shells))]
     coordinates = BoomCoordinates(full.comm, full.shells, reduced, full.ties, full.lines)
     with stages.stage("rows"):
@@ -160,21 +161,23 @@ def _resting(_: Boom, full: BoomShell, options: ShellOptions, stages: Stages) ->
     return _Reduction(reduced, coordinates, system, loads, pressed, lost)
 
 
-def _drawn(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
-    """Of a boom that is drawn out."""
+def _telescoping(boom: Boom, full: BoomShell, options: ShellOptions, stages: Stages) -> _Reduction:
+    """Reduce a telescoping boom."""
     fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
 
     def reduce(number: int, columns: Array) -> ReducedSegment:
         return _reduced(full, number, fewer, stages, columns)
 
-    drawn = DrawnShell(boom, full, options.mesh_size, reduce, options.krylov.tests[0])
-    coordinates = BoomCoordinates(full.comm, full.shells, drawn.reduced, full.ties, full.lines)
+    telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, options.krylov.tests[0])
+    coordinates = BoomCoordinates(
+        full.comm, full.shells, telescoping.reduced, full.ties, full.lines
+    )
     with stages.stage("rows"):
         loads = _own_loads(full, coordinates)
-        system = drawn.with_springs(_gap_system(full, coordinates, loads), coordinates)
+        system = telescoping.with_springs(_gap_system(full, coordinates, loads), coordinates)
     loads = np.pad(loads, ((0, 0), (0, system.num_modes - loads.shape[1])))
-    pressed, lost = compliance(system.omega2, system.rows), drawn.lost(len(system.laws))
-    return _Reduction(drawn.reduced, coordinates, system, loads, pressed, lost)
+    pressed, lost = compliance(system.omega2, system.rows), telescoping.lost(len(system.laws))
+    return _Reduction(telescoping.reduced, coordinates, system, loads, pressed, lost)
 
 
 def _reduced(
@@ -234,3 +237,21 @@ def _lost_compliance(full: BoomShell, reduced: Sequence[ReducedSegment]) -> Arra
 def _largest(parts: Array) -> float:
     """Of those that are known; NaN where none is."""
     return float(np.nanmax(parts)) if np.isfinite(parts).any() else float("nan")
+
+
+def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegment]) -> float | None:
+    """Of the axial forces on the boom without play; infinite without any. Collective.
+
+    Raises:
+        NumericsError: it is 1 or less, and the boom buckles.
+    """
+    if not boom.compressed:
+        return float("inf")
+    held = ties(boom.play_free, full.shells)
+    factor = BoomCoordinates(full.comm, full.shells, reduced, held, full.lines).critical_factor
+    if factor is not None and factor <= 1.0:
+        raise NumericsError(
+            f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "
+            "smaller, or the sections larger"
+        )
+    return factor

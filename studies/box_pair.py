@@ -22,14 +22,13 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Segment, Support
 from geometry.section import BoxSection
-from shell_model.contact.wall_points import gauss
+from shell_model.contact.wall_rows import gauss
 from shell_model.reduction.krylov import KrylovOptions, reduce_family
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.products import times
 from shell_model.segment.shell import Shell
+from shell_model.segment.solver import ShiftedSolver, times
 from studies.motions import SLOW
 from studies.reference_models.lone_segment import shell_alone
 from studies.reference_models.plates import STEEL

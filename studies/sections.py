@@ -26,10 +26,10 @@ from geometry.section import Direction, Section
 from geometry.shear_flow import shear_centre
 from runs.report.tables import Table
 from shell_model.boom_shell import ShellOptions
-from shell_model.contact.corner_lines import CornerLines
+from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.solver import ShiftedSolver
 from studies.study import Held, Piece, Proof, Tell, titled
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)

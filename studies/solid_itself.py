@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.section import BoxSection
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, Family
-from shell_model.segment.products import quadratic_form
+from shell_model.segment.solver import quadratic_form
 from studies.box_pair import box
 from studies.reference_models.eigenmodes import natural_frequencies
 from studies.reference_models.solid import SolidFamily, assemble_solid

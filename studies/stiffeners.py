@@ -20,8 +20,8 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.products import quadratic_form
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
 from studies.reference_models.eigenmodes import natural_frequencies
 from studies.reference_models.lone_segment import compliances, shell_alone

@@ -18,10 +18,10 @@ from geometry.boom import Boom
 from geometry.contact_places import pads
 from runs.case.build import build_boom, contact_laws
 from shell_model.boom_shell import ShellOptions
-from shell_model.contact.corner_lines import CornerLines
+from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
+from shell_model.stress.fields import gather_stress_modes
 from shell_model.stress.history import near_places
-from shell_model.stress.recovery import gather_stress_modes
 from shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
 from studies.reference_models.lone_segment import at_rest, shell_alone

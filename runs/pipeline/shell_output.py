@@ -21,9 +21,8 @@ from runs.pipeline.modes import MODES
 from runs.pipeline.results import CONVENTIONS
 from shell_model.pictures.deformation import DOWN, MASS, SPRING, UP, Sign
 from shell_model.pictures.field_series import series_times, write_field_series
-from shell_model.stress.history import near_places, sum_up
+from shell_model.stress.history import StressSummary, near_places, sum_up
 from shell_model.stress.stresses import ShellStress
-from shell_model.stress.summary import StressSummary
 
 if TYPE_CHECKING:
     from geometry.plating import PlatedMesh

@@ -20,7 +20,7 @@ from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
-from shell_model.stress.summary import StressSummary
+from shell_model.stress.history import StressSummary
 
 
 def _known(number: Any) -> Any:

@@ -13,7 +13,7 @@ from runs.report.numerals import number
 from runs.report.tables import Column, Table
 
 if TYPE_CHECKING:
-    from shell_model.stress.summary import LargestPatch, StressSummary
+    from shell_model.stress.history import LargestPatch, StressSummary
 
 
 def wall_tables(results: Results) -> list[Table]:

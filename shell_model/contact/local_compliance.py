@@ -10,17 +10,18 @@ compliance* of each side. Errors of the compliance are told as parts of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 
 import numpy as np
 
 from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact
 from geometry.arrays import Array
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import FoldedPart, Folding, Job, shared
+from geometry.boom import Boom
+from geometry.far_field import FAR_SHIFT, Bent, FarField, far_places
+from shell_model.reduction.symmetry import Folding, Job
 from shell_model.segment.cross_section import Reading
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.solver import ShiftedSolver
 
 # Hz: above rigid motion, below all elastic motion.
 SLOW = 20.0
@@ -48,19 +49,14 @@ def shell_compliance(folding: Folding, rows: Array, frequency: float = SLOW) -> 
 
     Rows are (num_owned, num_rows); the shift is of a frequency in Hz. Collective.
     """
-    comm, jobs = folding.shell.comm, folding.jobs(rows, rows[:, :0])
-    found = np.zeros((rows.shape[1], rows.shape[1]))
-    for root, family in shared(comm, jobs, partial(_answers, folding.part, frequency)):
-        found += comm.bcast(family, root)
-    return found
 
+    def answers(_: int, job: Job) -> Array:
+        solve = ShiftedSolver(job.shell(folding.part), frequency)
+        found = job.forces.T @ solve(job.forces)
+        solve.destroy()
+        return found
 
-def _answers(part: FoldedPart, frequency: float, _: int, job: Job) -> Array:
-    """(num_rows, num_rows) the same of a family."""
-    solve = ShiftedSolver(job.shell(part), frequency)
-    answers = job.forces.T @ solve(job.forces)
-    solve.destroy()
-    return answers
+    return folding.sum_families(rows, np.zeros((rows.shape[1], rows.shape[1])), answers)
 
 
 def local_compliance(
@@ -103,3 +99,28 @@ def _opposite(
         most = max(len(above), len(below)) if above and below else 0
         for k in range(most):
             yield above[k * len(above) // most], below[k * len(below) // most]
+
+
+def far_field(boom: Boom, number: int, folding: Folding) -> FarField:
+    """Probe a segment, all degrees of freedom in. Collective.
+
+    Of a boom in space sideways and about its axis, too; the mesh has lines at its places.
+    """
+    places, shell = far_places(boom, number), folding.shell
+    probes: dict[Bent, list[Array]] = {
+        direction: [
+            *(shell.force(x, direction) for x in places),
+            *(shell.moment(x, direction) for x in (places[0], places[-1])),
+        ]
+        for direction in boom.directions
+    }
+    if boom.spatial:
+        probes["twist"] = [shell.torque(x) for x in places]
+    whole = shell_compliance(
+        folding, np.array([row for rows in probes.values() for row in rows]).T, FAR_SHIFT
+    )
+    found, first = {}, 0
+    for motion, rows in probes.items():
+        own = slice(first, first + len(rows))
+        found[motion], first = whole[own, own], own.stop
+    return FarField(places, found)

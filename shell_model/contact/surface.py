@@ -20,7 +20,7 @@ from dynamics.contact import ContactLaw
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.contact_places import Pad
-from shell_model.contact.wall_points import Wall, WallPoints, gauss
+from shell_model.contact.wall_rows import Wall, WallPoints, gauss
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Reading

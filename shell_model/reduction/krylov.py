@@ -14,9 +14,8 @@ from scipy.linalg import eigh
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment.products import times
 from shell_model.segment.shell import Shell
+from shell_model.segment.solver import ShiftedSolver, times
 
 # A direction that is left with less than this part of its length is in the space already.
 _DEPENDENT = 1.0e-9

@@ -1,28 +1,26 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs that go along with pads, for what walls give way beyond the modes of their segments.
 
-What forces at a place x of the way move beyond the modes ω_k with the rows b_k(x),
+What forces at a place x move beyond the modes ω_k with the rows b_k(x),
 
     R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ − Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ),
 
 walls give way as if they had hardly any inertia, up to some 1000 Hz. It becomes coordinates with
 the frequencies W^½ and the rows L(x) = R^½ Q (W + σ)^½. At the shift σ of springs L (W + σ)⁻¹ Lᵀ
 is R everywhere (residual flexibility; MacNeal 1971). W and the orthogonal Q take its inertia
-R′ = −dR/dσ (Rubin 1975), in the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over the way. The symmetric
-root is smooth where R is.
+R′ = −dR/dσ (Rubin 1975), in the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The
+symmetric root is smooth where R is.
 """
 
 from __future__ import annotations
 
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from geometry.arrays import Array
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.reduction.symmetry import FoldedPart, Folding, Job, shared
-from shell_model.segment.products import times
+from shell_model.reduction.symmetry import Folding, Job
+from shell_model.segment.solver import ShiftedSolver, times
 
 # Hz of the shift at which springs are matched, above rigid motions and below all that they take,
 # and of the fastest spring.
@@ -48,31 +46,28 @@ class Answers(NamedTuple):
 
 def answers(folding: Folding, columns: Array, test: float) -> Answers:
     """To columns (num_owned, num_columns), at ``SLOW`` and at ``test`` in Hz. Collective."""
-    comm, jobs = folding.shell.comm, folding.jobs(columns, columns[:, :0])
-    total = np.zeros((3, columns.shape[1], columns.shape[1]))
-    for root, family in shared(comm, jobs, partial(_answers, folding.part, test)):
-        total += comm.bcast(family, root)
-    return Answers(*total)
 
+    def of_family(_: int, job: Job) -> Array:
+        shell = job.shell(folding.part)
+        solve = ShiftedSolver(shell, SLOW)
+        # Of all places pads press few.
+        pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
+        forces = job.forces[pressed]
+        moved = solve(job.forces)
+        slow = forces.T @ moved[pressed], moved.T @ times(shell.mass, moved)
+        solve.move(test)
+        tested = forces.T @ solve(job.forces)[pressed]
+        solve.destroy()
+        return np.array([*slow, tested])
 
-def _answers(part: FoldedPart, test: float, _: int, job: Job) -> Array:
-    shell = job.shell(part)
-    solve = ShiftedSolver(shell, SLOW)
-    # Of all places pads press few.
-    pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
-    forces = job.forces[pressed]
-    moved = solve(job.forces)
-    slow = forces.T @ moved[pressed], moved.T @ times(shell.mass, moved)
-    solve.move(test)
-    tested = forces.T @ solve(job.forces)[pressed]
-    solve.destroy()
-    return np.array([*slow, tested])
+    start = np.zeros((3, columns.shape[1], columns.shape[1]))
+    return Answers(*folding.sum_families(columns, start, of_family))
 
 
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
-    """ω² (num_springs,) in rad²/s², and rows (num_ways, num_rows, num_springs) in 1/√kg.
+    """ω² (num_springs,) in rad²/s², and rows (num_extensions, num_rows, num_springs) in 1/√kg.
 
-    Of R (num_ways, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in m s²/N.
+    Of R (num_extensions, num_rows, num_rows) in m/N at the shift ``SLOW``, and R′ in m s²/N.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)

@@ -25,8 +25,8 @@ from scipy.linalg import block_diag
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
 from shell_model.reduction.krylov import FamilyCoordinates, KrylovOptions, reduce_family
-from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding, Job, shared
+from shell_model.segment.solver import ShiftedSolver
 
 __all__ = ["KrylovOptions", "ReducedSegment", "ShiftedSolver", "reduce_segment"]
 

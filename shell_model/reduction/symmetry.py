@@ -37,9 +37,16 @@ from shell_model.reduction.mirror import (
     rows_of,
 )
 from shell_model.segment.attachments import Attached
-from shell_model.segment.plates import assemble_plates
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.shell import Matrices, Plates, Shell, free_rows, hold, owned_nodes
+from shell_model.segment.shell import (
+    Matrices,
+    Plates,
+    Shell,
+    assemble_plates,
+    free_rows,
+    hold,
+    owned_nodes,
+)
 
 _Found = TypeVar("_Found")
 
@@ -209,6 +216,18 @@ class Folding:
                 )
                 jobs.append(Job(family, forces, read, *attached))
         return jobs
+
+    def sum_families(
+        self, columns: Array, total: Array, compute: Callable[[int, Job], Array]
+    ) -> Array:
+        """Add what is computed of each family that columns (num_owned, num_columns) excite.
+
+        ``total`` holds the sum. Collective.
+        """
+        jobs = self.jobs(columns, columns[:, :0])
+        for root, found in shared(self._comm, jobs, compute):
+            total += self._comm.bcast(found, root)
+        return total
 
     def unfold(self, shapes: Array | None, family: Family, root: int) -> Array:
         """(num_owned, num_shapes) shapes of a family on the whole segment. Collective.

@@ -16,9 +16,15 @@ from geometry.section import COMPONENT, Section
 from shell_model import compat
 from shell_model.segment.attachments import Attached, masses, springs
 from shell_model.segment.cross_section import Outline, Row
-from shell_model.segment.plates import assemble_plates
-from shell_model.segment.products import times
-from shell_model.segment.shell import Matrices, Plates, Shell, free_rows, owned_nodes
+from shell_model.segment.shell import (
+    Matrices,
+    Plates,
+    Shell,
+    assemble_plates,
+    free_rows,
+    owned_nodes,
+)
+from shell_model.segment.solver import times
 
 # Part of the largest value below which a value of a load is round-off.
 _ROUND_OFF = 1.0e-10

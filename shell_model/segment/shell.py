@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,8 +15,12 @@ from petsc4py import PETSc
 from scipy.linalg import block_diag, null_space, qr
 
 from geometry.arrays import Array, Indices, Mask
+from geometry.plating import PlatedMesh
+from geometry.section import COMPONENT
+from geometry.segment import Segment
 from shell_model import compat
 from shell_model.segment.attachments import Attached
+from shell_model.segment.cross_section import on_outline
 from shell_model.segment.forms import ShellForms
 
 # Nodes closer than this (m) to a place lie on it; mesh lines are exact to round-off.
@@ -213,3 +217,31 @@ def owned_nodes(space: Any, part: int) -> tuple[Array, Indices]:
     places = compat.node_places(collapsed)[: len(local)]
     owned = local[:, 0] < index_map.size_local
     return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)
+
+
+def assemble_plates(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> Plates:
+    """The plates of a mesh, a segment's whole one or a part of it. Collective."""
+    held = list(_held(segment))
+    points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
+    if mesh is not None:
+        # The plain walls carry the whole axial force, so that it is the same in each section.
+        pressed = segment.compression(mesh.along) / segment.area * mesh.even
+        points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
+    domain = compat.create_triangle_mesh(comm, points, triangles)
+    thickness, compression = (
+        compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
+    )
+    space = compat.shell_space(domain)
+    forms = ShellForms(space, thickness, segment.material, compression=compression)
+    return Plates(space, forms, [hold(space, *one) for one in held], bool(segment.compression))
+
+
+def _held(segment: Segment) -> Iterator[Hold]:
+    """What rigid supports hold: the outline along y and z, every part of it where they clamp."""
+    for support in segment.supports:
+        if support.stiffness is not None:
+            continue
+        outline = partial(on_outline, section=segment.section_at(support.x), x=support.x)
+        for part in (0, 1) if support.clamped else (0,):
+            for component in (0, 1, 2) if support.clamped else COMPONENT.values():
+                yield part, component, outline

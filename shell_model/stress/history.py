@@ -9,20 +9,81 @@ fixed size settles.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from geometry.arrays import Array, Indices
-from shell_model.stress.stresses import Face, ShellStress, wall_forces
-from shell_model.stress.summary import (
-    CarriedAt,
-    LargestPatch,
-    PlaceHistory,
-    StressHistory,
-    StressSummary,
-)
+from shell_model.stress.stresses import Face, ShellStress, WallForces, wall_forces
+
+
+@dataclass(frozen=True, slots=True)
+class LargestPatch:
+    """The largest mean stress of a patch in Pa, when in s, in which segment, near which x in m."""
+
+    von_mises: float
+    time: float
+    segment: str
+    x: float
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedAt:
+    """What the walls of a segment carry through the cross-section at x in m, by their names."""
+
+    segment: str
+    x: float
+    forces: dict[str, WallForces]
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceHistory:
+    """The largest stresses in Pa of a segment near x in m, in each part of the run."""
+
+    segment: str
+    x: float
+    von_mises: list[float]
+    von_mises_patch: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class StressHistory:
+    """The middles of the parts of a run in s, and what each place has in them."""
+
+    time: list[float]
+    places: list[PlaceHistory]
+
+
+@dataclass(frozen=True, slots=True)
+class StressSummary:
+    """The largest stress of a run, and what the walls carry then.
+
+    Args:
+        von_mises: in Pa, of a triangle.
+        time: when, in s.
+        segment, wall, face: where.
+        x, y, z: of the triangle in m.
+        band: how far the places of ``history`` reach to each side, in m.
+        patch: None where no segment comes near a place.
+        walls: of each segment at each place.
+        history: over the run.
+    """
+
+    von_mises: float
+    time: float
+    segment: str
+    wall: str
+    face: str
+    x: float
+    y: float
+    z: float
+    band: float
+    patch: LargestPatch | None
+    walls: list[CarriedAt]
+    history: StressHistory
+
 
 # How far a band reaches to each side of its place, in m; a patch is half a wall of it.
 BAND = 0.25

@@ -12,7 +12,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from geometry.arrays import Array, Indices
-from shell_model.stress.summary import WallForces
 
 if TYPE_CHECKING:
     # gmsh takes long to load, and a run of beams makes no mesh.
@@ -46,6 +45,23 @@ _AT_ONCE = 1_000_000
 
 # Instants that are computed together.
 _TOGETHER = 10
+
+
+@dataclass(frozen=True, slots=True)
+class WallForces:
+    """What one wall carries through a cross-section, at the side towards the tip.
+
+    Args:
+        axial: force along x in N, positive in tension.
+        shear: force in the wall's plane in N, along y in a flange and along z in a web or in any
+            wall steeper than 45°, of the part beyond the section on the part before it.
+        moment: of its axial stresses about the section's y-axis in N m, positive where they pull
+            at the top.
+    """
+
+    axial: float
+    shear: float
+    moment: float
 
 
 class Stress(NamedTuple):

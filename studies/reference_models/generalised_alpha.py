@@ -21,9 +21,8 @@ from petsc4py import PETSc
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment.products import gram
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.solver import ShiftedSolver, gram
 
 # Relative residual of the accelerations at the start.
 _START = 1.0e-12

@@ -12,10 +12,9 @@ from geometry.arrays import Array
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from geometry.plating import plated
 from geometry.segment import Segment
-from shell_model.reduction.solver import ShiftedSolver
 from shell_model.segment.cross_section import Row
-from shell_model.segment.products import gram
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.solver import ShiftedSolver, gram
 
 # In Hz, in place of zero, where nothing holds a segment along x: far below all elastic modes.
 STATIC = 0.01

@@ -22,8 +22,8 @@ from geometry.boom import Material
 from shell_model import compat
 from shell_model.segment.attachments import Attached
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
-from shell_model.segment.products import times
 from shell_model.segment.shell import ON_LINE, Matrices, Plates, Shell, owned_nodes
+from shell_model.segment.solver import times
 
 # Part of the load that may be left over.
 _UNBALANCED = 1.0e-3

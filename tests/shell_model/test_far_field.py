@@ -9,7 +9,7 @@ from mpi4py import MPI
 from beam_model.calibration import Stiffness, effective_stiffness
 from geometry.boom import Boom
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.far_field import far_field
+from shell_model.contact.local_compliance import far_field
 from shell_model.reduction.symmetry import Folding
 from tests.shell_model.booms import boom_in_space, flat_boom
 

@@ -17,8 +17,8 @@ from geometry.plating import plated
 from geometry.section import Section
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
 from shell_model.reduction.symmetry import Folding, Job
-from shell_model.segment.products import times
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.solver import times
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, UNEQUAL
 

@@ -32,8 +32,7 @@ from geometry.contact_places import ContactLine, Stretch
 from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Section
 from shell_model.boom_shell import ShellOptions
-from shell_model.contact.corner_lines import CornerLines
-from shell_model.contact.wall_points import Wall, WallPoints
+from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import reduce_segment

@@ -12,7 +12,7 @@ from beam_model.component import natural_modes
 from beam_model.finite_element import Theory, finite_element_segment
 from geometry.contact_places import Stretch
 from geometry.section import BoxSection
-from shell_model.contact.corner_lines import CornerLines
+from shell_model.contact.wall_rows import CornerLines
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment

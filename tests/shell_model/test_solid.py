@@ -21,11 +21,10 @@ from geometry.mesh import mesh_segment
 from geometry.plating import plated
 from geometry.section import BoxSection
 from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, Family
-from shell_model.reduction.solver import ShiftedSolver
 from shell_model.reduction.symmetry import Folding
 from shell_model.segment.cross_section import Outline
-from shell_model.segment.products import quadratic_form, times
 from shell_model.segment.segment_shell import assemble_segment
+from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
 from studies.reference_models.eigenmodes import natural_frequencies
 from studies.reference_models.solid import SolidFamily, assemble_solid
 from studies.reference_models.solid_mesh import SolidMesh, mesh_quarter

@@ -25,9 +25,8 @@ from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.pictures.deformation import MovingShell
 from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.solver import ShiftedSolver
-from shell_model.segment.products import times
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance

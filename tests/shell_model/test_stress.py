@@ -19,7 +19,7 @@ from geometry.profiles import octagon
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.stress.recovery import gather_stress_modes
+from shell_model.stress.fields import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL

@@ -15,8 +15,8 @@ from geometry.boom import Direction, PointMass, Support
 from geometry.section import BoxSection
 from shell_model.reduction.segment import KrylovOptions, reduce_segment
 from shell_model.reduction.symmetry import Folding
-from shell_model.segment.products import times
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.solver import times
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
 

@@ -23,7 +23,7 @@ from geometry.joint import PadSide
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.rows import Touching
 from shell_model.contact.surface import SurfaceOptions
-from shell_model.contact.wall_points import Wall, WallPoints
+from shell_model.contact.wall_rows import Wall, WallPoints
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment.cross_section import COMPONENT

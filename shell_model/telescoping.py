@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Shells of telescoping booms: modes for every extension, and springs that go along with the pads.
+
+A basis of what forces at every place along the extension bend would be as long as the extension.
+But segments have few modes that pads feel anywhere, and what walls give way beyond these is springs
+(:mod:`shell_model.reduction.pad_springs`). Rows and springs are read where pads pass the rings of
+the mesh, and are splines between these, so that no ring is felt.
+
+An axial force that moves along with a segment softens by K_G of the sections as they move as a
+whole: of the slope of their mean deflection, which is a spline between the lines of the mesh that
+go all around. Walls that bend in themselves keep what they have at the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from mpi4py import MPI
+
+from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import RowTable
+from dynamics.drive.travel import KINDS, Kind, Travel
+from dynamics.gap_builder import GapBuilder
+from dynamics.gap_system import GapSystem
+from dynamics.reduction.condensation import fewer
+from dynamics.reduction.residual import with_coordinates
+from geometry.arrays import Array, Mask
+from geometry.axial import borne, entry
+from geometry.boom import SAME_PLACE, Boom
+from geometry.drawing import Course, courses
+from shell_model.boom_shell import BoomShell
+from shell_model.reduction.coordinates import BoomCoordinates, exact_product
+from shell_model.reduction.pad_springs import SLOW, Answers, answers, springs, squared
+from shell_model.reduction.segment import ReducedSegment
+from shell_model.segment.cross_section import Reading
+from shell_model.segment.segment_shell import SegmentShell
+from shell_model.stress.stresses import lines_around
+
+# Modes up to so many Hz are kept: the slow ones, and those that somewhere give way by more than a
+# part of what springs take.
+_CUTOFF, _SLOWEST, _PART = 1500.0, 100.0, 0.003
+
+# Moments of what stays in its place, and of the reduction that finds the modes from forces at every
+# so many extensions.
+MOMENTS = 2
+_EVERY = 4
+
+# Extensions at which rows are sampled, however short the stroke is.
+_FEWEST = 4
+
+
+@dataclass(frozen=True, slots=True)
+class _SampledRows:
+    """Rows of a boom at some extensions of what its drives move together.
+
+    Args:
+        course: the drives; None of rows that stay.
+        moving: kind and position of each of the rows in the gap system.
+        extensions: (num_extensions,) in m, rising.
+        touching: what is read at each.
+    """
+
+    course: Course | None
+    moving: Sequence[tuple[Kind, int]]
+    extensions: Array
+    touching: Sequence[GapBuilder[Reading]]
+
+    @property
+    def start(self) -> int:
+        """Position of the extension 0."""
+        return int(np.abs(self.extensions).argmin())
+
+    @property
+    def count(self) -> int:
+        """Of the rows at all extensions."""
+        return self.extensions.size * len(self.moving)
+
+    def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
+        """(num_owned, num_extensions · num_moving) of a segment, at every so many extensions."""
+        nothing = np.zeros(shell.free.size)
+
+        def read(reading: Reading) -> Array:
+            return shell.row(reading[number]) if number in reading else nothing
+
+        rows = [one.some_rows(self.moving, read) for one in self.touching[::step]]
+        return np.asarray(np.concatenate(rows).T)
+
+    def told_apart(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
+        """(num_extensions · num_moving) whether rows read other places of a segment as it extends,
+        and the first of each of those that read the same place. Collective.
+        """
+        rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
+        same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
+        here = comm.allreduce(rows[0].any(axis=1), MPI.LOR)
+        first = np.arange(self.count) < len(self.moving)
+        size = self.extensions.size
+        return np.tile(~same, size), np.tile(same & here, size) & first
+
+    def rows(self, coordinates: BoomCoordinates) -> Array:
+        """(num_extensions, num_moving, num_modes)."""
+        return np.array([one.some_rows(self.moving, coordinates.row) for one in self.touching])
+
+
+def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
+    """Sample all rows of a boom where stations pass the rings of a mesh of this size in m."""
+    found = []
+    for course in courses(boom):
+        pieces = [
+            np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
+            for start, end in pairwise(sorted({*course.reach, 0.0}))
+        ]
+        moving, extensions = full.rows.moving(course.stations), np.unique(np.concatenate(pieces))
+        touching = [full.touching.rows(course.ways(extension)) for extension in extensions.tolist()]
+        found.append(_SampledRows(course, moving, extensions, touching))
+    moved = {row for sampled in found for row in sampled.moving}
+    counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
+    every = [(kind, row) for kind, count in zip(KINDS, counts, strict=True) for row in range(count)]
+    still = [row for row in every if row not in moved]
+    return [*found, _SampledRows(None, still, np.zeros(1), [full.rows])] if still else found
+
+
+class _Readings(NamedTuple):
+    """What is read of a segment.
+
+    Args:
+        columns: (num_owned, num_columns) of pads, at all extensions.
+        moving: (num_columns,) which of these read other places of the segment as it extends.
+        staying: (num_columns,) one of all that read the same place.
+        observed: (num_owned, num_observed).
+    """
+
+    columns: Array
+    moving: Mask
+    staying: Mask
+    observed: Array
+
+
+class TelescopingShell:
+    """The shell of a telescoping boom. Collective.
+
+    Args:
+        boom: its joints have drives.
+        full: its shells.
+        size: edge length of their meshes in m.
+        reduce: of the position of a segment and (num_owned, num_columns) forces on it at several
+            extensions, the segment in coordinates that answer these.
+        test: Hz of the shift at which the answers of springs are measured.
+
+    Attributes:
+        reduced: the segments, without springs.
+    """
+
+    def __init__(
+        self,
+        boom: Boom,
+        full: BoomShell,
+        size: float,
+        reduce: Callable[[int, Array], ReducedSegment],
+        test: float,
+    ) -> None:
+        self._boom, self._full, self._test = boom, full, test
+        self._sampled = _sample_rows(boom, full, size)
+        self.reduced: list[ReducedSegment] = []
+        self._answers: list[Answers] = []
+        for number in range(len(full.shells)):
+            own = reduce(number, self._columns(number, _EVERY))
+            read = self._read(number)
+            self._answers.append(answers(full.foldings[number], read.columns, test))
+            self.reduced.append(self._kept(number, own, read))
+        # Springs are what forces move beyond modes of the unloaded boom.
+        free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
+        self._apart = BoomCoordinates(full.comm, full.shells, free, ())
+        self._rows = [sampled.rows(self._apart) for sampled in self._sampled]
+        self._springs = [springs(*self._left(k)) for k in range(len(self._sampled))]
+
+    def lost(self, contacts: int) -> Array:
+        """(num_contacts,) the largest error of each compliance over the extension, in m/N."""
+        sigma, found = squared(self._test), np.zeros(contacts)
+        for k, sampled in enumerate(self._sampled):
+            omega2, pulls = self._springs[k]
+            parts = (self._rows[k], self._apart.omega2), (pulls, omega2)
+            own = sum(rows**2 @ (1.0 / (of + sigma)) for rows, of in parts)
+            whole = np.einsum("wjj->wj", self._answered(k, "tested"))
+            off = np.abs(whole - own).max(axis=0)
+            for (kind, row), most in zip(sampled.moving, off.tolist(), strict=True):
+                if kind == "rows":
+                    found[row] = most
+        return found
+
+    def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
+        """A system in the coordinates of the boom, with its springs and its travels."""
+        first_of, stacked = {}, 0
+        for kind in KINDS:
+            first_of[kind] = stacked
+            stacked += len(getattr(system, kind))
+        behind = np.cumsum([0, *(omega2.size for omega2, _ in self._springs)])
+        pulled, travels = np.zeros((stacked, behind[-1])), []
+        for k, (sampled, (_, pulls)) in enumerate(zip(self._sampled, self._springs, strict=True)):
+            beside = np.zeros((*pulls.shape[:2], behind[-1]))
+            beside[..., behind[k] : behind[k + 1]] = pulls
+            at = [first_of[kind] + position for kind, position in sampled.moving]
+            pulled[at] = beside[sampled.start]
+            if sampled.course is not None:
+                rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
+                travel = Travel.of(
+                    [drive.history for drive in sampled.course.drives],
+                    RowTable.through(sampled.extensions, rows),
+                    sampled.moving,
+                    sampled.course.suffix,
+                    _moving_thrusts(
+                        self._boom, self._full, coordinates, sampled.course, int(behind[-1])
+                    ),
+                    borne(self._boom.segments, self._boom.joints, sampled.course.joints[0]),
+                )
+                travels.append(travel)
+        omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
+        return replace(with_coordinates(system, omega2, pulled), travels=travels)
+
+    def _columns(self, number: int, step: int = 1) -> Array:
+        shell = self._full.shells[number]
+        return np.hstack([sampled.columns(shell, number, step) for sampled in self._sampled])
+
+    def _read(self, number: int) -> _Readings:
+        columns = self._columns(number)
+        parts = np.split(columns, np.cumsum([one.count for one in self._sampled])[:-1], axis=1)
+        told = [
+            sampled.told_apart(self._full.comm, part)
+            for sampled, part in zip(self._sampled, parts, strict=True)
+        ]
+        moving, staying = (np.concatenate(which) for which in zip(*told, strict=True))
+        seen = [one.reading for one in self._full.observed.values()]
+        return _Readings(columns, moving, staying, self._full.columns(number, seen))
+
+    def _kept(self, number: int, own: ReducedSegment, read: _Readings) -> ReducedSegment:
+        """Modes that pads feel somewhere, and what else all that stays in its place bends."""
+
+        def modal(columns: Array) -> Array:
+            """(num_columns, num_modes) of the segment."""
+            rows = [exact_product(self._full.comm, column, own.shapes) for column in columns.T]
+            return np.array(rows).reshape(-1, own.omega2.size)
+
+        rows, observed = modal(read.columns), modal(read.observed)
+        parts = rows[read.moving] ** 2 / (own.omega2 + squared(SLOW))
+        below = own.omega2 < squared(_CUTOFF)
+        local = np.diag(self._answers[number].compliance)[read.moving]
+        left = local - parts[:, below].sum(axis=1)
+        slow = own.omega2 < squared(_SLOWEST)
+        slow |= below & (parts > _PART * left[:, None]).any(axis=0)
+        stays = self._full.pushed(number), self._full.columns(number, self._full.ties)
+        pushes = [*(modal(some) for some in stays), observed, rows[read.staying]]
+        modes = np.flatnonzero(slow), np.flatnonzero(~slow)
+        omega2, shapes = fewer(own.omega2, np.vstack(pushes), *modes, MOMENTS)
+        order = np.argsort(omega2, kind="stable")
+        omega2, shapes = omega2[order], shapes[:, order]
+        off = self._transfer_error((own.omega2, rows, observed), (omega2, shapes))
+        return replace(
+            own,
+            omega2=omega2,
+            shapes=own.shapes @ shapes,
+            geometric=shapes.T @ own.geometric @ shapes,
+            reading_error=max(own.reading_error, off),
+        )
+
+    def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
+        """Of what pads move at the readings, relative to the geometric mean of both compliances.
+
+        ``many`` are ω², rows of the pads and of the readings; ``few`` ω², and shapes in these.
+        """
+        omega2, rows, observed = many
+        shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]
+        of_many, of_few = shifted
+        missed = (observed * of_many) @ rows.T
+        missed -= ((observed @ shapes) * of_few) @ (rows @ shapes).T
+        sizes = (np.sqrt(one**2 @ of_many) for one in (observed, rows))
+        scale = np.maximum(np.outer(*sizes), np.finfo(float).tiny)
+        return float((np.abs(missed) / scale).max(initial=0.0))
+
+    def _left(self, k: int) -> tuple[Array, Array]:
+        """What modes leave of the compliance of sampled rows, and of their inertia."""
+        rows, shifted = self._rows[k], self._apart.omega2 + squared(SLOW)
+        taken = [rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2)]
+        return self._answered(k, "compliance") - taken[0], self._answered(k, "inertia") - taken[1]
+
+    def _answered(self, k: int, what: str) -> Array:
+        """(num_extensions, num_moving, num_moving) in the full model, by all segments."""
+        first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
+        own = slice(first, first + sampled.count)
+        whole = np.sum([getattr(one, what)[own, own] for one in self._answers], axis=0)
+        size = sampled.extensions.size
+        return np.asarray(
+            np.einsum("wiwj->wij", whole.reshape(size, len(sampled.moving), size, -1))
+        )
+
+
+def _moving_thrusts(
+    boom: Boom, full: BoomShell, coordinates: BoomCoordinates, course: Course, behind: int
+) -> list[MovingThrust]:
+    """The axial force, if there is one, that moves along with a telescoping joint. Collective.
+
+    Behind the coordinates come so many that sections do not move.
+    """
+    found = entry(boom.segments, boom.joints, course.joints[0])
+    if found is None or len(course.joints) > 1:
+        return []
+    shell, lines = full.shells[found.segment], np.zeros(0)
+    if shell.mesh is not None:
+        along = shell.mesh.points[shell.mesh.triangles, 0]
+        around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
+        # Nodes are on these but for the digits to which they are rounded.
+        x = np.unique(along)
+        lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
+    # Where the force passes lines of the mesh.
+    extensions = np.sort(found.direction * (full.comm.bcast(lines) - found.x))
+    (low, high), near = course.drives[0].reach, SAME_PLACE * boom.length
+    extensions = extensions[(extensions > low - near) & (extensions < high + near)]
+    rows = []
+    for extension in extensions.tolist():
+        outline = shell.outline(found.x + found.direction * extension)
+        readings = [Reading({found.segment: outline.mean_deflection(d)}) for d in boom.directions]
+        rows.append([coordinates.row(reading) for reading in readings])
+    beside = np.zeros((len(rows), len(boom.directions), behind))
+    table = RowTable.through(extensions, np.concatenate([np.array(rows), beside], axis=2))
+    return [MovingThrust(found.force, table)]
