@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Case files in, trajectories, verdicts and a report out."""
+"""Case files in, trajectories and a report out."""
 
 import os
 from pathlib import Path

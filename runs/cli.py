@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The command line. Exit status: 0 ran; 1 a demanded verdict failed; 2 bad input; 3 numerics."""
+"""The command line. Exit status: 0 ran; 1 a demand of the case failed; 2 bad input; 3 numerics."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from runs.case.schema import Case
     from runs.pipeline.results import Results
-    from runs.report.verdict import Verdict
+    from runs.report.pages import Addition
     from runs.sweep.points import Plan
     from runs.sweep.run import Outcome
 
@@ -114,10 +114,9 @@ def run(
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     # After the case, whose mistakes need not wait for them.
+    from runs.client import FILES, judge
     from runs.folder.cache import Cache
     from runs.folder.files import whole_folder
-    from runs.paper import readings, then
-    from runs.paper.rules import judge
     from runs.pipeline import estimates
     from runs.pipeline.means import Means
     from runs.pipeline.run import run_case
@@ -138,18 +137,18 @@ def run(
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
-            whole_folder(folder, [readings.FILE, then.FILE]) as part,
+            whole_folder(folder, FILES) as part,
             progress.told([model.name for model in effective.models]) as tell,
         ):
             finished = run_case(effective, case, Means(comm, tell, cache, cache))
             assert finished is not None
             finished.answer()
-            verdicts = judge(finished.results)
+            judged = judge(finished.results)
             tell("report", "pictures and figures", 0.0)
-            output.write(finished, verdicts, part, snapshots_now=not no_pictures)
+            output.write(finished, judged, part, snapshots_now=not no_pictures)
             tell("report", "pictures and figures", 1.0)
         print(printable(str(folder / output.REPORT)))
-        status = _show({case: finished.results}, {case: verdicts})
+        status = _show({case: finished.results}, {case: judged})
         return say_what_failed(case, finished.results) or status
 
 
@@ -159,22 +158,20 @@ def report(
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
     from runs.case.user_files import check_left
+    from runs.client import judge
     from runs.folder.files import alone, changed_folder
-    from runs.paper import readings, then
-    from runs.paper.rules import judge
     from runs.pipeline.results import Results
     from runs.report import output
 
-    runs, verdicts = {}, {}
+    runs, judged = {}, {}
     for folder in folders:
         with alone(Path(folder)):
             runs[folder] = results = Results.load(Path(folder))
             check_left(Path(folder), folder, "folder")
-            verdicts[folder] = then.beside(judge(results), Path(folder), results.case)
-            surveyed = readings.load(Path(folder), results.case)
+            judged[folder] = judge(results, Path(folder))
             with changed_folder(Path(folder)) as part:
-                output.write_report(results, verdicts[folder], part, surveyed)
-    return _show(runs, verdicts)
+                output.write_report(results, judged[folder], part)
+    return _show(runs, judged)
 
 
 @app.command()
@@ -187,9 +184,8 @@ def snapshot(
     """Render the deformed shells of a run, and its report again with the pictures."""
     from runs.case.messages import BadInput
     from runs.case.user_files import check_left
+    from runs.client import judge
     from runs.folder.files import alone, changed_folder
-    from runs.paper import readings, then
-    from runs.paper.rules import judge
     from runs.pipeline.results import TRAJECTORIES, Results
     from runs.report import output, snapshots
     from shell_model.pictures.opengl import RenderingUnavailable
@@ -197,8 +193,7 @@ def snapshot(
     with alone(Path(folder)):
         results = Results.load(Path(folder))
         check_left(Path(folder), folder, "folder")
-        surveyed = readings.load(Path(folder), results.case)
-        verdicts = then.beside(judge(results), Path(folder), results.case)
+        judged = judge(results, Path(folder))
         last = results.case.time.duration
         for t in time or []:
             if not 0.0 <= t <= last:
@@ -212,7 +207,7 @@ def snapshot(
                     drawn = gather()
             except RenderingUnavailable as reason:
                 raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
-            output.write_report(results, verdicts, part, surveyed)
+            output.write_report(results, judged, part)
     for name in drawn:
         print(printable(str(Path(folder) / snapshots.SNAPSHOTS / name)))
     return 0
@@ -457,9 +452,9 @@ def _check_temporary_folder(file: str) -> None:
         ) from None
 
 
-def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]) -> int:
+def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
     """Print the tables of runs, by their file, and what is amiss; the exit status."""
-    from runs.paper.verdict_table import print_verdicts
+    from runs.client import show
     from runs.report.printed import print_models
 
     console = Terminal()
@@ -468,16 +463,7 @@ def _show(runs: Mapping[str, Results], verdicts: Mapping[str, Sequence[Verdict]]
         skipped = results.summary.snapshots.skipped
         if skipped is not None:
             print(f"no snapshots: {skipped}")
-    print_verdicts({Path(file).stem: judged for file, judged in verdicts.items()}, console)
-    broken = [(file, v) for file, judged in verdicts.items() for v in judged if v.broken]
-    for file, verdict in broken:
-        say(
-            message(
-                f"{shown(file)}: demand: {verdict.id} is {verdict.verdict}, and the case demands "
-                f"that it is reproduced: {verdict.why}"
-            )
-        )
-    return 1 if broken else 0
+    return show(judged, console)
 
 
 def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:

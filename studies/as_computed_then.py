@@ -17,9 +17,9 @@ from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.paper import then
 from runs.paper.reading import LITERAL
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
+from runs.paper.statements import THEN_FILE
 from runs.process import notices
 from runs.report.numerals import NONE, number
 from runs.report.tables import Cell, Table, wide_console, write
@@ -232,7 +232,7 @@ def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
         "case_hashes": [toml.digest(case) for case in cases],
         "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
     }
-    write(folder, Path(then.FILE).stem, TITLE, data, [table.text for table in made])
+    write(folder, Path(THEN_FILE).stem, TITLE, data, [table.text for table in made])
 
 
 def main() -> None:

@@ -114,7 +114,6 @@ Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 # Neither controls, nor what breaks a line or turns its direction.
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
 Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
-StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
 
 # Whole tips are kept of each.
 MOST_MEMBERS = 10_000

@@ -33,7 +33,6 @@ from runs.case.limits import (
     Number,
     Part,
     Positive,
-    StatementId,
     Table,
     Text,
     fault_at,
@@ -41,6 +40,7 @@ from runs.case.limits import (
 from runs.case.places import Place
 from runs.case.segment import MaterialTable, SegmentTable
 from runs.case.units import System, SystemName
+from runs.client import CaseKeys
 
 
 class TimeTable(Table):
@@ -302,8 +302,8 @@ else:
     Model = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
 
-class Case(Table):
-    """A boom, and the models to run on it."""
+class CaseHeading(Table):
+    """What a case is called, and its units."""
 
     title: Text
     """the heading of the report"""
@@ -311,10 +311,11 @@ class Case(Table):
     """the units of all numbers: SI, or mm, t and s with N and MPa ('mm-t-s', the same as 'N-mm')"""
     shown_units: SystemName | None = None
     """the units of check's tables and of sweeps; those of the case unless given"""
-    statements: Annotated[tuple[StatementId, ...], Few] = ()
-    """the statements of the paper that are judged on the run"""
-    demand: Annotated[tuple[StatementId, ...], Few] = ()
-    """the statements of the paper that the run must reproduce"""
+
+
+class Case(CaseKeys, CaseHeading):
+    """A boom, and the models to run on it."""
+
     time: TimeTable
     """the table of the duration and the output step"""
     ensemble: EnsembleTable | None = None

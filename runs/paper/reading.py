@@ -18,10 +18,10 @@ from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
 from runs.folder.memory import Memory
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
+from runs.paper.verdicts import Judgement
 from runs.pipeline.means import Means
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
-from runs.report.verdict import Judgement
 
 Stiffness = Literal["restored", "literal"]
 

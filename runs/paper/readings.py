@@ -9,7 +9,6 @@ authors cannot have computed.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, replace
@@ -17,16 +16,14 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 from rich.console import Console
 
 from beam_model.kantorovich import Base
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
-from runs.case.user_files import read_text
 from runs.folder.files import write_whole
 from runs.paper.reading import (
     CHANGE,
@@ -45,6 +42,8 @@ from runs.paper.reading import (
     judge_exponents,
 )
 from runs.paper.rules import DIVERGENCE
+from runs.paper.statements import SURVEY_FILE
+from runs.paper.verdicts import MARKS, TEMPLATES, read_copy
 from runs.process import notices
 from runs.report.numerals import number
 from runs.report.pages import page
@@ -53,8 +52,6 @@ from runs.report.tables import TextTable, write
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/readings")
 
-# What a survey leaves, and what a run's folder may hold a copy of.
-FILE = "readings.json"
 TITLE = "Readings of the paper's data"
 
 
@@ -93,14 +90,13 @@ def conclude(judged: Sequence[Judged]) -> list[str]:
 
 def verdict_table(judged: Sequence[Judged]) -> TextTable:
     """A line for each reading: what each statement says of it."""
-    marks = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
     return TextTable(
         "Readings of the data, and the statements on them",
         ("Δ mm, stiffness, base, n", *JUDGED, "excluded"),
         [
             (
                 str(entry.reading),
-                *(marks[entry.findings[key].verdict] for key in JUDGED),
+                *(MARKS[entry.findings[key].verdict] for key in JUDGED),
                 " ".join(entry.excluded_by()) or "–",
             )
             for entry in judged
@@ -184,7 +180,8 @@ def survey(
         "conclusion": conclude(judged),
     }
     write(folder, "readings", TITLE, data, tables)
-    write_whole(folder / "readings.html", page("tables.html", title=TITLE, tables=tables))
+    content = page(TEMPLATES / "readings.html", title=TITLE, tables=tables)
+    write_whole(folder / "readings.html", content)
     return judged
 
 
@@ -198,21 +195,12 @@ def load(folder: Path, case: Case) -> list[TextTable]:
     Raises:
         BadInput: the file is damaged, or of another case.
     """
-    try:
-        data = json.loads(read_text(folder / FILE))
-        found = data["case_hash"]
-        tables = shown(TypeAdapter(list[Judged]).validate_python(data["readings"]))
-    except FileNotFoundError:
-        return []
-    except ValidationError as error:
-        what = f"{first_fault(error)}; is damaged or another version's"
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        what = f"cannot be understood ({error})"
-    else:
-        if found == toml.digest(case):
-            return tables
-        what = "is not of the case in case.toml"
-    raise BadInput(str(folder), FILE, f"{what}; remove it, or survey the readings again")
+
+    def read(data: Any) -> tuple[list[str], list[TextTable]]:
+        judged = TypeAdapter(list[Judged]).validate_python(data["readings"])
+        return [data["case_hash"]], shown(judged)
+
+    return read_copy(folder / SURVEY_FILE, case, read, "survey the readings again") or []
 
 
 if __name__ == "__main__":

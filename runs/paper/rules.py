@@ -9,7 +9,7 @@ beyond it a difference is a sample, and a rule asks how many members of an ensem
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -22,9 +22,9 @@ from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
 from runs.paper.parting import apart_at_the_end, peaks_apart
 from runs.paper.questions import Lacking, Run, options
-from runs.paper.statements import STATEMENTS, Finding
+from runs.paper.statements import STATEMENTS
+from runs.paper.verdicts import Judgement, Verdict
 from runs.pipeline.results import Results
-from runs.report.verdict import Judgement, Verdict
 
 # S1. The integration of both series differs by round-off alone: about 1e-14 of the range.
 COINCIDENCE = 1.0e-6
@@ -55,6 +55,17 @@ SERIES_STEPS = 2000
 ELEMENT_STEPS = 4000
 # S11. More than two.
 SEGMENTS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a rule leaves; the fields are those of a verdict."""
+
+    verdict: Judgement
+    why: str
+    measured: float | None = None
+    threshold: float | None = None
+    unit: str = ""
 
 
 def judge(results: Results) -> list[Verdict]:

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The statements of the paper, and what a judgement on one of them is made of."""
+"""The statements of the paper, and the keys of a case that ask for their verdicts."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Annotated, Literal, Self
 
-from runs.report.verdict import Judgement
+from runs.case.limits import Few, Table
 
-STATEMENTS = {
+StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
+STATEMENTS: dict[StatementId, str] = {
     "S1": "Four and five terms of the series coincide until the first collision.",
     "S2": "At the end of the interval they are more than 20 % apart.",
     "S3": "At the tip all models with play conform for six seconds, then stratify.",
@@ -25,13 +26,19 @@ STATEMENTS = {
     "and plane.",
 }
 
+# What a run's folder may hold a copy of: a survey of the paper's readings, and what numerics of its
+# time show.
+SURVEY_FILE, THEN_FILE = FILES = ("readings.json", "then.json")
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """What a rule leaves; the fields are those of a verdict."""
 
-    verdict: Judgement
-    why: str
-    measured: float | None = None
-    threshold: float | None = None
-    unit: str = ""
+class CaseKeys(Table):
+    """What a case says of the paper."""
+
+    statements: Annotated[tuple[StatementId, ...], Few] = ()
+    """the statements of the paper that are judged on the run"""
+    demand: Annotated[tuple[StatementId, ...], Few] = ()
+    """the statements of the paper that the run must reproduce"""
+
+    def unjudged(self) -> Self:
+        """Return the same case without them."""
+        return self.model_copy(update={"statements": (), "demand": ()})

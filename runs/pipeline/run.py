@@ -274,9 +274,7 @@ def _run_model(
     with members.workers(comm if case.ensemble else None) as executor:
         if not means.first_rank:
             return None
-        alone = case.model_copy(
-            update={"models": (model,), "title": "", "statements": (), "demand": ()}
-        )
+        alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
         system = built.system
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
         moving = Stages(model.name, means.progress)

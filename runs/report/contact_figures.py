@@ -108,7 +108,7 @@ def friction(pen: Pen) -> list[Figure]:
         "force."
     )
     title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
-    return [pen.finish(sheet, None, "friction", title, caption, ("S7", "S8"))]
+    return [pen.finish(sheet, None, "friction", title, caption)]
 
 
 def running_mean(pen: Pen, force: Array) -> Array:

@@ -32,11 +32,9 @@ def tip(pen: Pen) -> list[Figure]:
         _members(pen, axes, name, "tip")
     axes.set(xlabel="time (s)", ylabel="deflection (mm)", xlim=(0.0, pen.time[-1]))
     drawn_axis(pen, axes)
-    statements = (*(("S7",) if pen.regular else ("S2", "S3")), *_many_segments(pen))
-    caption = f"Deflection of the tip, all models{_counterpart(pen, 'tip')}."
+    caption = f"Deflection of the tip, all models.{_sampled(pen, 'tip')}"
     title = f"Tip: {_reach(pen, 'tip')}"
-    caption += _sampled(pen, "tip")
-    return [pen.finish(sheet, axes, "tip", title, caption, statements, chart=_chart(pen, "tip"))]
+    return [pen.finish(sheet, axes, "tip", title, caption, chart=_chart(pen, "tip"))]
 
 
 def close_up(pen: Pen) -> list[Figure]:
@@ -78,13 +76,11 @@ def close_up(pen: Pen) -> list[Figure]:
             if contacts
             else "Triangles mark each model's"
         )
-        + " first peak"
-        + (", on which several verdicts rest." if pen.of_the_paper else ".")
+        + " first peak."
     )
     if peakless:
         caption += f" No peak within {pen.case.time.duration:g} s: {', '.join(peakless)}."
-    statements = ("S1", "S4", "S5", "S6", *_many_segments(pen))
-    return [pen.finish(sheet, axes, "tip-close-up", title, caption, statements)]
+    return [pen.finish(sheet, axes, "tip-close-up", title, caption)]
 
 
 def heads(pen: Pen) -> list[Figure]:
@@ -115,16 +111,11 @@ def _head(pen: Pen, place: str) -> Figure:
     tied = [pen.labels[name] for name in pen.play_free if name in pen.models]
     dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
     caption = (
-        f"Deflection of the head of the segment {which!r}, model by model"
-        + (_counterpart(pen, "head") if number == 1 else "")
-        + "."
-        + dashed
+        f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
+        f"{_sampled(pen, place)}"
     )
-    statements = ("S6", "S7") if pen.regular else ("S6",)
     title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
-    caption += _sampled(pen, place)
-    chart = _chart(pen, place)
-    return pen.finish(sheet, panels[0], place, title, caption, statements, chart=chart)
+    return pen.finish(sheet, panels[0], place, title, caption, chart=_chart(pen, place))
 
 
 def lateral_tip(pen: Pen) -> list[Figure]:
@@ -148,19 +139,6 @@ def _chart(pen: Pen, place: str, heading: str = "deflection (mm)") -> Chart:
         for name in pen.models
     ]
     return Chart(pen.time, heading, curves)
-
-
-def _many_segments(pen: Pen) -> tuple[str, ...]:
-    """S11 is about booms of more than two segments."""
-    return ("S11",) if len(pen.case.segments) > 2 else ()
-
-
-def _counterpart(pen: Pen, place: str) -> str:
-    """Which figure of the paper shows the same."""
-    if not pen.of_the_paper:
-        return ""
-    number = {"tip": 6, "head": 7}[place] + (2 if pen.regular else 0)
-    return f": the counterpart of Fig. {number} of the paper"
 
 
 def _reach(pen: Pen, place: str) -> str:

@@ -17,11 +17,10 @@ from runs.report.figure_context import Figure
 from runs.report.first_look import first_look
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_tables
-from runs.report.numerals import NONE, number
-from runs.report.pages import MARKS, page
+from runs.report.numerals import number
+from runs.report.pages import Addition, page
 from runs.report.stress_tables import wall_tables
 from runs.report.tables import Table, TextTable
-from runs.report.verdict import Verdict
 
 # Kinds of pictures in the order of their numbers.
 PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
@@ -29,20 +28,18 @@ PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
 
 def render(
     results: Results,
-    verdicts: Sequence[Verdict],
+    addition: Addition,
     figures: Sequence[Figure],
     snapshots: Sequence[Figure],
-    readings: Sequence[TextTable] = (),
     viewer: str = "",
 ) -> str:
     """The report as HTML: every picture and script inside, no resource from elsewhere.
 
     Args:
         results: one run.
-        verdicts: those that its case asks for.
+        addition: of a client.
         figures: on disk.
         snapshots: on disk.
-        readings: tables of a survey of the case's readings.
         viewer: file beside the report, in which the boom can be turned.
 
     Where plotly is not installed the pictures of curves stand alone.
@@ -53,14 +50,14 @@ def render(
         "answers": answer_tables(results),
         "known": known_tables(results),
         "compared": compared_tables(results),
-        "readings": [],
+        "added": [],
         "models": [*model_tables(results), *calibration_tables(results), *wall_tables(results)],
     }
     texts = {
         part: [text for table in several if (text := table.text).rows]
         for part, several in tables.items()
     }
-    texts |= {"readings": [*readings]}
+    texts |= {"added": [*addition.tables]}
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     shown = [
@@ -69,20 +66,14 @@ def render(
     ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
     costs = _costs(results)
-    judged: list[str] = [verdict.verdict for verdict in verdicts]
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.play_free])
     return page(
-        "report.html",
+        addition.template,
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
         cautions=results.summary.cautions,
-        counts={kind: judged.count(kind) for kind in MARKS},
-        verdicts=[
-            (v, _measured(v.measured, v), _measured(v.threshold, v), _evidence(v, shown))
-            for v in verdicts
-        ],
-        then=any(verdict.then for verdict in verdicts),
+        remarks=addition.remarks,
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
         look=look,
@@ -97,6 +88,7 @@ def render(
         case_text=toml.dumps(results.case),
         **texts,
         **pictures,
+        **addition.content,
     )
 
 
@@ -105,21 +97,6 @@ def _numbered(
 ) -> list[tuple[TextTable | Figure, str]]:
     """Each with what the text calls it, *Table 1* and so forth; the blank does not break."""
     return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
-
-
-def _evidence(
-    verdict: Verdict, shown: Sequence[tuple[TextTable | Figure, str]]
-) -> Mapping[str, str]:
-    """Anchor → label of what the report shows on a statement, pictures first."""
-    bears = [(thing, label) for thing, label in shown if verdict.id in thing.statements]
-    bears.sort(key=lambda entry: isinstance(entry[0], TextTable))
-    return {thing.anchor: label for thing, label in bears}
-
-
-def _measured(value: float | None, verdict: Verdict) -> str:
-    """A verdict's number with its unit."""
-    text = number(value)
-    return f"{text} {verdict.unit}" if verdict.unit and text != NONE else text
 
 
 def _costs(results: Results) -> Mapping[str, str]:

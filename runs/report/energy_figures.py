@@ -74,8 +74,7 @@ def residuals(pen: Pen) -> list[Figure]:
         "the largest work: the largest so far. Without contact the motion is exact to round-off."
     )
     title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
-    statements = ("S8",) if pen.regular else ()
-    return [pen.finish(sheet, axes, "energy-residual", title, caption, statements, part="numerics")]
+    return [pen.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
 
 
 def _energies(pen: Pen, name: str) -> Array:

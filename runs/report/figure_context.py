@@ -43,7 +43,6 @@ class Figure:
         path: PNG or GIF.
         title: a line.
         caption: sentences.
-        statements: of the paper, S1 … S11, that it bears on.
         part: of the report where it belongs.
         chart: the same curves for whoever reads it on a screen.
     """
@@ -51,7 +50,6 @@ class Figure:
     path: Path
     title: str
     caption: str
-    statements: Sequence[str] = ()
     part: Part = "motion"
     chart: Chart | None = None
 
@@ -69,7 +67,6 @@ class Pen:
         self.data = results.trajectories
         self.ensembles = results.ensembles
         self.summary = results.summary.models
-        self.of_the_paper = bool(results.case.statements)
         self.regular = results.case.regular
         self.folder = folder
         self.time = np.asarray(self.data["time"].values, dtype=float)
@@ -155,7 +152,6 @@ class Pen:
         stem: str,
         title: str,
         caption: str,
-        statements: Sequence[str] = (),
         part: Part = "motion",
         chart: Chart | None = None,
     ) -> Figure:
@@ -173,7 +169,7 @@ class Pen:
             sheet.savefig(path)
         if chart is not None and chart.thinned:
             caption += THINNED
-        return Figure(path, title, caption, statements, part, chart)
+        return Figure(path, title, caption, part, chart)
 
 
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:

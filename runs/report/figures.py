@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The figures of a run, as PNG. Each says beside its drawing which statements it bears on."""
+"""The figures of a run, as PNG."""
 
 from __future__ import annotations
 

@@ -155,11 +155,11 @@ def strength_sentence(results: Results) -> str:
     used.sort(reverse=True)
     unknown = _not_given(results, first)
     if used[0][0] > 1.0:
-        verdict = "Not strong enough"
+        result = "Not strong enough"
     else:
-        verdict = "Of what is known all is" if unknown else "All is"
-        verdict += " strong enough without a safety factor"
-    return f"{verdict}: {listed(phrase for _, phrase in used)}.{unknown}"
+        result = "Of what is known all is" if unknown else "All is"
+        result += " strong enough without a safety factor"
+    return f"{result}: {listed(phrase for _, phrase in used)}.{unknown}"
 
 
 def _not_given(results: Results, model: str) -> str:

@@ -49,7 +49,7 @@ def slow_peaks(pen: Pen) -> list[Figure]:
         "not all its members have the next peak."
     )
     title = f"Slow peaks: {number} are common to all members"
-    return [pen.finish(sheet, axes, "slow-peaks", title, caption, ("S2", "S3"), "knowledge")]
+    return [pen.finish(sheet, axes, "slow-peaks", title, caption, "knowledge")]
 
 
 def horizons(pen: Pen) -> list[Figure]:
@@ -81,4 +81,4 @@ def horizons(pen: Pen) -> list[Figure]:
         "with a finer step is as far from the run; below the line's end a finer step would help."
     )
     title = "Horizons: how long a motion can be predicted"
-    return [pen.finish(sheet, axes, "horizons", title, caption, (), "knowledge")]
+    return [pen.finish(sheet, axes, "horizons", title, caption, "knowledge")]

@@ -51,7 +51,6 @@ def known_tables(results: Results) -> list[Table]:
                 _peak_columns({name: _heights(found) for name, found in peaks.items()}),
                 (f"{title}ends where not all members have the next peak.",),
                 "slow-peaks",
-                ("S2", "S3"),
             )
         )
     return tables
@@ -94,7 +93,7 @@ def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], durati
             f"Slow peaks are those of the motion below {number(asked.slow_below)} Hz; common "
             "ones are those that all members have."
         )
-    return Table("Horizons", columns, notes, "horizons", ("S2", "S3"))
+    return Table("Horizons", columns, notes, "horizons")
 
 
 def _growth_table(measured: Mapping[str, Predictability]) -> Table:
@@ -180,7 +179,6 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
             pointwise,
             (DECIDES["pointwise"],),
             "pointwise",
-            ("S4",),
         ),
         Table(
             f"Slow peaks against {reference}",
@@ -191,7 +189,6 @@ def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
                 DECIDES["peaks"],
             ),
             "peaks-against",
-            ("S3",),
         ),
         Table(
             f"Distribution of the tip against {reference}",
@@ -225,7 +222,7 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
         "Parts of the larger range of both within that time. What is well above the step error, "
         "in the table of steps, is the models' own.",
     )
-    return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole", ("S7",))
+    return Table(f"Tip against {reference}, over the whole run", columns, notes, "whole")
 
 
 def _spread(

@@ -113,13 +113,7 @@ def step_table(results: Results) -> Table:
     errors = [model.step_error for model in models]
     if any(error is not None for error in errors):
         columns.append(Column("step error\n% of the tip's range", errors, ".2g", TO_PERCENT))
-    if results.case.statements:
-        notes.append(
-            "The paper names at most 2000 steps for the series and more than 4000 for beam "
-            "elements, and 4375 for these with friction."
-        )
-    statements = ("S8", "S10") if results.case.regular else ("S10",)
-    return Table("Steps", columns, notes, "steps", statements)
+    return Table("Steps", columns, notes, "steps")
 
 
 def law_table(results: Results) -> Table | None:
@@ -146,10 +140,10 @@ def law_table(results: Results) -> Table | None:
     if not all(joint.pad or joint.pads for _, joint, _ in found):
         notes.append(
             "Without slide pads the segments press in the corners of their boxes. Pads beside "
-            "them, on walls that give way, move the paper's first peak by a quarter and more: give "
-            "the pads their place (joint.pad)."
+            "them, on walls that give way, can move the first peak by a quarter and more: give the "
+            "pads their place (joint.pad)."
         )
-    return Table("Contact laws", columns, notes, "laws", ("S9",))
+    return Table("Contact laws", columns, notes, "laws")
 
 
 def space_table(results: Results) -> Table | None:

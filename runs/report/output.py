@@ -3,11 +3,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
@@ -19,14 +16,13 @@ from runs.report import snapshots
 from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.figures import draw_in
-from runs.report.tables import TextTable
+from runs.report.pages import Addition
+from runs.report.tables import as_json
 from runs.report.trajectory_csv import write_csv
-from runs.report.verdict import Verdict
 from runs.report.viewer import VIEWER, viewer
 from shell_model.pictures.opengl import RenderingUnavailable
 
 REPORT = "report.html"
-VERDICTS = "verdicts.json"
 CALIBRATION = "calibration.json"
 LATER = "they were not asked for; protractile snapshot draws them"
 
@@ -66,7 +62,7 @@ def prepare(out: str, file: str) -> Path:
 
 def write(
     run: Run,
-    verdicts: Sequence[Verdict],
+    addition: Addition,
     folder: Path,
     snapshots_now: bool = True,
 ) -> None:
@@ -74,7 +70,7 @@ def write(
 
     Args:
         run: a finished one.
-        verdicts: those that its case asks for.
+        addition: of a client.
         folder: an empty one.
         snapshots_now: whether they are drawn; else whoever wants some asks for them later.
     """
@@ -99,50 +95,35 @@ def write(
             gather()
     except RenderingUnavailable as reason:
         results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
-    _write_pages(results, verdicts, folder, figures)
+    _write_pages(results, addition, folder, figures)
 
 
-def write_report(
-    results: Results,
-    verdicts: Sequence[Verdict],
-    folder: Path,
-    surveyed: Sequence[TextTable] = (),
-) -> None:
-    """Write what is derived from the trajectories: summary, verdicts, figures, report.
+def write_report(results: Results, addition: Addition, folder: Path) -> None:
+    """Write what is derived from the trajectories: summary, figures, report.
 
     Args:
         results: of the folder.
-        verdicts: those that its case asks for.
+        addition: of a client.
         folder: gets them.
-        surveyed: what a survey of the case's readings has found.
     """
-    _write_pages(results, verdicts, folder, draw_in(results, folder), surveyed)
+    _write_pages(results, addition, folder, draw_in(results, folder))
 
 
 def _write_pages(
-    results: Results,
-    verdicts: Sequence[Verdict],
-    folder: Path,
-    figures: Sequence[Figure],
-    surveyed: Sequence[TextTable] = (),
+    results: Results, addition: Addition, folder: Path, figures: Sequence[Figure]
 ) -> None:
     pictures = snapshots.describe(results, folder)
     there = VIEWER if (folder / VIEWER).is_file() else ""
     texts = {
-        REPORT: render(results, verdicts, figures, pictures, surveyed, there),
+        REPORT: render(results, addition, figures, pictures, there),
         SUMMARY: str(results.summary),
+        **addition.files,
     }
     if cards := {
         name: model.calibration.model_dump()
         for name, model in results.summary.models.items()
         if model.calibration is not None
     }:
-        texts[CALIBRATION] = _json(cards)
-    if verdicts:
-        texts[VERDICTS] = _json([asdict(verdict) for verdict in verdicts])
+        texts[CALIBRATION] = as_json(cards)
     for name, text in texts.items():
         write_whole(folder / name, text)
-
-
-def _json(data: Any) -> str:
-    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -11,31 +13,54 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
+from runs.report.tables import TextTable
+
+TEMPLATES = Path(__file__).parent / "templates"
 # A picture in a page is a third as large as on the disk, and looks the same; it has at most twice
 # as many pixels as the page is wide for it.
 WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
-# How a verdict is marked, and the class of the mark.
-MARKS = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
+# The classes of marks that are a cell by themselves.
+TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 
-def page(template: str, **content: Any) -> str:
-    """A page as HTML; what it shows is escaped.
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """What a client of the program adds to the report of a run.
 
     Args:
-        template: file in ``runs/report/templates``.
+        template: extends ``report.html`` and fills its blocks ``added_…``.
+        content: what the template asks for besides.
+        tables: numbered with the report's own.
+        remarks: sentences below tables and figures, by their anchors.
+        files: of the run's folder, their text by name.
+    """
+
+    template: Path = TEMPLATES / "report.html"
+    content: Mapping[str, Any] = field(default_factory=dict)
+    tables: Sequence[TextTable] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+def page(template: str | Path, **content: Any) -> str:
+    """Return a page as HTML; what it shows is escaped.
+
+    Args:
+        template: the name of one in ``TEMPLATES``, or the path of another that extends these.
         content: what the template asks for.
     """
+    path = TEMPLATES / template
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=FileSystemLoader([path.parent, TEMPLATES]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters["data_uri"] = _data_uri
-    environment.globals |= {"marks": MARKS, "tones": {mark: kind for kind, mark in MARKS.items()}}
-    return environment.get_template(template).render(**content)
+    environment.globals |= {"tones": TONES, "remarks": {}}
+    return environment.get_template(path.name).render(**content)
 
 
 def _data_uri(path: Path) -> str:

@@ -40,7 +40,6 @@ class TextTable:
         rows: as long as the headings each; a cell may have several lines.
         notes: sentences below it.
         name: of its place in the report.
-        statements: of the paper, S1 … S11, that it bears on.
         strong: texts of cells that stand out.
     """
 
@@ -49,7 +48,6 @@ class TextTable:
     rows: Sequence[Sequence[str]]
     notes: Sequence[str] = ()
     name: str = ""
-    statements: Sequence[str] = ()
     strong: Sequence[str] = ()
 
     @property
@@ -151,7 +149,6 @@ class Table:
     columns: Sequence[Column]
     notes: Sequence[str] = ()
     name: str = ""
-    statements: Sequence[str] = ()
     strong: Sequence[str] = ()
 
     @classmethod
@@ -194,9 +191,7 @@ class Table:
         """As it is shown."""
         rows = list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
         headings = tuple(column.heading for column in self.columns)
-        return TextTable(
-            self.title, headings, rows, self.notes, self.name, self.statements, self.strong
-        )
+        return TextTable(self.title, headings, rows, self.notes, self.name, self.strong)
 
 
 def _plain(cell: Cell, factor: float) -> Plain:
@@ -214,6 +209,11 @@ def _number(value: float, factor: float) -> float | None:
     return float(factor * value) if math.isfinite(value) else None
 
 
+def as_json(data: Any) -> str:
+    """Return data as the text of a JSON file."""
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def write(
     folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[TextTable]
 ) -> None:
@@ -228,7 +228,7 @@ def write(
     """
     folder.mkdir(parents=True, exist_ok=True)
     texts = {
-        "json": json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+        "json": as_json(data),
         "md": "\n".join([f"# {title}\n", *(table.markdown() for table in tables)]),
     }
     for suffix, text in texts.items():

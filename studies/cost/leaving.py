@@ -16,6 +16,7 @@ from runs.folder.cache import Cache
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.report import output
+from runs.report.pages import Addition
 from runs.report.tables import Table
 
 CASE = CASES / "lift.toml"
@@ -43,7 +44,7 @@ def leaving(models: Sequence[str]) -> Table:
             out = Path(folder) / what
             out.mkdir()
             begin, spent = perf_counter(), _processor_time()
-            output.write(run, [], out, drawn)
+            output.write(run, Addition(), out, drawn)
             rows.append((what, perf_counter() - begin, _processor_time() - spent))
     return Table.of_rows(
         "leaving",

@@ -13,8 +13,8 @@ from runs.case import reading as case_file
 from runs.case.schema import Case
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
+from runs.paper.verdicts import Verdict
 from runs.pipeline.results import Results
-from runs.report.verdict import Verdict
 from tests.runs.summaries import model_summary, summary_of
 
 PAPER = CASES / "paper.toml"

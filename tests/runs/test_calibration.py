@@ -28,6 +28,7 @@ from runs.pipeline.means import Means
 from runs.pipeline.models import build
 from runs.pipeline.run import run_case as run_models
 from runs.report.output import write
+from runs.report.pages import Addition
 from studies.motions import move
 from studies.working_load import Point, at_point
 from tests.runs.coarse_case import COARSE
@@ -163,7 +164,7 @@ def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
     run = run_models(alone, "", Means(MPI.COMM_SELF))
     assert run is not None
     run.answer()
-    write(run, [], tmp_path, None)
+    write(run, Addition(), tmp_path, None)
     told = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
     summary = run.results.summary.models["sprung"].calibration
     assert summary is not None

@@ -15,7 +15,7 @@ from runs.pipeline.results import Results
 from runs.report.document import render
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import law_table, model_table, step_table
-from runs.report.tables import Table
+from runs.report.pages import Addition
 from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -110,7 +110,7 @@ def test_peaks_that_no_model_has_make_no_table() -> None:
     }
     nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
     found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
-    page = render(found, [], [], [])
+    page = render(found, Addition(), [], [])
     assert "Horizons" in page
     assert "Distribution of the tip" in page
     assert "– / –" not in page
@@ -152,12 +152,6 @@ def test_a_whole_run_is_compared_with_friction() -> None:
     assert "above the step error, in the table of steps" in " ".join(table.notes)
     assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
     assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
-    assert table.statements == ("S7",)
-
-
-def statements(table: Table | None) -> tuple[str, ...]:
-    assert table is not None
-    return tuple(table.statements)
 
 
 def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
@@ -166,8 +160,6 @@ def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
         f"2{part}".replace(" ", "\N{NO-BREAK SPACE}") for part in (" 380 952", " 020")
     )
     assert plain.text.rows[0] == ("kantorovich-4", "4.2", steps, changes)
-    assert statements(plain) == ("S10",)
-    assert statements(step_table(results(friction=0.2))) == ("S8", "S10")
     more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123))
     assert [row[-2:] for row in more.text.rows] == [
         ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
@@ -181,7 +173,6 @@ def test_contact_laws_are_those_of_the_models() -> None:
     assert table.text.rows == [
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
-    assert statements(table) == ("S9",)
     free = results()
     tied = free.case.model_copy(update={"joints": ()})
     assert law_table(Results(tied, free.trajectories, free.summary)) is None

@@ -16,15 +16,15 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput
-from runs.paper import readings
+from runs.client import judge
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
-from runs.paper.rules import judge
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.means import Means
 from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_report
+from runs.report.pages import Addition
 from runs.report.trajectory_csv import write_csv
 
 pytestmark = pytest.mark.usefixtures("few_figures")
@@ -64,7 +64,7 @@ def test_a_survey_in_the_folder_is_in_the_report(run: Run, folder: Path) -> None
     assert "7, restored, as printed, 2" not in (folder / "report.html").read_text(encoding="utf-8")
     leave_survey(folder, toml.digest(run.results.case))
     results = Results.load(folder)
-    write_report(results, [], folder, readings.load(folder, results.case))
+    write_report(results, judge(results, folder), folder)
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert page.count("7, restored, as printed, 2") == 2
     assert "0 of 1 readings are excluded." in page
@@ -73,7 +73,7 @@ def test_a_survey_in_the_folder_is_in_the_report(run: Run, folder: Path) -> None
 def test_a_survey_of_another_case_is_refused(run: Run, folder: Path) -> None:
     leave_survey(folder, "of another")
     with pytest.raises(BadInput, match=r"readings\.json: is not of the case in case\.toml"):
-        readings.load(folder, run.results.case)
+        judge(run.results, folder)
 
 
 def header(folder: Path) -> list[str]:
@@ -93,7 +93,7 @@ def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
     in_space = replace(run, results=replace(run.results, trajectories=data))
     out = tmp_path / "out"
     out.mkdir()
-    write(in_space, [], out, out)
+    write(in_space, Addition(), out, out)
     gaps = [name for name in header(out) if name.startswith("gap@")]
     assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
 
@@ -134,7 +134,7 @@ def test_a_model_that_nothing_answers_for_keeps_its_motion(
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.answer()
-    write(again, [], tmp_path, tmp_path)
+    write(again, Addition(), tmp_path, tmp_path)
     found = Results.load(tmp_path)
     xr.testing.assert_identical(found.trajectories.load(), run.results.trajectories)
     assert found.summary.failures == {
@@ -155,7 +155,7 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
     assert content.pop("pads") == []
     content["models"]["kantorovich-4"]["static_tip"] = -1.9
     (folder / "summary.json").write_text(json.dumps(content), encoding="utf-8")
-    write_report(Results.load(folder), [], folder)
+    write_report(Results.load(folder), Addition(), folder)
     told, again = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["cautions"]
     assert (
         again

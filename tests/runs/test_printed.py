@@ -12,11 +12,10 @@ from rich.console import Console
 from runs import CASES
 from runs.case import reading as case_file
 from runs.paper.statements import STATEMENTS
-from runs.paper.verdict_table import decisive, print_verdicts
+from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
 from runs.pipeline.answers import Answers, ModelAnswers, Swing
 from runs.pipeline.results import Results
 from runs.report.printed import print_models
-from runs.report.verdict import Judgement, Verdict
 from tests.runs.summaries import model_summary, summary_of
 
 

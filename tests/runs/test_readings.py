@@ -19,7 +19,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
 from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
-from runs.report.verdict import Judgement
+from runs.paper.verdicts import Judgement
 
 LITERAL = Reading(0.007, "literal", "as printed", 2.0)
 RESTORED = Reading(0.007, "restored", "as printed", 2.0)

@@ -3,6 +3,7 @@
 
 import base64
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO, StringIO
@@ -22,12 +23,13 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
-from runs.paper.verdict_table import print_verdicts
+from runs.paper.verdicts import Verdict, addition, print_verdicts
 from runs.pipeline.cautions import _passed_by, of_run
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
 from runs.report.figure_context import Figure
+from runs.report.pages import Addition
 from runs.report.printed import print_models
 from runs.report.tables import TextTable
 from tests.runs.summaries import changed, model_summary
@@ -46,7 +48,7 @@ def results() -> Results:
 def figures(tmp_path: Path) -> list[Figure]:
     image.imsave(tmp_path / "tip.png", np.zeros((2, 2)))
     path = tmp_path / "tip.png"
-    return [Figure(path, "Tip <of> the boom", "A caption & more.", ("S1", "S2"))]
+    return [Figure(path, "Tip <of> the boom", "A caption & more.")]
 
 
 class Page(HTMLParser):
@@ -71,6 +73,17 @@ class Page(HTMLParser):
         return [attributes for name, attributes in self.tags if name == tag]
 
 
+def report(
+    results: Results,
+    figures: list[Figure],
+    verdicts: list[Verdict] | None = None,
+    tables: Sequence[TextTable] = (),
+    snapshots: Sequence[Figure] = (),
+) -> str:
+    found = judge(results) if verdicts is None else verdicts
+    return render(results, addition(results.case, found, tables), figures, snapshots)
+
+
 def printed(results: Results, width: int = 100) -> str:
     console = Console(file=StringIO(), width=width)
     print_models(results, console)
@@ -85,7 +98,7 @@ def skipping(results: Results, why: str) -> Summary:
 
 
 def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, judge(results), figures, []))
+    page = Page(report(results, figures))
     for verdict in judge(results):
         assert verdict.statement in page.text
         assert verdict.why in page.text
@@ -96,7 +109,7 @@ def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> N
 
 
 def test_shows_every_model_and_where_it_comes_from(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, judge(results), figures, []))
+    page = Page(report(results, figures))
     cells = re.sub(r"\s+", " ", page.text)
     for name, model in results.summary.models.items():
         assert f"{name} {model.kind}" in cells
@@ -110,7 +123,7 @@ def test_shows_every_model_and_where_it_comes_from(results: Results, figures: li
 def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: Path) -> None:
     motion = tmp_path / "motion.gif"
     motion.write_bytes(GIF)
-    page = Page(render(results, judge(results), figures, [Figure(motion, "Motion", "It moves.")]))
+    page = Page(report(results, figures, snapshots=[Figure(motion, "Motion", "It moves.")]))
     assert not [script for script in page.all("script") if "src" in script]
     assert not page.all("link") + page.all("iframe")
     assert all(str(link["href"]).startswith("#") for link in page.all("a"))
@@ -126,7 +139,7 @@ def test_needs_nothing_else(results: Results, figures: list[Figure], tmp_path: P
 
 
 def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
-    text = render(results, judge(results), figures, [])
+    text = report(results, figures)
     closed = re.sub(r"<(meta|img)\b([^>]*)>", r"<\1\2/>", text.replace("<!DOCTYPE html>", ""))
     root = ElementTree.fromstring(closed.strip())
     assert root.tag == "html"
@@ -143,7 +156,7 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
 
 def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) -> None:
     """Reference: the ids of the page itself; no id twice, no link into nothing."""
-    page = Page(render(results, judge(results), figures, []))
+    page = Page(report(results, figures))
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
     links = [str(link["href"]).removeprefix("#") for link in page.all("a")]
@@ -152,12 +165,11 @@ def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) ->
 
 
 def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]) -> None:
-    """Reference: what the figure says of itself; S10 is about steps, S9 about contact laws."""
-    text = render(results, judge(results), figures, [])
+    """Reference: S2 is about the tip, S10 about steps, S9 about contact laws."""
+    text = report(results, figures)
     rows = {key: text[text.index(f'<tr id="{key}">') :].split("</tr>")[0] for key in STATEMENTS}
     found = {key: re.findall(r'href="#([^"]+)">([^<]+)<', row) for key, row in rows.items()}
-    figure = ("figure-tip", "Figure\N{NO-BREAK SPACE}1")
-    assert found["S1"] == found["S2"] == [figure]
+    assert found["S2"] == [("figure-tip", "Figure\N{NO-BREAK SPACE}1")]
     tables = {key: found[key][0] for key in ("S10", "S9")}
     assert {key: anchor for key, (anchor, _) in tables.items()} == {
         "S10": "table-steps", "S9": "table-laws"
@@ -166,7 +178,7 @@ def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]
         heading = text[text.index(f'id="{anchor}"') :]
         assert heading.split("<h3>")[1].startswith(f"{label}. ")
     assert found["S7"] == found["S8"] == []
-    assert all(link in text for key in ("S1", "S9") for link, _ in found[key])
+    assert all(link in text for key in ("S2", "S9") for link, _ in found[key])
 
 
 def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
@@ -176,7 +188,7 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
         None,
         pytest.approx(0.0193, rel=0.01),
     )
-    text = render(results, judge(results), figures, [])
+    text = report(results, figures)
     text = text[text.index('id="table-models"') :]
     (row,) = re.findall(
         r"<tr>\s*<td[^>]*>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL
@@ -189,17 +201,17 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
 
 def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
     table = TextTable("A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",), "readings")
-    page = Page(render(results, judge(results), figures, [], [table]))
+    page = Page(report(results, figures, tables=[table]))
     assert "A <survey>" in page.text
-    assert {"data-name": "S1", "class": "contradicted"} in page.all("td")
+    assert {"data-name": "S1", "class": "no"} in page.all("td")
     assert {"href": "#readings"} in page.all("a")
-    assert {"href": "#readings"} not in Page(render(results, judge(results), figures, [])).all("a")
+    assert {"href": "#readings"} not in Page(report(results, figures)).all("a")
 
 
 def test_shows_what_was_computed_then_where_it_was(results: Results, figures: list[Figure]) -> None:
     verdicts = judge(results)
     tried = [replace(verdicts[0], then="not shown: in <no> run"), *verdicts[1:]]
-    with_it, without = (Page(render(results, found, figures, [])) for found in (tried, verdicts))
+    with_it, without = (Page(report(results, figures, found)) for found in (tried, verdicts))
     cells = [cell for cell in with_it.all("td") if cell.get("data-name") == "As computed then"]
     assert [cell.get("class") for cell in cells] == [None, *["none"] * (len(verdicts) - 1)]
     assert "not shown: in <no> run" in with_it.text
@@ -208,7 +220,7 @@ def test_shows_what_was_computed_then_where_it_was(results: Results, figures: li
 
 def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
     summary = results.summary.model_copy(update={"cautions": ["caution: <of> the tip"]})
-    text = Page(render(replace(results, summary=summary), judge(results), figures, [])).text
+    text = Page(report(replace(results, summary=summary), figures)).text
     assert text.index("caution: <of> the tip") < text.index("Verdicts")
 
 
@@ -217,22 +229,22 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     case = results.case.model_copy(update={"title": attack})
     verdicts = [replace(verdict, why=attack) for verdict in judge(results)]
     summary = skipping(results, attack)
-    page = Page(render(replace(results, case=case, summary=summary), verdicts, figures, []))
+    page = Page(report(replace(results, case=case, summary=summary), figures, verdicts))
     assert not page.all("script")
     assert page.text.count(attack) == 2 + len(verdicts) + 1  # title, heading; whys; snapshots
     assert page.all("img")[0]["alt"] == "Tip <of> the boom"
 
 
 def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]) -> None:
-    assert "Snapshots" not in Page(render(results, judge(results), figures, [])).text
+    assert "Snapshots" not in Page(report(results, figures)).text
     reason = "no GL here"
     summary = skipping(results, reason)
-    page = Page(render(replace(results, summary=summary), judge(results), figures, []))
+    page = Page(report(replace(results, summary=summary), figures))
     assert f"Skipped: {reason}" in page.text
 
 
 def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> None:
-    page = Page(render(results, judge(results), figures, []))
+    page = Page(report(results, figures))
     viewport = [meta for meta in page.all("meta") if meta.get("name") == "viewport"]
     assert viewport == [{"name": "viewport", "content": "width=device-width, initial-scale=1"}]
     assert "@media (max-width:" in page.style
@@ -243,7 +255,7 @@ def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> 
 def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> None:
     case = results.case.model_copy(update={"demand": ("S1",)})
     demanding = replace(results, case=case)
-    assert Page(render(demanding, judge(demanding), figures, [])).text.count("(demanded)") == 1
+    assert Page(report(demanding, figures)).text.count("(demanded)") == 1
     assert printed(demanding).count("(demanded)") == 1
 
 
@@ -304,7 +316,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     errors = {"contact_compliance": 2.4e-9, "readings": 0.013, "frequency_limit_in_hz": 84.6}
     shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
-    page = render(changed(results, name, **shell), [], [], [])
+    page = render(changed(results, name, **shell), Addition(), [], [])
     assert (
         "reduction 1.20 s, contact compliance of the reduction within 2.4 × 10⁻⁹, readings of the "
         "reduction within 0.013, its modes right up to 85 Hz, local compliance 26 % off an "
@@ -344,5 +356,5 @@ def test_judges_the_statements_that_the_case_asks_for_alone(
     assert [verdict.id for verdict in judge(replace(results, case=one))] == ["S1", "S9"]
     assert "Statements of the paper" in printed(results)
     assert "Statements of the paper" not in printed(other)
-    assert "Verdicts" in Page(render(results, judge(results), figures, [])).text
-    assert "Verdicts" not in Page(render(other, judge(other), figures, [])).text
+    assert "Verdicts" in Page(report(results, figures)).text
+    assert "Verdicts" not in Page(report(other, figures)).text

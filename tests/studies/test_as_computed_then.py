@@ -14,8 +14,7 @@ import pytest
 from dynamics.friction import DryFriction
 from geometry.arrays import Array
 from runs.case import reading as case_file
-from runs.paper import then
-from runs.report.verdict import Verdict
+from runs.paper.verdicts import Verdict, beside
 from studies.as_computed_then import leave, tables
 from studies.then.general_solver import METHODS, solve
 from studies.then.samples import SERIES, STEPS, Example, Moved, Numerics, Sample, all_numerics
@@ -165,7 +164,7 @@ def test_the_verdicts_read_what_the_study_leaves(tmp_path: Path) -> None:
     leave(done, made, tmp_path)
     case = case_file.load(str(WITH))
     verdict = Verdict("S7", "", None, None, "", "undecided", "")
-    (found,) = then.beside([verdict], tmp_path, case)
+    (found,) = beside([verdict], tmp_path, case)
     assert found.then == f"not shown: {done.outcomes['S7'].why}"
     names = [table.name for table in made]
     text = (tmp_path / "then.md").read_text(encoding="utf-8")

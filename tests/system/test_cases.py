@@ -17,6 +17,7 @@ from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.report.document import render
 from runs.report.figures import draw
+from runs.report.pages import Addition
 
 pytestmark = pytest.mark.slow
 
@@ -40,7 +41,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     run.answer()
     results = run.results
     figures = draw(results, tmp_path)
-    page = render(results, [], figures, [])
+    page = render(results, Addition(), figures, [])
     assert all(figure.path.exists() for figure in figures)
     assert case.title in unescape(page)
     assert ("First peaks of the tip in space" in page) == (name == "spatial")

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The client that judges runs, the paper: its case keys, its part of the report, its verdicts.
+
+The one module of the product that knows it. Another client would replace its four names here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runs.paper.statements import FILES as FILES
+from runs.paper.statements import CaseKeys as CaseKeys
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from runs.pipeline.results import Results
+    from runs.report.pages import Addition
+
+
+def judge(results: Results, folder: Path | None = None) -> Addition:
+    """Return what the client adds to the report of a run.
+
+    Args:
+        results: of the run.
+        folder: of a finished run, which may hold ``FILES``.
+
+    Raises:
+        BadInput: one of these files is damaged, or of another case.
+    """
+    from runs.paper import readings, rules, verdicts
+
+    found, case = rules.judge(results), results.case
+    if folder is None:
+        return verdicts.addition(case, found)
+    found = verdicts.beside(found, folder, case)
+    return verdicts.addition(case, found, readings.load(folder, case))
+
+
+def show(judged: Mapping[str, Addition], console: Console) -> int:
+    """Print what the client says of runs, by their file; return the exit status."""
+    from runs.paper.verdicts import show
+
+    return show(judged, console)

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Verdicts on the paper's statements: in the report, in the terminal and in ``verdicts.json``.
+
+What numerics of the paper's own time show of a statement stands beside its verdict:
+``python -m studies.as_computed_then`` finds it, and a run's folder may hold a copy.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table as Grid
+from rich.text import Text
+
+from runs.case import toml
+from runs.case.messages import BadInput, first_fault
+from runs.case.schema import Case
+from runs.case.user_files import read_text
+from runs.paper.statements import STATEMENTS, THEN_FILE
+from runs.process.shown import message, shown
+from runs.process.terminal import say
+from runs.report.numerals import NONE, number
+from runs.report.pages import Addition
+from runs.report.tables import TextTable, as_json
+
+Judgement = Literal["reproduced", "contradicted", "undecided"]
+MARKS: Mapping[Judgement, str] = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
+_STYLES = {"reproduced": "green", "contradicted": "red", "undecided": "yellow"}
+
+TEMPLATES = Path(__file__).parent / "templates"
+FILE = "verdicts.json"
+_STUDY = "run python -m studies.as_computed_then again"
+
+_Read = TypeVar("_Read")
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """One statement, judged.
+
+    Args:
+        id: by which the case knows it.
+        statement: what is claimed.
+        measured: the number that the rule looks at, None where there is none.
+        threshold: what it is held against.
+        unit: of both; empty where there is none.
+        verdict: what the rule says.
+        why: what was compared, and what the number can and cannot decide.
+        demanded: the case takes no other verdict than ``reproduced``.
+        then: what numerics of the statement's own time show; empty where none were tried.
+    """
+
+    id: str
+    statement: str
+    measured: float | None
+    threshold: float | None
+    unit: str
+    verdict: Judgement
+    why: str
+    demanded: bool = False
+    then: str = ""
+
+    def with_unit(self, value: float | None) -> str:
+        """Return one of its numbers as text."""
+        text = number(value)
+        return f"{text} {self.unit}" if self.unit and text != NONE else text
+
+
+class Outcome(BaseModel):
+    """Whether some numerics of then show a statement, and which."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    shown: bool
+    why: str
+
+    def __str__(self) -> str:
+        return f"{'shown' if self.shown else 'not shown'}: {self.why}"
+
+
+class Outcomes(BaseModel):
+    """The file: of which cases it is, and what it says by statement."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    case_hashes: list[str]
+    outcomes: Mapping[str, Outcome]
+
+
+def beside(verdicts: Sequence[Verdict], folder: Path, case: Case) -> list[Verdict]:
+    """Return the verdicts with what the file in a run's folder says; as they are without one.
+
+    Raises:
+        BadInput: the file is damaged, or of another case.
+    """
+
+    def read(data: Any) -> tuple[Sequence[str], Outcomes]:
+        found = Outcomes.model_validate(data)
+        return found.case_hashes, found
+
+    found = read_copy(folder / THEN_FILE, case, read, _STUDY)
+    says = {key: str(outcome) for key, outcome in found.outcomes.items()} if found else {}
+    return [replace(one, then=says.get(one.id, "")) for one in verdicts]
+
+
+def read_copy(
+    path: Path, case: Case, read: Callable[[Any], tuple[Sequence[str], _Read]], remedy: str
+) -> _Read | None:
+    """Return what a JSON file in a run's folder holds; None where there is none.
+
+    Args:
+        path: of the file.
+        case: the run's.
+        read: returns hashes of the cases that the data are of, and what they say.
+        remedy: how the file is made again.
+
+    Raises:
+        BadInput: it is damaged, or of another case.
+    """
+    try:
+        hashes, found = read(json.loads(read_text(path)))
+    except FileNotFoundError:
+        return None
+    except ValidationError as error:
+        what = f"{first_fault(error)}; is damaged or another version's"
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        what = f"cannot be understood ({error})"
+    else:
+        if toml.digest(case) in hashes:
+            return found
+        what = "is not of the case in case.toml"
+    raise BadInput(str(path.parent), path.name, f"{what}; remove it, or {remedy}")
+
+
+def addition(
+    case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[TextTable] = ()
+) -> Addition:
+    """Return what verdicts, and a survey of the case's readings, add to the report of its run."""
+    judged = [verdict.verdict for verdict in verdicts]
+    known = evidence(case)
+    figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
+    remarks = {
+        f"figure-{place}": f"The counterpart of Fig. {number} of the paper."
+        for place, number in figures.items()
+    }
+    remarks["figure-tip-close-up"] = "Several verdicts rest on the first peak."
+    remarks["table-steps"] = (
+        "The paper names at most 2000 steps for the series and more than 4000 for beam elements, "
+        "and 4375 for these with friction."
+    )
+    content = {
+        "verdicts": verdicts,
+        "marks": MARKS,
+        "counts": {kind: judged.count(kind) for kind in MARKS},
+        "evidence": {verdict.id: known[verdict.id] for verdict in verdicts},
+        "then": any(verdict.then for verdict in verdicts),
+    }
+    written = {FILE: as_json([asdict(verdict) for verdict in verdicts])} if verdicts else {}
+    return Addition(
+        TEMPLATES / "judged_report.html",
+        content,
+        surveyed,
+        remarks if case.statements else {},
+        written,
+    )
+
+
+def evidence(case: Case) -> Mapping[str, Sequence[str]]:
+    """Return what of a report bears on each statement: anchors, pictures before tables."""
+    regular = case.regular
+    heads = [f"figure-head-{number}" for number in range(2, len(case.joints) + 1)]
+    heads = ["figure-head", *heads]
+    tip, close_up = "figure-tip", "figure-tip-close-up"
+    slow = [] if regular else [tip]
+    slow += ["figure-slow-peaks", "table-horizons", "table-slow-peaks"]
+    numerics = ["figure-energy-residual", "table-steps"] if regular else []
+    return {
+        "S1": [close_up],
+        "S2": slow,
+        "S3": [*slow, "table-peaks-against"],
+        "S4": [close_up, "table-pointwise"],
+        "S5": [close_up],
+        "S6": [close_up, *heads],
+        "S7": [*([tip, *heads] if regular else []), "figure-friction", "table-whole"],
+        "S8": ["figure-friction", *numerics],
+        "S9": ["table-laws"],
+        "S10": ["table-steps"],
+        "S11": [tip, close_up] if len(case.segments) > 2 else [],
+    }
+
+
+def show(judged: Mapping[str, Addition], console: Console) -> int:
+    """Print verdicts by the file of their run, and those that a case demands; the exit status."""
+    runs: dict[str, Sequence[Verdict]] = {
+        file: one.content["verdicts"] for file, one in judged.items()
+    }
+    print_verdicts({Path(file).stem: verdicts for file, verdicts in runs.items()}, console)
+    status = 0
+    for file, verdicts in runs.items():
+        for one in verdicts:
+            if one.demanded and one.verdict != "reproduced":
+                status = 1
+                demand = f"{one.id} is {one.verdict}, and the case demands that it is reproduced"
+                say(message(f"{shown(file)}: demand: {demand}: {one.why}"))
+    return status
+
+
+def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
+    """Print one table of verdicts: on each statement that of the first run that decides it.
+
+    Args:
+        runs: the verdicts by the name of their case; nothing is printed if there are none.
+        console: where to.
+    """
+    judging = [name for name, verdicts in runs.items() if verdicts]
+    if not judging:
+        return
+    table = Grid(title="Statements of the paper", title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("id")
+    table.add_column("verdict")
+    table.add_column("measured", justify="right")
+    table.add_column("threshold", justify="right")
+    table.add_column("statement", ratio=1)
+    found = decisive(runs)
+    by_then = any(verdict.then for _, verdict in found)
+    if by_then:
+        table.add_column("as computed then", ratio=1)
+    for name, verdict in found:
+        demanded = " (demanded)" if verdict.demanded else ""
+        unit = f" ({verdict.unit})" if verdict.unit else ""
+        table.add_row(
+            verdict.id,
+            Text.assemble(
+                (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
+                (f"\nin {name}" if len(judging) > 1 else "", "dim"),
+            ),
+            number(verdict.measured),
+            number(verdict.threshold),
+            Text.assemble(verdict.statement, (unit, "dim")),
+            *((verdict.then or NONE,) if by_then else ()),
+        )
+    console.print(table)
+
+
+def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
+    """Return each statement's verdict, and the run that gives it.
+
+    That is the first run that decides it; the first of all if none does.
+    """
+    found: dict[str, tuple[str, Verdict]] = {}
+    for name, verdicts in runs.items():
+        for verdict in verdicts:
+            first = found.setdefault(verdict.id, (name, verdict))[1]
+            if first.verdict == "undecided" != verdict.verdict:
+                found[verdict.id] = name, verdict
+    return [found[statement] for statement in STATEMENTS if statement in found]
