@@ -103,6 +103,10 @@ class System:
         """Its unit as headings have it: ``mm⁴``."""
         return self.unit(si).replace("^", "").translate(_RAISED)
 
+    def text(self, value: float, si: str, digits: int = 4) -> str:
+        """Return a value in a unit of the SI as text in its own one: ``12.5 mm``."""
+        return f"{self.of(value, si):.{digits}g} {self.label(si)}"
+
 
 def scaled(value: float, size: Fraction) -> float:
     """Value times size as decimals are: 9.7 mm are 0.0097 m to the last bit.

@@ -13,8 +13,8 @@ from geometry.boom import Boom
 from geometry.typography import TO_PERCENT
 from runs.case.actions import series_notes
 from runs.case.schema import Case
+from runs.pipeline.drives import Slipping, lag_cautions, slip_cautions, slippings
 from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
-from runs.pipeline.slipping import Slipping, lag_cautions, slip_cautions, slippings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +30,7 @@ MOST = 0.1
 
 def of_case(case: Case, boom: Boom, drives: Iterable[Slipping]) -> list[str]:
     """Before anything moves; ``drives`` those of a given stiffness."""
-    return slips(case, boom) + slip_cautions(drives, case.system)
+    return [*slips(case, boom), *slip_cautions(drives, case.system)]
 
 
 def of_run(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:

@@ -1,44 +1,160 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a boom's drives do, before anything moves."""
+"""What a boom's drives do, and whether what they draw will stick and slip."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from beam_model.statics import drawn_out
+from dynamics.drive.stick_slip import Pulled
+from dynamics.drive.travel import Travel
+from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
-from geometry.drive import Drive
+from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.drive import fastest
+from runs.case.pulled import pulled_by, with_pulled
+from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.at_rest import drawn_positions, instants, positions
+from runs.pipeline.statics import laws, statics
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Part of the least overlap beyond which what lags behind presses pads in other places.
+FAR_BEHIND = 0.01
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
-    """A sentence for each drive: how far, when, how fast, and what overlap is left.
+    """Yield a sentence for each drive: how far, when, how fast, and what overlap is left.
 
     Args:
         boom: whose joints may have drives.
         system: the units to say it in.
     """
-
-    def said(length: float) -> str:
-        return f"{system.of(length, 'm'):.4g} {system.label('m')}"
-
     for joint in boom.joints:
         if joint.drive is None:
             continue
-        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
-        begin, end = _span(joint.drive)
-        low, high = joint.drive.reach
-        ways = [f"{said(way)} {word}" for way, word in ((high, "out"), (-low, "in")) if way > 0.0]
-        speed = system.of(fastest(joint.drive), "m/s")
+        kinks, (low, high) = joint.drive.history.kinks, joint.drive.reach
+        ways = [
+            f"{system.text(way, 'm')} {word}"
+            for way, word in ((high, "out"), (-low, "in"))
+            if way > 0.0
+        ]
         yield (
-            f"A drive draws {inner.name!r} {' and '.join(ways)} of {outer.name!r} from {begin:g} "
-            f"to {end:g} s, at {speed:.4g} {system.label('m/s')} at most; "
-            f"{said(boom.overlap_left(joint))} of overlap "
+            f"A drive draws {boom.segments[joint.inner].name!r} {' and '.join(ways)} of "
+            f"{boom.segments[joint.outer].name!r} from {max(0.0, min(kinks)):g} "
+            f"to {max(kinks):g} s, at {system.text(fastest(joint.drive), 'm/s')} at most; "
+            f"{system.text(boom.overlap_left(joint), 'm')} of overlap "
             "are left."
         )
 
 
-def _span(drive: Drive) -> tuple[float, float]:
-    """When it begins and ends, in s."""
-    kinks = drive.history.kinks
-    return max(0.0, min(kinks)), max(kinks)
+@dataclass(frozen=True, slots=True)
+class Slipping:
+    """What is known of a drive of a given stiffness before it draws.
+
+    Args:
+        inner: the name of the segment.
+        pulled: what goes along.
+        friction: R in N where pads press most at rest.
+        fastest: the largest speed that is asked, in m/s.
+    """
+
+    inner: str
+    pulled: Pulled
+    friction: float
+    fastest: float
+
+    @property
+    def critical(self) -> float:
+        """The speed in m/s from which on it does not stick again once it slips."""
+        return self.pulled.critical_speed(self.friction)
+
+
+def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
+    """Yield each drive of a given stiffness, with the pads of beam elements at rest on its way."""
+    joints = pulled_by(case, boom)
+    if not joints or statics(case, boom) is None:
+        return
+    system = with_pulled(drawn_out(boom, *laws(case, boom)), case, boom)
+    travels = (travel for travel in system.travels if travel.pulled is not None)
+    for (number, pulled), travel in zip(joints.items(), travels, strict=True):
+        joint = boom.joints[number]
+        assert joint.drive is not None
+        name, friction = boom.segments[joint.inner].name, _friction(system, travel, case)
+        yield Slipping(name, pulled, friction, fastest(joint.drive))
+
+
+def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
+    """The largest R in N at rest, under the loads of t = 0 and where drives have drawn it to."""
+    from dynamics.time_step import axial_friction
+
+    duration, most = case.time.duration, 0.0
+    rests = positions(system, instants(system, duration)) | drawn_positions(system, duration)
+    for time, position in rests.items():
+        gaps = system.standing(time).rows @ position
+        forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]
+        most = max(most, float(axial_friction(system, travel, np.array([forces]))[0]))
+    return most
+
+
+def slip_lines(found: Iterable[Slipping], system: System) -> Iterator[str]:
+    """Yield a sentence for each drive of a given stiffness."""
+    for one in found:
+        if one.critical == 0.0:
+            slips = "slips on once it slips"
+        elif one.critical == np.inf:
+            slips = "sticks and slips at any speed"
+        else:
+            slips = f"sticks and slips below {system.text(one.critical, 'm/s', 3)}"
+        yield (
+            f"What the drive of {one.inner!r} draws, {system.text(one.pulled.mass, 'kg')}, swings "
+            f"at {one.pulled.frequency:.3g} Hz, damped by "
+            f"{TO_PERCENT * one.pulled.damping_ratio:.3g} %, and against "
+            f"{one.friction * TO_KILO:.3g} kN of friction, the most at rest, {slips}."
+        )
+
+
+def slip_cautions(found: Iterable[Slipping], system: System) -> Iterator[str]:
+    """Yield a line for each drive that would stick and slip all the way."""
+    for one in found:
+        if one.critical <= one.fastest:
+            continue
+        remedy = "nothing damps what swings on it; give it a dashpot"
+        if one.critical < np.inf:
+            remedy = (
+                f"{system.text(one.critical, 'm/s', 3)} would be smooth; draw faster, or by what "
+                "is stiffer or damped more"
+            )
+        yield (
+            f"caution: the drive of {one.inner!r} lets it stick and slip all the way: it draws at "
+            f"{system.text(one.fastest, 'm/s', 3)} at most, and {remedy}"
+        )
+
+
+def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
+    """Yield a line for each segment whose pads press in other places as it lags so far behind.
+
+    Args:
+        boom: of a case.
+        data: the trajectories of its models.
+        system: of the lines.
+    """
+    for number, joint in enumerate(boom.joints, start=1):
+        name = "drive_lag" if number == 1 else f"drive_lag-{number}"
+        if name not in data:
+            continue
+        lag, overlap = float(np.abs(data[name]).max()), boom.overlap_left(joint)
+        if lag > FAR_BEHIND * overlap:
+            yield (
+                f"caution: {boom.segments[joint.inner].name!r} lags up to "
+                f"{system.text(lag, 'm')} behind its drive, more than "
+                f"{TO_PERCENT * FAR_BEHIND:g} % of the {system.text(overlap, 'm')} of overlap: "
+                "the motion across the boom, which goes by the drive, does not feel that"
+            )

@@ -11,16 +11,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from dynamics.failure import NUMERICS
-from dynamics.motion import MOST_STEPS
+from dynamics.motion import MOST_STEPS, Motion
 from runs.case.declared import Declared
+from runs.case.kinds.model import ModelTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
-from runs.pipeline.foreseen import Foreseen
+from runs.pipeline.models import build_on
+from runs.pipeline.motion import begun
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0
@@ -62,20 +64,50 @@ class Cost:
         return Cost(self.memory + other.memory, self.seconds + other.seconds)
 
 
+@dataclass(frozen=True, slots=True)
+class Preview:
+    """The motions that a case asks of its models, each built once, as beams before anything moves.
+
+    Args:
+        declared: by the case.
+    """
+
+    declared: Declared
+    _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
+
+    def motion(self, model: Model, beam: ModelTable) -> Motion:
+        """The motion that the case asks of a model.
+
+        Args:
+            model: one of the case's.
+            beam: itself, or what stands for it.
+
+        Raises:
+            NumericsError: there is no equilibrium to start from.
+        """
+        for known, motion in self._motions:
+            if known == beam:
+                return motion
+        case, joined = self.declared.case, self.declared.joined(model)
+        motion = begun(build_on(joined, case, beam).system, case)
+        self._motions.append((beam, motion))
+        return motion
+
+
 def of_run(case: Case) -> Cost:
     """What a run of a checked case takes."""
-    return of_foreseen(Foreseen(Declared(case)))
+    return of_preview(Preview(Declared(case)))
 
 
-def of_foreseen(foreseen: Foreseen) -> Cost:
+def of_preview(preview: Preview) -> Cost:
     """What a run of a case takes, some of whose models may be built as beams already."""
-    case = foreseen.declared.case
+    case = preview.declared.case
     shell = any(model.needs_shell for model in case.models)
     total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
     # What overflows is found when it is run.
     with np.errstate(all="ignore"):
         for model in case.models:
-            total += _of_model(foreseen, model)
+            total += _of_model(preview, model)
     return total
 
 
@@ -102,11 +134,11 @@ def refuse_large(cost: Cost, file: str) -> None:
         )
 
 
-def _of_model(foreseen: Foreseen, model: Model) -> Cost:
-    case, stand_in = foreseen.declared.case, model.stand_in(foreseen.declared.boom)
+def _of_model(preview: Preview, model: Model) -> Cost:
+    case, stand_in = preview.declared.case, model.stand_in(preview.declared.boom)
     before = Cost(stand_in.memory, stand_in.seconds)
     try:
-        motion = foreseen.motion(model, stand_in.beam)
+        motion = preview.motion(model, stand_in.beam)
     except NUMERICS:
         # The run ends with it, and says so.
         return before

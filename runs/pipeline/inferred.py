@@ -13,8 +13,11 @@ from rich.table import Table
 from dynamics.damping import pressed_ratios
 from dynamics.failure import NUMERICS
 from dynamics.motion import rest_of
+from geometry.arrays import Array
+from geometry.axial import carried, passed_over
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
+from geometry.typography import TO_KILO, TO_MEGA
 from runs.case import actions
 from runs.case.build import contact_laws
 from runs.case.contact import JointTable
@@ -22,16 +25,17 @@ from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
-from runs.pipeline.axial_forces import print_axial_forces
 from runs.pipeline.cautions import of_case
-from runs.pipeline.drives import drive_lines
-from runs.pipeline.estimates import of_foreseen
-from runs.pipeline.foreseen import Foreseen
-from runs.pipeline.slipping import slip_lines, slippings
+from runs.pipeline.drives import drive_lines, slip_lines, slippings
+from runs.pipeline.estimates import Preview, of_preview
+from runs.pipeline.proportions import of_buckling
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
 SHOWN_MODES = 3
+
+# Beside a jump of the force, as a part of the segment.
+_BESIDE = 1.0e-9
 
 # A damping ratio below it is none.
 _ROUND_OFF = 1.0e-12
@@ -39,7 +43,7 @@ _ROUND_OFF = 1.0e-12
 
 def print_inferred(declared: Declared, console: Console) -> None:
     """Print a checked case's segments, joints and models."""
-    case, boom, foreseen = declared.case, declared.boom, Foreseen(declared)
+    case, boom, preview = declared.case, declared.boom, Preview(declared)
     console.print(case.title, markup=False)
     console.print(_segments(case, boom))
     stiffeners = _stiffeners(boom, case.system)
@@ -53,7 +57,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
     console.print(_models(case))
     if boom.compressed:
         print_axial_forces(declared, console)
-    ratios = _damping_ratios(foreseen)
+    ratios = _damping_ratios(preview)
     if ratios.rows:
         console.print(ratios)
     print_statics(case, boom, console)
@@ -61,7 +65,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
         console.print(note, highlight=False, markup=False)
     for caution in of_case(case, boom, drives):
         console.print(caution, markup=False, highlight=False)
-    console.print(f"A run may take {of_foreseen(foreseen)}.", highlight=False)
+    console.print(f"A run may take {of_preview(preview)}.", highlight=False)
 
 
 def _segments(case: Case, boom: Boom) -> Table:
@@ -158,9 +162,51 @@ def _models(case: Case) -> Table:
     return table
 
 
-def _damping_ratios(foreseen: Foreseen) -> Table:
+def print_axial_forces(declared: Declared, console: Console) -> None:
+    """Print the largest force of each segment, and the buckling factor of each model."""
+    table = Table("axial force, pressing", "largest (kN)", "over the plain area (MPa)")
+    for number, segment in enumerate(declared.boom.segments):
+        force, stress = _hardest(declared.boom, number)
+        told = "unknown" if stress is None else f"{stress * TO_MEGA:.4g}"
+        table.add_row(segment.name, f"{force * TO_KILO:.4g}", told)
+    console.print(table)
+    buckling = Table("joints pressed", "buckling factor", "of the critical forces")
+    cautions: list[str] = []
+    for model in declared.case.models:
+        # A shell would have to be computed first.
+        name = f"{model.name}, as beam elements" if model.needs_shell else model.name
+        factor = model.coarsened(declared.boom).critical_factor(declared.joined(model))
+        cautions += of_buckling(name, factor)
+        row = "unknown", "unknown"
+        if factor is not None:
+            row = f"{factor:.4g}", f"{100.0 / factor:.3g} %"
+        buckling.add_row(name, *row)
+    console.print(buckling)
+    for caution in cautions:
+        console.print(caution, markup=False)
+
+
+def _hardest(boom: Boom, number: int) -> tuple[float, float | None]:
+    """The force of a segment in N that is farthest from 0, and over its area in Pa, as drawn."""
+    segment = boom.segments[number]
+    jumps = {*segment.compression.places, *passed_over(boom.segments, boom.joints, number)}
+    ends = [x + side * _BESIDE * segment.length for x in jumps for side in (-1.0, 1.0)]
+    x = np.unique(np.clip([*ends, segment.start, segment.end], segment.start, segment.end))
+    times = [joint.drive.times for joint in boom.joints if joint.drive is not None]
+    time = np.unique(np.concatenate([np.zeros(1), *times]))
+    forces = carried(boom.segments, boom.joints, number, x, time)
+    if segment.section is None:
+        return _farthest(forces), None
+    return _farthest(forces), _farthest(forces / [segment.section_at(at).area for at in x])
+
+
+def _farthest(values: Array) -> float:
+    return float(values.flat[np.abs(values).argmax()])
+
+
+def _damping_ratios(preview: Preview) -> Table:
     """What the first modes of the boom get in each model, its joints pressed, from all damping."""
-    case, boom = foreseen.declared.case, foreseen.declared.boom
+    case, boom = preview.declared.case, preview.declared.boom
     shapes = [f"mode {number}" for number in range(1, SHOWN_MODES + 1)]
     table = Table("damping, joints pressed", *shapes)
     given = [*case.damping.model_dump().values(), *(s.viscous_damping for s in boom.segments)]
@@ -171,15 +217,15 @@ def _damping_ratios(foreseen: Foreseen) -> Table:
         # A shell would have to be computed first.
         beam = model.stand_in(boom).beam if model.needs_shell else model.coarsened(boom)
         name = f"{model.name}, as beam elements" if model.needs_shell else model.name
-        table.add_row(name, *islice(_ratios(foreseen, model, beam), SHOWN_MODES))
+        table.add_row(name, *islice(_ratios(preview, model, beam), SHOWN_MODES))
     return table
 
 
-def _ratios(foreseen: Foreseen, model: Model, beam: ModelTable) -> list[str]:
+def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
     try:
         with np.errstate(all="ignore"):
-            motion = foreseen.motion(model, beam)
-            rest = rest_of(motion.system, foreseen.declared.case.start.at_rest, motion.position)
+            motion = preview.motion(model, beam)
+            rest = rest_of(motion.system, preview.declared.case.start.at_rest, motion.position)
             found = pressed_ratios(motion.system, rest)
     except NUMERICS:
         return ["cannot be computed"]

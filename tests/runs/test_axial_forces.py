@@ -11,7 +11,7 @@ from rich.console import Console
 from runs import CASES
 from runs.case.declared import Declared
 from runs.case.reading import load
-from runs.pipeline.axial_forces import print_axial_forces
+from runs.pipeline.inferred import print_axial_forces
 
 TAPERED = """section = { height = 0.7, width = 0.3, flange = 0.012, web = 0.012 }
 head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }

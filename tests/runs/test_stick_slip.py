@@ -21,9 +21,9 @@ from runs.case.pulled import pulled_by
 from runs.case.reading import load
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.drives import lag_cautions
 from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import Results
-from runs.pipeline.slipping import lag_cautions
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.answer_tables import answer_tables
