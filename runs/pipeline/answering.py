@@ -31,6 +31,7 @@ from runs.pipeline.answers import (
 from runs.pipeline.at_rest import at_rest, drawn_positions, instants, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
+from runs.pipeline.model_quality import quality_notes
 from runs.pipeline.modes import matched, modes
 from runs.pipeline.motion import Plan
 from runs.pipeline.moved import Motions, gone_through, wall_stresses
@@ -40,7 +41,6 @@ from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.summary import Summary
 from runs.pipeline.swing import swing
-from runs.pipeline.trust import known
 
 
 class Resting(NamedTuple):
@@ -202,7 +202,7 @@ def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelA
         modes=_beside(boom, ran, models),
         play=added(ran, models) if boom.joints else [],
     )
-    return replace(answers, trust=known(summary, answers, case.time.duration))
+    return replace(answers, trust=quality_notes(summary, answers, case.time.duration))
 
 
 def _beside(

@@ -422,7 +422,7 @@ class PlayAdds:
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class QualityNote:
     """How far numbers can be trusted: one line.
 
     Args:
@@ -453,4 +453,4 @@ class Answers:
     tied_reactions: list[Reaction] = field(default_factory=list)
     modes: ModesBeside | None = None
     play: list[PlayAdds] = field(default_factory=list)
-    trust: list[Known] = field(default_factory=list)
+    trust: list[QualityNote] = field(default_factory=list)

@@ -25,10 +25,9 @@ from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
-from runs.pipeline.cautions import of_case
-from runs.pipeline.drives import drive_lines, slip_lines, slippings
+from runs.pipeline.drives import drive_lines, slip_cautions, slip_lines, slippings
 from runs.pipeline.estimates import Preview, of_preview
-from runs.pipeline.proportions import of_buckling
+from runs.pipeline.proportions import of_buckling, slips
 from runs.pipeline.statics import print_statics
 
 # Modes whose damping is shown.
@@ -63,7 +62,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
     print_statics(case, boom, console)
     for note in actions.series_notes(case):
         console.print(note, highlight=False, markup=False)
-    for caution in of_case(case, boom, drives):
+    for caution in (*slips(case, boom), *slip_cautions(drives, case.system)):
         console.print(caution, markup=False, highlight=False)
     console.print(f"A run may take {of_preview(preview)}.", highlight=False)
 

@@ -26,8 +26,8 @@ from runs.case.schema import Case, Model
 from runs.case.user_files import check_regular
 from runs.folder.files import MANIFEST, damaged, write_whole
 from runs.pipeline.answers import Moved, PlayAdds
-from runs.pipeline.cautions import of_run
 from runs.pipeline.comparisons import leading, reference_of
+from runs.pipeline.model_quality import cautions
 from runs.pipeline.pads import pressed_pads
 from runs.pipeline.place_names import place_names
 from runs.pipeline.summary import Summary
@@ -114,7 +114,7 @@ class Results:
         """Put what follows from the motion and the rest of the summary into it."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pressed_pads(case, boom, data))
-        summary.cautions = of_run(case, boom, data, summary)
+        summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
         """Write what :meth:`load` reads to a folder, which is made if it is missing."""

@@ -11,9 +11,9 @@ from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
+from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.results import Results
 from runs.pipeline.summary import PressedPad
-from runs.pipeline.trust import off_at_rest
 from runs.report.answer_tables import hardly
 from runs.report.figure_context import farthest
 from runs.report.numerals import NONE, SHOWN, amount, fixed, number

@@ -11,8 +11,8 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.answers import Added, Answers
 from runs.pipeline.means import Means
+from runs.pipeline.model_quality import quality_notes
 from runs.pipeline.run import run_case
-from runs.pipeline.trust import known
 from tests.runs.summaries import model_summary, summary_of
 
 if TYPE_CHECKING:
@@ -109,8 +109,8 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
             "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4),
         }
     )
-    found = {one.what: [] for one in known(summary, Answers({}), 10.0)}
-    for one in known(summary, Answers({}), 10.0):
+    found = {one.what: [] for one in quality_notes(summary, Answers({}), 10.0)}
+    for one in quality_notes(summary, Answers({}), 10.0):
         found[one.what].append(one.line)
     chaotic, regular = found["horizon"]
     assert "from here on: wild 3.20 s." in chaotic
@@ -120,4 +120,4 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
         "calm."
     ]
     none = summary_of({"plain": model_summary()})
-    assert [one.what for one in known(none, Answers({}), 10.0)] == ["energy"]
+    assert [one.what for one in quality_notes(none, Answers({}), 10.0)] == ["energy"]

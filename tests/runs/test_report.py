@@ -24,7 +24,7 @@ from runs.case.build import build_boom
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Verdict, addition, print_verdicts
-from runs.pipeline.cautions import _passed_by, of_run
+from runs.pipeline.model_quality import cautions, stress_cautions
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
 from runs.report.document import render
@@ -32,7 +32,7 @@ from runs.report.figure_context import Figure
 from runs.report.pages import Addition
 from runs.report.printed import print_models
 from runs.report.tables import TextTable
-from tests.runs.summaries import changed, model_summary
+from tests.runs.summaries import changed, model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
@@ -281,8 +281,8 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
     assert "[red]play[/nothing]" in printed(replace(results, case=case))
 
 
-def cautions(results: Results) -> list[str]:
-    return of_run(results.case, results.boom, results.trajectories, results.summary)
+def told(results: Results) -> list[str]:
+    return cautions(results.case, results.boom, results.trajectories, results.summary)
 
 
 def test_cautions_against_what_is_no_small_displacement(results: Results) -> None:
@@ -290,7 +290,7 @@ def test_cautions_against_what_is_no_small_displacement(results: Results) -> Non
     assert results.summary.cautions == []
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0
-    (line,) = cautions(replace(results, trajectories=wild))
+    (line,) = told(replace(results, trajectories=wild))
     name = str(wild["model"].values[0])
     assert line == (
         f"caution: in {name} the tip moves by 2 m, more than a tenth of the boom's length: small "
@@ -305,7 +305,7 @@ def test_cautions_against_a_poor_reduction(results: Results) -> None:
     for error, names in ((0.009, []), (0.93, [name])):
         errors = {"contact_compliance": error, "readings": 0.0}
         poor = changed(results, name, modes=6, reduction_errors=errors)
-        assert cautions(poor) == [
+        assert told(poor) == [
             f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow "
             "more modes, or --modes auto"
             for name in names
@@ -328,7 +328,7 @@ def test_cautions_against_a_poor_mesh(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
     for error, names in ((0.009, []), (0.34, [name]), (None, [])):
         poor = changed(results, name, mesh_error=error)
-        assert cautions(poor) == [
+        assert told(poor) == [
             f"caution: the mesh of {name} errs by 34 % of what the walls give way where the "
             "segments touch; give a smaller mesh_size"
             for name in names
@@ -342,7 +342,7 @@ def test_cautions_where_axial_forces_leave_what_walls_bear(name: str, cautioned:
     """Reference: by hand; of these booms one alone is both pressed along and drawn out."""
     shell = model_summary().model_copy(update={"stress": object()})
     boom = build_boom(case_file.load(str(CASES / f"{name}.toml")))
-    told = list(_passed_by({"beam": model_summary(), "shell": shell}, boom))
+    told = list(stress_cautions(summary_of({"beam": model_summary(), "shell": shell}), boom))
     assert [line.partition(" bear ")[0] for line in told] == (
         ["caution: the walls of shell"] if cautioned else []
     )

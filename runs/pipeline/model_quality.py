@@ -1,20 +1,35 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the numbers of a run can be trusted, one line for each kind of doubt."""
+"""How far the numbers of a run can be trusted, and what they are not worth, a line each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+import xarray as xr
+
+from geometry.axial import entry
+from geometry.boom import Boom
 from geometry.typography import TO_PERCENT, listed
-from runs.pipeline.answers import Answers, Known, ModelAnswers
+from runs.case.actions import series_notes
+from runs.case.schema import Case
+from runs.pipeline.answers import Answers, ModelAnswers, QualityNote
+from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
+from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
 from runs.pipeline.summary import Summary
 
 # The part of the tip's range apart at which members of an ensemble count as parted.
 _PARTED = 0.2
 
+# Relative error of a reduction, or of a mesh, beyond which a run says so.
+POOR = 0.01
 
-def known(summary: Summary, answers: Answers, duration: float) -> list[Known]:
-    """What can be said of a run.
+# Part of the boom's length beyond which no displacement is small.
+MOST = 0.1
+
+
+def quality_notes(summary: Summary, answers: Answers, duration: float) -> list[QualityNote]:
+    """Return what can be said of the accuracy of a run.
 
     Args:
         summary: of its models.
@@ -29,7 +44,7 @@ def known(summary: Summary, answers: Answers, duration: float) -> list[Known]:
         "mesh": _mesh(summary),
         "energy": _energy(summary),
     }
-    return [Known(what, line) for what, lines in kinds.items() for line in lines]
+    return [QualityNote(what, line) for what, lines in kinds.items() for line in lines]
 
 
 def percent(part: float) -> str:
@@ -121,3 +136,74 @@ def _energy(summary: Summary) -> Iterator[str]:
         f"Energy is accounted for within {model.energy_residual:.1g} of the work done in every "
         f"model; the least well in {name}."
     )
+
+
+def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
+    """Return what the results of models that have moved are not worth.
+
+    Args:
+        case: of the run.
+        boom: of the case.
+        data: the trajectories of its models.
+        summary: of the run, with all that has failed.
+    """
+    return [
+        *slips(case, boom),
+        *slip_cautions(slippings(case, boom), case.system),
+        *lag_cautions(boom, data, case.system),
+        *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
+        *_static(summary, case, boom),
+        *stress_cautions(summary, boom),
+        *_large_displacements(boom, data),
+        *_numerical(summary),
+        *series_notes(case),
+    ]
+
+
+def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
+    """Of axial forces, of the deflection at rest, of the duration."""
+    for name, model in summary.models.items():
+        yield from of_buckling(name, model.critical_factor)
+        yield from of_tip(f"in {name}", model.static_tip, boom)
+    found = summary.answers.models.items()
+    slowest = min(((mode.frequency, name) for name, one in found for mode in one.modes), default=())
+    if slowest:
+        yield from of_period(f"in {slowest[1]}", slowest[0], case)
+
+
+def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
+    """Yield what the walls' stresses of shells lack where axial forces move along the boom."""
+    numbers = range(len(boom.joints))
+    if any(entry(boom.segments, boom.joints, number) for number in numbers):
+        for name in (name for name, one in summary.models.items() if one.stress is not None):
+            yield (
+                f"caution: the walls of {name} bear the axial forces of the start: their stresses, "
+                "and what part of the yield strength these are, lack what the forces add where "
+                "drives take them; those of outer fibres have it"
+            )
+
+
+def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
+    largest = np.abs(data["tip"].values).max(axis=1)
+    for name, move in zip(data["model"].values, largest, strict=True):
+        if move > MOST * boom.length:
+            yield (
+                f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of "
+                "the boom's length: small displacements do not hold; check units and loads"
+            )
+
+
+def _numerical(summary: Summary) -> Iterator[str]:
+    """Of reductions and of meshes."""
+    for name, model in summary.models.items():
+        if (error := model.reduction_errors.get("contact_compliance") or 0.0) > POOR:
+            yield (
+                f"caution: the {model.modes} coordinates of {name} err by {TO_PERCENT * error:.2g} "
+                "% where the segments touch; allow more modes, or --modes auto"
+            )
+    for name, model in summary.models.items():
+        if (error := model.mesh_error or 0.0) > POOR:
+            yield (
+                f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of what the walls "
+                "give way where the segments touch; give a smaller mesh_size"
+            )
