@@ -20,7 +20,7 @@ from dynamics.energy import ENERGY_BOUND
 from geometry.arrays import Array
 from runs.case.build import build_boom, contact_laws
 from runs.case.schema import Case
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan
 from runs.report.tables import Table
 from studies.motions import STEP, friction_case, gap_system, lasting, loaded, shell_of
 from studies.pads import with_pads

@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan
 from studies.motions import finer, friction_case, gap_system, lasting, shell_of
 from studies.refined import Refined, error_plot, refined_table
 from studies.study import Piece, Tell, titled

@@ -29,8 +29,7 @@ from runs.case.kinds.model import Built, Workshop, of_kind
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.folder.cache import Cache
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 
 CASE = CASES / "friction-walk.toml"
 

@@ -24,8 +24,7 @@ from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from runs.report.tables import Table
 from studies.study import Held, Piece, Proof, Tell, titled
 

@@ -32,8 +32,8 @@ from runs.pipeline.at_rest import at_rest, drawn_positions, instants, positions
 from runs.pipeline.comparisons import reference_of
 from runs.pipeline.life import COUNTS, life
 from runs.pipeline.model_quality import quality_notes
+from runs.pipeline.models import Plan
 from runs.pipeline.modes import matched, modes
-from runs.pipeline.motion import Plan
 from runs.pipeline.moved import Motions, gone_through, wall_stresses
 from runs.pipeline.play import added
 from runs.pipeline.section_forces import with_cylinders

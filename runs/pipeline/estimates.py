@@ -21,8 +21,7 @@ from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
-from runs.pipeline.models import build_on
-from runs.pipeline.motion import begun
+from runs.pipeline.models import begun, build_on
 
 # What runs without being asked twice, in bytes and in s.
 ROOM, PATIENCE = 4.0e9, 3600.0

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The ensembles of a run: one for each model with play, and what they say of it."""
+"""How long the motion of a model can be predicted: its ensemble, its horizons, steps it needs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,21 @@ import xarray as xr
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import tied_system
-from dynamics.predictability.horizon import SHARES, horizons_of
-from dynamics.predictability.low_pass import CUTOFF_SHARE, SlowPeaks
+from dynamics.integrator import FixedStep, Integrator
+from dynamics.motion import Motion
+from dynamics.predictability.ensemble import Vary
+from dynamics.predictability.horizon import SHARES, horizons_of, measure_horizons
+from dynamics.predictability.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
+from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
-from runs.pipeline.summary import CommonPeaks, EnsembleSummary
+from runs.pipeline.summary import (
+    CommonPeaks,
+    EnsembleSummary,
+    Predictability,
+    StepsForPeaks,
+    Trial,
+)
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -26,6 +37,17 @@ if TYPE_CHECKING:
 ELEMENT_LENGTH = 0.5
 # Deflections that are kept of every member.
 PLACES = ("tip", "head")
+# Relative changes whose growth tells the horizon and its rate.
+CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
+# As many peaks as the slow motion has before its spread is as large as the peaks' differences.
+PEAKS = 3
+# How near a peak must be: in time as a part of the period, in height as a part of itself, beyond
+# the spread that an ensemble of fully resolved runs has by itself.
+WITHIN = 0.01
+
+# The first step is the output step over 2 to this power; the last one is below this part of a
+# period at the cutoff, which the filter still sees.
+_FINEST, _OF_PERIOD = -4, 0.25
 
 
 @contextmanager
@@ -102,3 +124,94 @@ def gather(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     return together.drop_vars("station", errors="ignore").assign_attrs(
         vary=kept[0].attrs["vary"], relative=kept[0].attrs["relative"], seed=kept[0].attrs["seed"]
     )
+
+
+def measure_predictability(
+    motion: Motion,
+    integrator: Integrator,
+    vary: Vary,
+    unchanged: Trajectory,
+    executor: Executor | None,
+    progress: Callable[[float], None],
+) -> Predictability:
+    """Return when changes of several sizes have grown, at what rate, and whether by the step.
+
+    Args:
+        motion: of the model.
+        integrator: of its system.
+        vary: what is changed.
+        unchanged: the motion as it is.
+        executor: who makes the runs; threads of our own unless given.
+        progress: told the part that is done.
+    """
+    found = measure_horizons(
+        motion,
+        CHANGES,
+        vary,
+        integrator=integrator,
+        executor=executor,
+        progress=progress,
+        unchanged=unchanged,
+    )
+    return Predictability(
+        relatives=found.relatives.tolist(),
+        shares=found.shares.tolist(),
+        times=found.times.tolist(),
+        of_step=found.of_step.tolist(),
+        rate=[growth.rate for growth in found.growth],
+        step_change=found.step_change,
+        limits=list(found.limits),
+    )
+
+
+def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
+    """Move in longer and longer steps; tell which keep the first slow peaks.
+
+    Args:
+        motion: from rest, of whose duration as much is taken as the peaks need.
+        peaks: the ensemble's.
+        cutoff: of the slow motion in Hz.
+
+    Returns:
+        None where there are not as many peaks.
+    """
+    if peaks.times.size < PEAKS:
+        return None
+    # The filter leans on what follows the last peak by half a period of its own.
+    lasting = peaks.times[PEAKS - 1] + 1.0 / cutoff
+    # Between outputs there is one step at least.
+    steps = motion.output_step * 2.0 ** np.arange(_FINEST, 64)
+    trials = []
+    for step in steps[steps < _OF_PERIOD / cutoff]:
+        output_step = max(step, motion.output_step)
+        duration = output_step * round(lasting / output_step)
+        trial = FixedStep(step)(replace(motion, duration=duration, output_step=output_step))
+        trials.append(
+            Trial(
+                step=step,
+                steps=trial.data.attrs["steps"],
+                energy_residual=trial.energy_residual,
+                holds=_holds(trial, peaks, cutoff),
+            )
+        )
+    # One trial that misses is chance, as a member of the ensemble may.
+    return StepsForPeaks(
+        peaks=PEAKS,
+        within=WITHIN,
+        duration=lasting,
+        fewest=min((trial.steps for trial in trials if trial.holds), default=None),
+        trials=trials,
+    )
+
+
+def _holds(trajectory: Trajectory, peaks: SlowPeaks, cutoff: float) -> bool:
+    """Whether the first slow peaks are where the ensemble has them."""
+    times, heights = slow_peaks(trajectory.data["tip"].values, trajectory.time, cutoff)
+    if times.size < PEAKS:
+        return False
+    first = slice(None, PEAKS)
+    late = np.abs(times[first] - peaks.times[first])
+    apart = np.abs(heights[first] - peaks.heights[first])
+    in_time = WITHIN * peaks.period + peaks.time_spreads[first]
+    in_height = WITHIN * np.abs(peaks.heights[first]) + peaks.height_spreads[first]
+    return bool((late <= in_time).all() and (apart <= in_height).all())

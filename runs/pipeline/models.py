@@ -1,15 +1,29 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The gap system of each model of a case."""
+"""The models of a case: how each becomes a gap system, and the motion that the case asks of it."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dynamics.failure import NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.motion import Motion, begin
+from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.build import joined
 from runs.case.kinds.model import Built, Joined, ModelTable, Workshop
 from runs.case.pulled import with_pulled
 from runs.case.schema import Case, Model
+
+if TYPE_CHECKING:
+    from dynamics.integrator import AdaptiveStep, FixedStep
+
+# Days of computing: what asks for more is a slip of the pen.
+MOST_STEPS = 1.0e10
 
 
 def build(case: Case, boom: Boom, model: Model, workshop: Workshop | None = None) -> Built:
@@ -33,3 +47,70 @@ def build_on(
     """A model on the boom of a case; arguments and errors as of :func:`build`."""
     built = model.build(joined, workshop)
     return replace(built, system=with_pulled(built.system, case, joined.boom))
+
+
+def begun(system: GapSystem, case: Case) -> Motion:
+    """The motion that a case asks of a system.
+
+    Raises:
+        NumericsError: there is no equilibrium to start from.
+    """
+    time, damping = case.time, case.damping
+    return begin(
+        system,
+        time.duration,
+        time.output_step,
+        case.start.at_rest,
+        damping.modal,
+        (damping.mass, damping.stiffness),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """The motion that a case asks of one of its models, and how it is integrated.
+
+    Args:
+        motion: of the system under the loads from t = 0 on.
+        integrator: with the step of the model or the case, else by the tolerance.
+    """
+
+    motion: Motion
+    integrator: FixedStep | AdaptiveStep
+
+    @classmethod
+    def of(cls, system: GapSystem, case: Case, model: ModelTable) -> Plan:
+        """Return the plan of a model of a case.
+
+        Raises:
+            NumericsError: there is no equilibrium to start from, or it would take days.
+        """
+        from dynamics.integrator import AdaptiveStep, FixedStep
+
+        motion, time = begun(system, case), case.time
+        step = model.step or time.step
+        if step is None:
+            return cls(motion, AdaptiveStep(time.tolerance))
+        if time.duration / step > MOST_STEPS:
+            raise NumericsError(
+                f"a step of {step:.3g} s makes {time.duration / step:.3g} steps; make it longer"
+            )
+        return cls(motion, FixedStep(step))
+
+    def warm(self) -> None:
+        """Compile the time loop by one output, so that a wall time is the motion's own."""
+        self.integrator(replace(self.motion, duration=self.motion.output_step))
+
+    def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:
+        """Return the motion."""
+        return self.integrator(self.motion, progress)
+
+    def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
+        """Return the change of the tip by twice a fixed step, as a part of its range."""
+        from dynamics.integrator import FixedStep
+
+        coarser = FixedStep(2.0 * trajectory.data.attrs["step"])
+        longer = coarser(self.motion, progress)
+        tips = [np.asarray(run.data["tip"].values) for run in (trajectory, longer)]
+        span = float(np.ptp(tips[0]))
+        return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0

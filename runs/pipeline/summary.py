@@ -51,7 +51,7 @@ class Measured(Entry):
     )
 
 
-class Peak(NamedTuple):
+class FirstPeak(NamedTuple):
     """Time in s and height in m; None where there is no peak."""
 
     time: Known
@@ -182,7 +182,7 @@ class ModelSummary(Entry):
     first_contact: Known
     contact_changes: int
     energy_residual: float
-    first_peak: dict[str, Peak]
+    first_peak: dict[str, FirstPeak]
     peak_contact_force: Known
     wall_time: float | None = None
     step_error: Known = None

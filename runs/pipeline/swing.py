@@ -18,7 +18,7 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import Swing
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
 # where something turns back to where the next does; none where they do more often than the most.

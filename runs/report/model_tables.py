@@ -7,7 +7,7 @@ from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_KILO, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.case.build import contact_laws
 from runs.pipeline.results import Results
-from runs.pipeline.summary import ModelSummary, Peak
+from runs.pipeline.summary import FirstPeak, ModelSummary
 from runs.report.numerals import number
 from runs.report.tables import Cell, Column, Table
 
@@ -194,7 +194,7 @@ def buckling_table(results: Results) -> Table | None:
     return Table("Axial forces", columns, notes, "buckling")
 
 
-def _first_peak(peak: Peak, duration: float) -> tuple[Cell, Cell]:
+def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
     """Time and height; where there is no peak the two say so together."""
     return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 

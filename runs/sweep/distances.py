@@ -22,8 +22,7 @@ from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
 from runs.sweep.quantities import Measured, Quantity
 

@@ -26,7 +26,7 @@ from runs.paper.parting import peaks_apart
 from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
 from runs.pipeline.members import slow_below
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan
 from studies.motions import gap_system, model_of, side_by_side
 from studies.then.modal_integrators import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 

@@ -14,8 +14,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.messages import BadInput
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
 
 CANTILEVER = """

@@ -11,7 +11,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import AT_PADS, gap_system
 from dynamics.contact import PowerContact
 from runs.case.build import build_boom
-from runs.pipeline.card import card
+from runs.pipeline.model_run import calibration_card
 from studies.motions import friction_case
 
 
@@ -28,7 +28,7 @@ def test_it_tells_stiffness_and_springs() -> None:
         Stiffness((1.01 * one.bending_stiffness,), (0.9 * (one.shear_stiffness or 0.0),))
         for one in boom.segments
     ]
-    told = card(boom, system, Calibration(stiffness, residual))
+    told = calibration_card(boom, system, Calibration(stiffness, residual))
     assert [(spring.x, spring.side) for spring in told.springs] == [
         (9.0, "top"),
         (9.0, "bottom"),

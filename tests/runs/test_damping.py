@@ -13,8 +13,7 @@ import pytest
 
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from tests.runs.case_texts import STEEL, box, joint
 
 HEAD = f"""

@@ -19,8 +19,8 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.folder.cache import Cache
+from runs.pipeline.models import Plan as Moving
 from runs.pipeline.models import build
-from runs.pipeline.motion import Plan as Moving
 from runs.sweep import output
 from runs.sweep.distances import (
     CHANGE,

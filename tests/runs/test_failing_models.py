@@ -19,7 +19,7 @@ from dynamics.trajectory import Trajectory
 from runs.folder.cache import VARIABLE
 from runs.paper.rules import judge
 from runs.pipeline import run
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile
@@ -149,7 +149,7 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
 
     def move(model: Any) -> Any:
         if model is lost:
-            raise NumericsError("lost")
+            return NumericsError("lost")
         # Each waits for the other one: both are at it at a time.
         if model is beam:
             assert at_work.wait(10.0)
@@ -157,13 +157,12 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
             at_work.set()
         return model.name, current_thread() is main_thread()
 
-    runs = run._beams_beside_shells((beam, lost, shell), move)
-    assert runs["beam"]() == ("beam", False)
-    assert runs["shell"]() == ("shell", True)
-    with pytest.raises(NumericsError, match="lost"):
-        runs["lost"]()
-    asked = run._beams_beside_shells((beam, lost), move)
-    assert asked["beam"]() == ("beam", True)
+    left = run._attempt_all((beam, lost, shell), move, alone=True)
+    assert list(left) == ["beam", "lost", "shell"]
+    assert left["beam"] == ("beam", False)
+    assert left["shell"] == ("shell", True)
+    assert str(left["lost"]) == "lost"
+    assert run._attempt_all((beam, lost), move, alone=True)["beam"] == ("beam", True)
 
 
 def test_who_interrupts_a_shell_waits_for_no_more_than_one_beam() -> None:
@@ -181,5 +180,5 @@ def test_who_interrupts_a_shell_waits_for_no_more_than_one_beam() -> None:
         sleep(0.2)
 
     with pytest.raises(KeyboardInterrupt):
-        run._beams_beside_shells(models, move)
+        run._attempt_all(models, move, alone=True)
     assert moved == ["beam"]

@@ -15,8 +15,7 @@ from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.pipeline.fewest_steps import PEAKS, steps_for_peaks
-from runs.pipeline.members import slow_below
+from runs.pipeline.members import PEAKS, slow_below, steps_for_peaks
 from runs.pipeline.models import build
 
 PAPER = CASES / "paper.toml"

@@ -19,7 +19,7 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
-from runs.pipeline.summary import Peak
+from runs.pipeline.summary import FirstPeak
 from runs.report import theme
 from runs.report.contact_figures import contact_peaks, first_contacts, friction
 from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
@@ -277,7 +277,7 @@ def test_what_is_pressed_from_the_start_has_no_first_contact(
 
 def test_without_a_peak_there_is_no_close_up(results: Results, tmp_path: Path) -> None:
     models = {
-        name: model.model_copy(update={"first_peak": {"tip": Peak(None, None)}})
+        name: model.model_copy(update={"first_peak": {"tip": FirstPeak(None, None)}})
         for name, model in results.summary.models.items()
     }
     summary = results.summary.model_copy(update={"models": models})

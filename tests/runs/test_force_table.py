@@ -16,8 +16,7 @@ from runs.case.build import build_boom, contact_laws
 from runs.case.contact import JointTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from tests.runs.coarse_case import COARSE
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"

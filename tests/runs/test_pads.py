@@ -18,8 +18,7 @@ from runs.case.declared import Declared
 from runs.case.schema import Case
 from runs.pipeline.at_rest import positions, pressed
 from runs.pipeline.inferred import print_inferred
-from runs.pipeline.models import build
-from runs.pipeline.motion import Plan
+from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report.answer_tables import pad_table

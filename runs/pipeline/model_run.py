@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""One model of a run: how it is built, moves, and is summed up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from time import perf_counter
+
+import numpy as np
+import xarray as xr
+
+from beam_model.calibration import Calibration, Stiffness
+from dynamics.failure import NUMERICS, NumericsError
+from dynamics.gap_system import GapSystem
+from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom, Segment
+from runs.case import toml
+from runs.case.kinds.model import Built, Workshop
+from runs.case.schema import Case, Model
+from runs.folder import records
+from runs.folder.cache import key
+from runs.folder.versions import program
+from runs.pipeline import members
+from runs.pipeline.means import Means, Progress
+from runs.pipeline.models import Plan, build
+from runs.pipeline.proportions import static_tip
+from runs.pipeline.shell_output import ShellOutput
+from runs.pipeline.summary import (
+    BeamOfShell,
+    CalibrationCard,
+    FirstPeak,
+    ModelSummary,
+    StationSpring,
+)
+
+# Of the outer segment, by the direction in which the inner one presses and its sign.
+_WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
+
+
+class SharedFailure(Exception):
+    """Of one of several ranks, for which the others may wait in the middle of their own work."""
+
+
+class Stages:
+    """The stages of one model, how far each is, and the wall time of those that are done in s."""
+
+    def __init__(self, model: str, progress: Progress) -> None:
+        self.tell = partial(progress, model)
+        self.seconds: dict[str, float] = {}
+        self.begin = perf_counter()
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[Callable[[float], None]]:
+        """Give what tells the part of a stage that is done."""
+        begin = perf_counter()
+        self.tell(name, 0.0)
+        yield partial(self.tell, name)
+        self.tell(name, 1.0)
+        self.seconds[name] = perf_counter() - begin
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """A motion that has ended; ``ensemble`` where the case asks for one."""
+
+    trajectory: Trajectory
+    summary: ModelSummary
+    ensemble: xr.Dataset | None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelRun:
+    """A model as it was built, its motion, what a shell leaves, and how long all that took."""
+
+    model: Model
+    built: Built
+    moved: Finished
+    shell: ShellOutput | None
+    stages: Stages
+
+
+def failure_reason(error: Exception) -> str:
+    """Return why a model has failed."""
+    if isinstance(error, NumericsError):
+        return str(error)
+    return (
+        f"cannot be computed ({error}); look for a number of the case that is out of proportion, "
+        "in another unit say"
+    )
+
+
+def run_model(
+    boom: Boom, model: Model, case: Case, cutoff: float | None, means: Means
+) -> ModelRun | None:
+    """Build, move and sum up a model, on rank 0; None elsewhere. Collective.
+
+    A motion that has ended before comes from where the run keeps motions, and goes there as soon as
+    it ends, so that the next run goes on from there.
+
+    Args:
+        boom: of the case.
+        model: one of the case's.
+        case: of the run.
+        cutoff: of the slow motion in Hz; None without one.
+        means: of the run.
+
+    Raises:
+        NumericsError: the model cannot be computed.
+        SharedFailure: likewise, of a shell that several ranks share.
+    """
+    comm, stages = means.comm, Stages(model.name, means.progress)
+    if model.needs_shell or means.first_rank:
+        tools = None if comm is None else Workshop(comm, stages.tell, means.cache)
+        try:
+            built = build(case, boom, model, tools)
+        except NUMERICS as error:
+            if means.alone or not model.needs_shell:
+                raise
+            raise SharedFailure(failure_reason(error)) from error
+        stages.seconds |= built.seconds
+    with members.workers(comm if case.ensemble else None) as executor:
+        if not means.first_rank:
+            return None
+        alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
+        system, kept = built.system, means.kept
+        content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
+        name = key([*content], program())
+        moved = kept.load(name, lambda files: records.unpack(files, Finished)) if kept else None
+        if moved is None:
+            moving = Stages(model.name, means.progress)
+            moved = _move(built, model, case, cutoff, executor, moving)
+            if kept is not None:
+                kept.remember(name, records.pack(moved))
+    summary, reduced = moved.summary, built.shell
+    if boom.compressed:
+        summary.critical_factor = built.critical_factor
+    if built.calibration is not None:
+        summary.calibration = calibration_card(boom, system, built.calibration)
+    # Those of a motion that is kept are what it has taken.
+    stages.seconds |= summary.seconds
+    shell = None
+    if reduced is not None:
+        summary.reduction_errors = dict(reduced.errors)
+        summary.local_compliance = list(reduced.local_compliance)
+        summary.mesh_error = reduced.mesh_error
+        with stages.stage("stress"):
+            shell = ShellOutput.of(boom, model.name, reduced, moved.trajectory)
+        summary.stress = shell.largest
+    summary.seconds, summary.wall_time = stages.seconds, perf_counter() - stages.begin
+    return ModelRun(model, built, moved, shell, stages)
+
+
+def _move(
+    built: Built,
+    model: Model,
+    case: Case,
+    cutoff: float | None,
+    executor: Executor | None,
+    stages: Stages,
+) -> Finished:
+    """Move a model; measure its step error, its ensemble and its horizons."""
+    plan, table = Plan.of(built.system, case, model), case.ensemble
+    motion, system = plan.motion, plan.motion.system
+    plan.warm()
+    with stages.stage("motion") as told:
+        trajectory = plan.trajectory(told)
+    summary = _summary(model, system, trajectory, built.num_dofs)
+    if summary.step_error is None and system.frictions and case.regular:
+        with stages.stage("twice the step") as told:
+            summary.step_error = plan.step_error(trajectory, told)
+    ensemble = None
+    if table is not None and system.laws:
+        with stages.stage("ensemble") as told:
+            ensemble = integrate_ensemble(
+                motion,
+                table.members,
+                table.relative,
+                table.seed,
+                table.vary,
+                plan.integrator,
+                executor,
+                told,
+                trajectory,
+            )
+        peaks = members.common_peaks(ensemble, cutoff)
+        summary.ensemble = members.sum_up(ensemble, peaks)
+        with stages.stage("horizons") as told:
+            summary.horizons = members.measure_predictability(
+                motion, plan.integrator, table.vary, trajectory, executor, told
+            )
+        if cutoff is not None and peaks is not None and motion.from_rest:
+            with stages.stage("step counts"):
+                summary.steps_for_peaks = members.steps_for_peaks(motion, peaks, cutoff)
+    summary.seconds = stages.seconds
+    return Finished(trajectory, summary, ensemble)
+
+
+def _summary(
+    model: Model, system: GapSystem, trajectory: Trajectory, num_dofs: int
+) -> ModelSummary:
+    attributes = trajectory.data.attrs
+    peaks = np.abs(trajectory.data["contact_force_peak"].values)
+    summary = ModelSummary(
+        kind=model.kind,
+        degrees_of_freedom=num_dofs,
+        modes=system.num_modes,
+        frequencies=system.frequencies[:6].tolist(),
+        seconds={},
+        step=attributes["step"],
+        steps=attributes["steps"],
+        first_contact=trajectory.first_contact,
+        contact_changes=attributes["contact_changes"],
+        energy_residual=attributes["energy_residual"],
+        first_peak={
+            name: FirstPeak(*trajectory.first_peak(name))
+            for name in ("tip", "head", "tip_lateral")
+            if name in trajectory.data
+        },
+        peak_contact_force=float(peaks.max()) if peaks.size else None,
+        step_error=attributes["step_error"],
+        resolving_step=attributes["resolving_step"],
+        static_tip=static_tip(system),
+    )
+    if stick_slip := attributes.get("stick_slip"):
+        summary.stick_slip = stick_slip
+    return summary
+
+
+def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) -> CalibrationCard:
+    """Return the stiffness of a calibrated beam and the springs of its stations.
+
+    Args:
+        boom: as the case has it.
+        system: of the model, whose contact rows are the calibration's.
+        calibration: of it.
+    """
+    return CalibrationCard(
+        segments=[
+            _beam(segment, stiffness)
+            for segment, stiffness in zip(boom.segments, calibration.segments, strict=True)
+        ],
+        springs=[
+            StationSpring(
+                x=system.stations[station],
+                side=_WALLS[system.station_directions[station], int(law.terms[0].side)],
+                stiffness=calibration.spring(row),
+            )
+            for row, (law, station) in enumerate(
+                zip(system.laws, system.station_of_row.tolist(), strict=True)
+            )
+        ],
+    )
+
+
+def _beam(segment: Segment, stiffness: Stiffness) -> BeamOfShell:
+    planes = (
+        (segment, segment.turned())[: len(stiffness.bending)] if segment.lateral else (segment,)
+    )
+    shear = [plane.local(0.5 * sum(plane.ends)).shear_stiffness or 0.0 for plane in planes]
+    torsion = None
+    if stiffness.torsion is not None and segment.lateral is not None:
+        own = segment.material.shear_modulus * segment.lateral.torsion_constant
+        torsion = stiffness.torsion / own
+    return BeamOfShell(
+        segment=segment.name,
+        bending=list(stiffness.bending),
+        shear=list(stiffness.shear),
+        torsion=stiffness.torsion,
+        bending_part=[
+            found / plane.bending_stiffness
+            for found, plane in zip(stiffness.bending, planes, strict=True)
+        ],
+        shear_part=[found / own for found, own in zip(stiffness.shear, shear, strict=True)],
+        torsion_part=torsion,
+    )
