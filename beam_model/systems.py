@@ -24,15 +24,6 @@ def finite_element_system(
 ) -> GapSystem:
     """A boom by beam finite elements.
 
-    >>> import protractile as pt
-    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
-    >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
-    >>> wall = pt.Support(0.0, "clamped")
-    >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
-    >>> system = pt.finite_element_system(pt.Boom((arm,), ()), laws=[])
-    >>> print(f"{system.frequencies[0]:.3f} Hz")
-    4.724 Hz
-
     Args:
         boom: flat or in space.
         laws: one for each joint, along z.
@@ -57,15 +48,6 @@ def kantorovich_system(
     rotary_inertia: bool = True,
 ) -> GapSystem:
     """A boom by Kantorovich series.
-
-    >>> import protractile as pt
-    >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
-    >>> box = pt.BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
-    >>> wall = pt.Support(0.0, "clamped")
-    >>> arm = pt.Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(wall,))
-    >>> system = pt.kantorovich_system(pt.Boom((arm,), ()), laws=[], terms=[8])
-    >>> print(f"{system.frequencies[0]:.3f} Hz")
-    4.724 Hz
 
     Args:
         boom: flat or in space.

@@ -25,7 +25,7 @@ BALANCE = 1.0e-6
 def equilibrium(system: GapSystem, load: Array) -> Array:
     """(num_modes,) rest position a in √kg·m.
 
-    >>> depth = pt.equilibrium(ball, ball.load)[0]
+    >>> depth = equilibrium(ball, ball.load)[0]
     >>> print(f"{1e6 * depth:.2f} µm")
     -9.81 µm
 

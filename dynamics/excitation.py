@@ -193,8 +193,8 @@ class Excitation:
 
     Within a time step the straight line with its mean and first moment stands for the history.
 
-    >>> lifted = replace(ball, excitations=[pt.Excitation(np.array([12.0]), pt.Ramp(0.1))])
-    >>> height = pt.simulate(lifted, 1.0).data["height"]
+    >>> lifted = replace(ball, excitations=[Excitation(np.array([12.0]), pt.Ramp(0.1))])
+    >>> height = simulate(lifted, 1.0).data["height"]
     >>> print(f"{float(height[-1]):.1f} m")
     0.9 m
 

@@ -17,9 +17,9 @@ class DryFriction:
 
     >>> rubbed = replace(
     ...     ball, load=np.zeros(1), friction_rows=np.ones((1, 1)),
-    ...     frictions=[pt.DryFriction(coefficient=0.2, station=0, normal_force=10.0)],
+    ...     frictions=[DryFriction(coefficient=0.2, station=0, normal_force=10.0)],
     ... )
-    >>> slid = pt.simulate(rubbed, 1.0, position=[1.0], velocity=[-1.0])
+    >>> slid = simulate(rubbed, 1.0, position=[1.0], velocity=[-1.0])
     >>> print(f"{float(slid.data['height'][-1]):.3f} m")
     0.750 m
 

@@ -30,7 +30,7 @@ from dynamics.second_order import softened
 class Observer(NamedTuple):
     """A named output: its row (num_modes,) over the modal coordinates, and its unit.
 
-    >>> pt.Observer(np.ones(1)).unit
+    >>> Observer(np.ones(1)).unit
     'm'
 
     Args:
@@ -51,14 +51,14 @@ class GapSystem:
 
     A ball of 1 kg above a springy floor:
 
-    >>> ball = pt.GapSystem(
+    >>> ball = GapSystem(
     ...     omega2=np.zeros(1),
     ...     load=np.array([-9.81]),
     ...     rows=np.ones((1, 1)),
     ...     laws=[pt.PowerContact(1e6, 1.0, clearance=0.0).lower()],
     ...     station_of_row=np.array([0]),
     ...     stations=[0.0],
-    ...     observers={"height": pt.Observer(np.ones(1))},
+    ...     observers={"height": Observer(np.ones(1))},
     ... )
     >>> ball.num_modes, ball.row_masses
     (1, array([1.]))

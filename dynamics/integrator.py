@@ -100,7 +100,7 @@ class StepSchedule:
 class FixedStep:
     """Steps of one length.
 
-    >>> motion = pt.FixedStep(1e-5)(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion = FixedStep(1e-5)(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.energy_residual < 1e-11
     True
 
@@ -136,7 +136,7 @@ class AdaptiveStep:
     The trajectory has the sum of the errors as the attribute ``step_error``. Chaotic motion has no
     step that keeps a tolerance: its steps end at a length.
 
-    >>> motion = pt.AdaptiveStep()(pt.Motion(ball, duration=1.0, position=[0.5]))
+    >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
     True
 
@@ -271,7 +271,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a system from its initial state.
 
-    >>> motion = pt.simulate(ball, duration=1.0, position=[0.5])
+    >>> motion = simulate(ball, duration=1.0, position=[0.5])
     >>> print(f"{motion.first_contact:.3f} s")
     0.319 s
 

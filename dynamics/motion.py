@@ -20,7 +20,7 @@ MOST_STEPS = 250_000
 class Motion:
     """The motion of a gap system from its initial state; what every integrator takes.
 
-    >>> motion = pt.Motion(ball, duration=1.0, position=[0.5])
+    >>> motion = Motion(ball, duration=1.0, position=[0.5])
     >>> motion.outputs, motion.from_rest
     (1000, False)
 

@@ -14,7 +14,7 @@ class SidedContact(ContactLaw):
     """What a law says where the inner segment presses up, and another where it presses down.
 
     >>> close, far = (pt.PowerContact(1e6, 1.0, clearance=c) for c in (0.004, 0.010))
-    >>> pt.SidedContact(close, far).force(np.array([0.005, -0.005]))
+    >>> SidedContact(close, far).force(np.array([0.005, -0.005]))
     array([1000.,    0.])
 
     Args:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -60,10 +60,39 @@ STILL = 1.0e-6
 
 
 @dataclass(frozen=True, slots=True)
+class Pointwise:
+    """Differences of two models' motions before either is unpredictable.
+
+    Args:
+        until: the time in s up to which they are compared; of ensembles the earlier of both
+            horizons at the first of ``SHARES``.
+        largest, rms: parts of the larger range of both within that time.
+    """
+
+    decides: ClassVar[str] = (
+        "Tells how far the models are apart from one moment to the next up to the common horizon; "
+        "it cannot tell anything about later times."
+    )
+
+    until: float
+    largest: float
+    rms: float
+
+    @classmethod
+    def of(cls, one: Array, other: Array, time: Array, until: float) -> Pointwise:
+        """Compare two curves (num_times,) of one quantity, up to ``until``; times in s."""
+        before = time <= until
+        apart = np.abs(one - other)[before]
+        scale = max(np.ptp(one[before]), np.ptp(other[before]))
+        largest, rms = float(apart.max()), float(np.sqrt(np.mean(apart**2)))
+        return cls(until, largest / scale if scale else largest, rms / scale if scale else rms)
+
+
+@dataclass(frozen=True, slots=True)
 class Trajectory:
     """Motion of one model.
 
-    >>> motion = pt.simulate(ball, duration=1.0, position=[0.5])
+    >>> motion = simulate(ball, duration=1.0, position=[0.5])
     >>> print(f"{float(abs(motion.data['contact_force_peak']).max()):.0f} N")
     3142 N
 
@@ -216,6 +245,11 @@ class Trajectory:
         return np.asarray(self.data["time"].values)
 
     @property
+    def tip(self) -> xr.DataArray:
+        """(time,) deflection of the tip in m, which its ``plot()`` draws."""
+        return self.data["tip"]
+
+    @property
     def energy_residual(self) -> float:
         """Largest unaccounted energy as a part of the energy put in."""
         return float(self.data.attrs["energy_residual"])
@@ -244,6 +278,26 @@ class Trajectory:
         if peaks.size == 0:
             return float("nan"), float("nan")
         return float(self.time[peaks[0]]), float(deflection[peaks[0]])
+
+    def compare(self, other: Trajectory, name: str = "tip", until: float = np.inf) -> Pointwise:
+        """Return the differences of another motion.
+
+        >>> fine, coarse = (pt.BeamElements(boom, laws, element_length=l) for l in (0.5, 1.0))
+        >>> print(f"{100.0 * fine.simulate(0.5).compare(coarse.simulate(0.5)).largest:.1f} %")
+        0.5 %
+
+        Args:
+            other: at the same times.
+            name: of what is compared.
+            until: in s; the horizon up to which both are predictable, say.
+
+        Raises:
+            ValueError: the times differ.
+        """
+        if not np.array_equal(self.time, other.time):
+            raise ValueError("the motions must have the same times")
+        one, two = (np.asarray(motion.data[name].values) for motion in (self, other))
+        return Pointwise.of(one, two, self.time, min(until, float(self.time[-1])))
 
 
 def _mean_rate(time: Array, values: Array) -> Array:

@@ -4,22 +4,24 @@
 import numpy as np
 
 import protractile as pt
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import simulate
 
 HEIGHT, GRAVITY, STIFFNESS = 0.5, 9.81, 1.0e6
 
 
 def fall() -> pt.Trajectory:
     """One second of a ball of 1 kg, let go at rest."""
-    ball = pt.GapSystem(
+    ball = GapSystem(
         omega2=np.array([0.0]),
         load=np.array([-GRAVITY]),
         rows=np.array([[1.0]]),
         laws=[pt.PowerContact(STIFFNESS, 1.0, clearance=0.0).lower()],
         station_of_row=np.array([0]),
         stations=[0.0],
-        observers={"height": pt.Observer(np.array([1.0]))},
+        observers={"height": Observer(np.array([1.0]))},
     )
-    return pt.simulate(ball, 1.0, 1.0e-3, position=[HEIGHT])
+    return simulate(ball, 1.0, 1.0e-3, position=[HEIGHT])
 
 
 if __name__ == "__main__":

@@ -6,6 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import protractile as pt
+from dynamics.contact_term import Term
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import simulate
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +21,9 @@ class RubberStop(pt.ContactLaw):
     damping: float = 0.0
 
     @property
-    def terms(self) -> tuple[pt.Term, ...]:
+    def terms(self) -> tuple[Term, ...]:
         powers = (self.linear, 1.0), (self.cubic, 3.0)
-        return tuple(pt.Term(1.0, k, self.clearance, n) for k, n in powers)
+        return tuple(Term(1.0, k, self.clearance, n) for k, n in powers)
 
     def one_sided(self, side: int) -> "RubberStop | None":
         return self if side > 0 else None
@@ -35,5 +38,5 @@ class RubberStop(pt.ContactLaw):
 def strike(law: pt.ContactLaw, speed: float) -> pt.Trajectory:
     """A free mass of 1 kg at a speed in m/s."""
     one, place = np.ones(1), np.array([0])
-    mass = pt.GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], {})
-    return pt.simulate(mass, 0.1, velocity=[speed])
+    mass = GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], {})
+    return simulate(mass, 0.1, velocity=[speed])

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import protractile as pt
+from dynamics.motion import Motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +18,7 @@ class RungeKutta:
     tolerance: float = 1.0e-10
 
     def __call__(
-        self, motion: pt.Motion, progress: Callable[[float], None] | None = None
+        self, motion: Motion, progress: Callable[[float], None] | None = None
     ) -> pt.Trajectory:
         system = motion.system.gathered()
         n, rows, laws = system.num_modes, system.rows, system.laws

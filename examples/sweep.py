@@ -4,6 +4,8 @@
 import numpy as np
 
 import protractile as pt
+from dynamics.gap_system import GapSystem, Observer
+from dynamics.integrator import simulate
 
 SPEED = 2.0
 
@@ -13,9 +15,9 @@ def rebound(restitution: float) -> float:
     damping = pt.restitution_damping(restitution, SPEED)
     law = pt.PowerContact(1.0e6, 1.5, clearance=0.01, damping=damping).upper()
     one, place = np.ones(1), np.array([0])
-    seen = {"place": pt.Observer(one)}
-    mass = pt.GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], seen)
-    path = pt.simulate(mass, 0.1, 1.0e-4, velocity=[SPEED]).data["place"].values
+    seen = {"place": Observer(one)}
+    mass = GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], seen)
+    path = simulate(mass, 0.1, 1.0e-4, velocity=[SPEED]).data["place"].values
     return float((path[-2] - path[-1]) / (1.0e-4 * SPEED))
 
 

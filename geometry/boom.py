@@ -78,7 +78,7 @@ class Boom:
     >>> boom.tip, boom.stations
     (14.0, [(6.0, 'z'), (8.0, 'z')])
     >>> laws = [pt.PowerContact(1e9, exponent=1.0, clearance=joint.clearance)]
-    >>> pt.finite_element_system(boom, laws).num_modes
+    >>> pt.BeamElements(boom, laws).system().num_modes
     66
 
     Raises:

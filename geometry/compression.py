@@ -14,7 +14,7 @@ from geometry.arrays import Array
 class Compression:
     """P(x) in N along a segment, positive where it is pressed: straight in pieces, with jumps.
 
-    >>> column = pt.Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
+    >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
     >>> column(np.array([1.0, 5.0]))
     array([8500., 2000.])
 

@@ -46,7 +46,7 @@ class Observation:
     """Something that every model records.
 
     >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
-    >>> system = pt.finite_element_system(replace(boom, observations=(seat,)), laws)
+    >>> system = pt.BeamElements(replace(boom, observations=(seat,)), laws).system()
     >>> system.observers["seat"].unit
     'm/s'
 

@@ -87,7 +87,7 @@ def shear_centre(plates: Sequence[Plate]) -> Offset:
     """(y, z) in m from the axis, through which a force does not twist the section.
 
     >>> box = pt.BoxSection(0.6, 0.4, flange=0.02, web=0.02, left_web=0.01)
-    >>> print(f"{1e3 * pt.shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
+    >>> print(f"{1e3 * shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
     50.0 mm to the thicker web's side
     """
     return ShearFlow.of(plates, "z").moment, -ShearFlow.of(plates, "y").moment

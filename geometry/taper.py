@@ -14,7 +14,7 @@ def between(tail: Section, head: Section, part: float) -> Section:
 
     >>> from geometry.taper import between
     >>> deep = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.006)
-    >>> between(deep, replace(deep, height=0.2), 0.25).height
+    >>> round(between(deep, replace(deep, height=0.2), 0.25).height, 6)
     0.35
 
     Args:

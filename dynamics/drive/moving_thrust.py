@@ -24,7 +24,7 @@ _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 class MovingThrust:
     """A force that moves along with a travel, and softens what it has passed.
 
-    >>> thrust = pt.MovingThrust(2.0, pt.RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
+    >>> thrust = MovingThrust(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
     >>> thrust.softening(0.5)
     array([[9.]])
 

@@ -36,7 +36,7 @@ _TESTED = np.array([0.15, 0.5, 0.85])
 class RowTable:
     """Rows over a way s.
 
-    >>> table = pt.RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
+    >>> table = RowTable.of(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
     >>> table(1.5), table.slope(1.5)
     (array([[1.   , 3.375]]), array([[0.  , 6.75]]))
 

@@ -42,7 +42,7 @@ FOLLOWED = {
 class Pulled:
     """What a drive of a given stiffness draws along.
 
-    >>> rope = pt.Pulled(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
+    >>> rope = Pulled(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
     >>> print(f"{rope.frequency:.2f} Hz, smooth from {rope.critical_speed(1000.0):.3f} m/s on")
     2.25 Hz, smooth from 0.062 m/s on
 

@@ -164,8 +164,8 @@ class Travel:
 
     A row that reads less of the ball the farther something is drawn:
 
-    >>> table = pt.RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
-    >>> lift = pt.Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
+    >>> table = RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
+    >>> lift = Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
     >>> replace(ball, travels=[lift]).standing(1.0).rows
     array([[0.5]])
 

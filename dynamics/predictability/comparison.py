@@ -13,34 +13,7 @@ from scipy.stats import ks_2samp
 from dynamics.arrays import Array, Mask
 from dynamics.predictability.horizon import SHARES, horizons_of
 from dynamics.predictability.low_pass import SlowPeaks
-
-
-@dataclass(frozen=True, slots=True)
-class Pointwise:
-    """Differences of the unchanged members before either model is unpredictable.
-
-    Args:
-        until: the earlier of both horizons at the first of ``SHARES`` in s.
-        largest, rms: parts of the larger range of both within that time.
-    """
-
-    decides: ClassVar[str] = (
-        "Tells how far the models are apart from one moment to the next up to the common horizon; "
-        "it cannot tell anything about later times."
-    )
-
-    until: float
-    largest: float
-    rms: float
-
-    @classmethod
-    def of(cls, one: Array, other: Array, time: Array, until: float) -> Pointwise:
-        """Compare two curves (num_times,) of one quantity, up to ``until``; times in s."""
-        before = time <= until
-        apart = np.abs(one - other)[before]
-        scale = max(np.ptp(one[before]), np.ptp(other[before]))
-        largest, rms = float(apart.max()), float(np.sqrt(np.mean(apart**2)))
-        return cls(until, largest / scale if scale else largest, rms / scale if scale else rms)
+from dynamics.trajectory import Pointwise
 
 
 @dataclass(frozen=True, slots=True)

@@ -148,8 +148,8 @@ def integrate_ensemble(
 ) -> xr.Dataset:
     """Move all members of an ensemble, as many at a time as there are cores.
 
-    >>> thrown = pt.Motion(ball, duration=1.0, velocity=[3.0])
-    >>> ensemble = pt.integrate_ensemble(thrown, members=3, relative=1e-3, seed=1, vary="velocity")
+    >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
+    >>> ensemble = integrate_ensemble(thrown, members=3, relative=1e-3, seed=1, vary="velocity")
     >>> dict(ensemble.sizes)
     {'member': 3, 'time': 1001, 'station': 1}
 

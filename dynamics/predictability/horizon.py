@@ -158,8 +158,8 @@ def measure_horizons(
     Few partners are enough for the growth at a small share; its scatter tells how well it is known.
     Horizons at large shares are chance, and come sooner the more partners there are.
 
-    >>> thrown = pt.Motion(ball, duration=1.0, velocity=[3.0])
-    >>> found = pt.measure_horizons(thrown, [1e-9, 1e-6], "velocity", observer="height")
+    >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
+    >>> found = measure_horizons(thrown, [1e-9, 1e-6], "velocity", observer="height")
     >>> found.times.shape
     (2, 2)
 

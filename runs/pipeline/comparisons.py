@@ -11,12 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import xarray as xr
 
-from dynamics.predictability.comparison import (
-    Distributions,
-    PeakDifferences,
-    Pointwise,
-    compare,
-)
+from dynamics.predictability.comparison import Distributions, PeakDifferences, compare
+from dynamics.trajectory import Pointwise
 from runs.case.schema import Case, Model
 from runs.pipeline.summary import Comparisons, Levels, Whole
 

@@ -13,11 +13,11 @@ from dynamics.predictability.comparison import (
     Comparison,
     Distributions,
     PeakDifferences,
-    Pointwise,
     compare,
 )
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.predictability.low_pass import SlowPeaks
+from dynamics.trajectory import Pointwise
 from tests.dynamics.two_stops import CHAOTIC
 
 TIME = np.arange(10_001) * 1e-3

@@ -8,7 +8,8 @@ from typing import Any
 
 import xarray as xr
 
-from dynamics.predictability.comparison import Distributions, PeakDifferences, Pointwise
+from dynamics.predictability.comparison import Distributions, PeakDifferences
+from dynamics.trajectory import Pointwise
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results

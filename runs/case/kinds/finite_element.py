@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -35,6 +35,10 @@ _BUILT = 400
 
 class BeamElements(CalibratedTable):
     """Beam finite elements."""
+
+    if TYPE_CHECKING:
+
+        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["finite-element"]
     """the kind of model"""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from beam_model.component import SegmentModel
 from beam_model.kantorovich import check_base, kantorovich_segments
@@ -20,6 +20,10 @@ class Kantorovich(CalibratedTable):
     """The semi-discrete Ritz series of the paper."""
 
     smooth: ClassVar[bool] = True
+
+    if TYPE_CHECKING:
+
+        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["kantorovich"]
     """the kind of model"""

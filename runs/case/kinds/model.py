@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar, get_args
 
 import numpy as np
+from pydantic import PrivateAttr
 
 from beam_model.component import SegmentModel
 from geometry.boom import Boom, BoomError
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
     from dynamics.line import Line
+    from dynamics.trajectory import Trajectory
     from runs.folder.cache import Cache
     from shell_model.reduced_shell import ReducedShell
 
@@ -133,6 +135,31 @@ class ModelTable(Table):
     """the model's own step of the integrator in s; the case's unless given"""
     kind: str
     """the kind of model"""
+    _joined: Joined | None = PrivateAttr(None)
+
+    def __init__(
+        self,
+        boom: Boom | None = None,
+        /,
+        laws: Sequence[ContactLaw] = (),
+        lateral_laws: Sequence[ContactLaw] = (),
+        **keys: Any,
+    ) -> None:
+        """Make a model of a boom.
+
+        Args:
+            boom: that it is a model of.
+            keys: those of its table in a case file; the name is the kind unless given.
+
+        Raises:
+            ValidationError: a key that the table does not have, or a value that cannot be.
+        """
+        kind = get_args(type(self).model_fields["kind"].annotation)[0]
+        super().__init__(**{"name": kind, "kind": kind, **keys})
+        self._joined = None if boom is None else Joined(boom, laws, lateral_laws)
+
+    # Case files are read past it: they must give name and kind.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     # Whether it has a mesh of the plates: it leaves fields.
     meshed: ClassVar[bool] = False
@@ -228,6 +255,58 @@ class ModelTable(Table):
         Raises:
             BoomError: the boom lacks what the model needs.
         """
+
+    def system(self) -> GapSystem:
+        """Return the gap system of its boom.
+
+        >>> pt.BeamElements(boom, laws).system().num_modes
+        66
+
+        Raises:
+            BoomError: the boom cannot be modelled so.
+        """
+        assert self._joined is not None
+        self.check(self.name, self._joined)
+        workshop = None
+        if self.needs_shell:
+            from mpi4py import MPI
+
+            from runs.folder.cache import Cache
+
+            workshop = Workshop(MPI.COMM_SELF, cache=Cache.of_user())
+        return self.build(self._joined, workshop).system
+
+    def simulate(
+        self,
+        duration: float,
+        output_step: float = 1.0e-3,
+        *,
+        at_rest: bool = False,
+        damping_ratio: float = 0.0,
+        rayleigh: tuple[float, float] = (0.0, 0.0),
+        tolerance: float = 1.0e-3,
+    ) -> Trajectory:
+        """Return the motion of its boom, as a case file's run moves it.
+
+        >>> motion = pt.BeamElements(boom, laws).simulate(0.5)
+        >>> print(f"{motion.first_contact:.3f} s")
+        0.032 s
+
+        Args:
+            duration, output_step, at_rest, damping_ratio, rayleigh: of the motion, as of
+                :func:`dynamics.motion.begin`.
+            tolerance: the part of the deflections' range by which the step may change them; the
+                model's own ``step`` is fixed.
+
+        Raises:
+            BoomError: the boom cannot be modelled so.
+            NumericsError: the motion cannot be computed.
+        """
+        from dynamics.integrator import AdaptiveStep, FixedStep
+        from dynamics.motion import begin
+
+        motion = begin(self.system(), duration, output_step, at_rest, damping_ratio, rayleigh)
+        return (AdaptiveStep(tolerance) if self.step is None else FixedStep(self.step))(motion)
 
     def _check_drives(self, where: str, boom: Boom) -> None:
         driven = [i for i, joint in enumerate(boom.joints, start=1) if joint.drive is not None]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from beam_model.component import SegmentModel
 from beam_model.rigid import freedom, rigid_segment
@@ -13,6 +13,10 @@ from runs.case.kinds.model import BeamTable, Joined, StandIn
 
 class Rigid(BeamTable):
     """Rigid bodies, which play, contacts and elastic supports alone let move."""
+
+    if TYPE_CHECKING:
+
+        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["rigid"]
     """the kind of model"""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -41,7 +41,7 @@ _ELEMENTS = 20
 class _BeamOfShell(BeamTable):
     """Shear-flexible beam elements, which stand for a shell in estimates."""
 
-    kind: str = "beam of a shell"
+    kind: Literal["beam of a shell"] = "beam of a shell"
     """the kind of model"""
     element_length: Length
     """the length of an element in m, at most"""
@@ -60,6 +60,10 @@ class Shell(ModelTable):
     """Flat facet shells on the folded box, reduced to the contact's inputs."""
 
     meshed: ClassVar[bool] = True
+
+    if TYPE_CHECKING:
+
+        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["shell"]
     """the kind of model"""

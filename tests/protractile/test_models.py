@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Models of a boom that no case file declares, beside the same ones from a case file."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+
+import protractile as pt
+from runs.case.kinds.model import ModelTable
+
+# The boom of the fixture.
+DECLARED = tomllib.loads("""
+title = "An arm and a fly"
+time = { duration = 0.2 }
+material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850.0 }
+
+[[segment]]
+name = "arm"
+span = [0.0, 8.0]
+section = { height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }
+supports = [{ x = 0.0, kind = "clamped" }]
+
+[[segment]]
+name = "fly"
+span = [6.0, 14.0]
+section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }
+load = -500.0
+
+[[joint]]
+outer = "arm"
+inner = "fly"
+stations = [6.0, 8.0]
+play = 0.010
+stiffness = 1e9
+exponent = 1.0
+""")
+LAW = pt.PowerContact(1.0e9, exponent=1.0, clearance=5.0e-3)
+
+
+@pytest.fixture(scope="module")
+def boom() -> pt.Boom:
+    steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+    arm = pt.Segment.of_section(
+        "arm", 0.0, 8.0, steel,
+        pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006),
+        supports=(pt.Support(0.0, "clamped"),),
+    )  # fmt: skip
+    fly = pt.Segment.of_section(
+        "fly", 6.0, 14.0, steel,
+        pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005), load=-500.0,
+    )  # fmt: skip
+    return pt.Boom((arm, fly), (pt.Joint(0, 1, stations=(6.0, 8.0), clearance=5.0e-3),))
+
+
+def declared(model: ModelTable, **tables: Any) -> pt.Case:
+    """The case file that says the same."""
+    table = model.model_dump(mode="json", exclude_none=True)
+    return pt.Case.model_validate(DECLARED | tables | {"model": [table]})
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys"),
+    [
+        ("Kantorovich", {"terms": (4, 6), "base": "complete"}),
+        ("BeamElements", {"step": 1.0e-4}),
+        ("BeamElements", {"theory": "timoshenko", "element_length": 1.0}),
+        ("BeamElements", {"tied": True}),
+        ("Rigid", {}),
+        pytest.param("Shell", {"mesh_size": 0.4}, marks=pytest.mark.slow),
+        pytest.param("BeamElements", {"calibrated_by": 0.4}, marks=pytest.mark.slow),
+    ],
+)
+def test_a_model_moves_as_that_of_a_case_file(
+    boom: pt.Boom, kind: str, keys: dict[str, Any]
+) -> None:
+    """Reference: other way to say it, to the bit."""
+    if "mesh_size" in keys or "calibrated_by" in keys:
+        pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+    if "calibrated_by" in keys:
+        keys = {"calibrated_by": pt.Shell(mesh_size=keys["calibrated_by"])}
+    model = getattr(pt, kind)(boom, [LAW], **keys)
+    results = pt.run_case(declared(model))
+    motion = model.simulate(0.2)
+    np.testing.assert_array_equal(motion.tip, results.trajectories["tip"].sel(model=model.name))
+    assert motion.data.attrs["steps"] == results.summary.models[model.name].steps
+
+
+def test_a_motion_starts_and_is_damped_as_that_of_a_case_file(boom: pt.Boom) -> None:
+    """Reference: other way to say it, to the bit."""
+    model = pt.BeamElements(boom, [LAW], element_length=1.0)
+    results = pt.run_case(
+        declared(
+            model,
+            time={"duration": 0.2, "output_step": 2.0e-3, "tolerance": 1.0e-4},
+            start={"state": "equilibrium"},
+            damping={"modal": 0.02, "mass": 0.1, "stiffness": 1.0e-5},
+        )
+    )
+    motion = model.simulate(
+        0.2, 2.0e-3, at_rest=True, damping_ratio=0.02, rayleigh=(0.1, 1.0e-5), tolerance=1.0e-4
+    )
+    np.testing.assert_array_equal(motion.tip, results.trajectories["tip"].sel(model=model.name))
