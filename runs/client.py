@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The client that judges runs, the paper: its case keys, its part of the report, its verdicts.
+"""The client that judges runs, the paper: its part of the report, its verdicts.
 
-The one module of the product that knows it. Another client would replace its four names here.
+Nothing else knows it, but for :mod:`runs.case.schema`, which takes its keys into every case.
+Another client would replace the names here and there.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runs.paper.statements import FILES as FILES
-from runs.paper.statements import CaseKeys as CaseKeys
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -40,7 +40,7 @@ from runs.case.limits import (
 from runs.case.places import Place
 from runs.case.segment import MaterialTable, SegmentTable
 from runs.case.units import System, SystemName
-from runs.client import CaseKeys
+from runs.paper.statements import CaseKeys
 
 
 class TimeTable(Table):

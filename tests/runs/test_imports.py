@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a command imports: libraries that take long to load, where they are needed alone."""
+"""What modules import: of each other without cycles, of libraries what a command needs."""
 
 from __future__ import annotations
 
+import ast
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -14,6 +17,17 @@ import pytest
 from runs import CASES
 
 ROOT = Path(__file__).parents[2]
+# What each room knows besides itself.
+BELOW = {"geometry", "dynamics"}
+ROOMS = {
+    "geometry": set[str](),
+    "dynamics": set[str](),
+    "beam_model": BELOW,
+    "shell_model": BELOW,
+    "runs": BELOW | {"beam_model", "shell_model"},
+    "protractile": BELOW | {"beam_model", "shell_model", "runs"},
+    "studies": BELOW | {"beam_model", "shell_model", "runs", "protractile"},
+}
 OF_RUNS = {
     "basix", "dolfinx", "gmsh", "matplotlib", "mpi4py", "numba", "pandas", "petsc4py", "pyvista",
     "scipy.signal", "scipy.stats", "ufl", "vtkmodules", "xarray",
@@ -28,6 +42,49 @@ except SystemExit as ended:
     print(*sys.modules, file=sys.stderr)
     raise
 """
+
+
+def imported(node: ast.AST) -> Iterator[str]:
+    """Every module, or name of one, that a file imports, wherever; for types alone left out."""
+    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+        return
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    if isinstance(node, ast.ImportFrom):
+        yield str(node.module)
+        yield from (f"{node.module}.{alias.name}" for alias in node.names)
+    for child in ast.iter_child_nodes(node):
+        yield from imported(child)
+
+
+@pytest.fixture(scope="module")
+def graph() -> dict[str, set[str]]:
+    """What each module imports of ours, inside functions, too."""
+    files = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+        for room in ROOMS
+        for path in (ROOT / room).rglob("*.py")
+    }
+    return {
+        name: {found for found in imported(ast.parse(path.read_text("utf-8"))) if found in files}
+        for name, path in files.items()
+    }
+
+
+def test_no_module_imports_itself_by_way_of_others(graph: dict[str, set[str]]) -> None:
+    TopologicalSorter(graph).prepare()
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_knows_those_below(room: str, graph: dict[str, set[str]]) -> None:
+    own = (found for name in graph if name.split(".")[0] == room for found in graph[name])
+    assert {found.split(".")[0] for found in own} <= ROOMS[room] | {room}
+
+
+def test_the_paper_is_a_client(graph: dict[str, set[str]]) -> None:
+    knowing = {name for name, found in graph.items() if any("runs.paper" in f for f in found)}
+    others = {name for name in knowing if not name.startswith(("runs.paper", "studies"))}
+    assert others == {"runs.client", "runs.case.schema"}
 
 
 def answer(*arguments: str) -> tuple[str, set[str]]:
