@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import subprocess
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
@@ -28,6 +29,9 @@ from tests.system.run_folder import (
     trajectories,
 )
 
+# What a command says of a folder that it refuses.
+Refusal = Callable[[str, Path], str]
+
 
 @pytest.fixture(scope="module")
 def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -35,6 +39,25 @@ def series(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("series") / "out"
     assert protractile("run", COARSE, "--models", ",".join(SERIES), "--out", folder) == 0
     return folder
+
+
+@pytest.fixture
+def again(series: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return shutil.copytree(series, tmp_path / "out")
+
+
+@pytest.fixture
+def refusal(capsys: pytest.CaptureFixture[str]) -> Refusal:
+    """What a command says behind the name of a folder that it refuses."""
+
+    def refuse(command: str, folder: Path) -> str:
+        assert protractile(command, folder) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        return err.removeprefix(f"protractile: {folder}: ")
+
+    return refuse
 
 
 def test_every_file_of_a_series_run_opens(series: Path) -> None:
@@ -61,10 +84,8 @@ def test_a_run_reads_back(series: Path) -> None:
 
 
 @pytest.mark.usefixtures("unprinted")
-def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path: Path) -> None:
+def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Path) -> None:
     """Reference: the run itself; the arithmetic is the same, so the numbers are too."""
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     (again / "figures" / "stale.png").write_bytes(b"of an earlier version")
     (again / "fields.nc").write_bytes(b"of a shell that is not run now")
     with (again / ".manifest").open("a") as manifest:
@@ -77,18 +98,14 @@ def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, tmp_path:
 
 
 @pytest.mark.usefixtures("unprinted")
-def test_a_report_is_rendered_again_from_the_data(series: Path, tmp_path: Path) -> None:
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
+def test_a_report_is_rendered_again_from_the_data(series: Path, again: Path) -> None:
     (again / "report.html").unlink()
     shutil.rmtree(again / "figures")
     assert protractile("report", again) == 0
     assert files(again) == files(series)
 
 
-def test_figures_are_drawn_again_of_other_numbers_alone(series: Path, tmp_path: Path) -> None:
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
+def test_figures_are_drawn_again_of_other_numbers_alone(again: Path) -> None:
     (again / ".manifest").unlink()
     tip, other = (again / "figures" / name for name in ("tip.png", "head.png"))
     drawn = tip.read_bytes()
@@ -100,27 +117,17 @@ def test_figures_are_drawn_again_of_other_numbers_alone(series: Path, tmp_path: 
     assert tip.read_bytes() == drawn
 
 
-def test_files_of_two_runs_are_not_mixed(
-    series: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
+def test_files_of_two_runs_are_not_mixed(again: Path, refusal: Refusal) -> None:
     (again / ".manifest").unlink()
     case = (again / "case.toml").read_text(encoding="utf-8")
     (again / "case.toml").write_text(case.replace("play = 0.014", "play = 0.013"))
-    assert protractile("report", again) == 2
-    assert capsys.readouterr().err == (
-        f"protractile: {again}: trajectories.nc: is not of the case in case.toml; run the case "
-        "again\n"
+    assert refusal("report", again) == (
+        "trajectories.nc: is not of the case in case.toml; run the case again\n"
     )
 
 
-def test_a_run_of_another_version_is_told_from_a_mixed_one(
-    series: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_of_another_version_is_told_from_a_mixed_one(again: Path, refusal: Refusal) -> None:
     """Reference: a folder as a version has written it that did not know one of today's keys."""
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     (again / ".manifest").unlink()
     case, summary = again / "case.toml", again / "summary.json"
     now = case.read_bytes()
@@ -128,29 +135,21 @@ def test_a_run_of_another_version_is_told_from_a_mixed_one(
     case.write_bytes(now.replace(b"demand = []\n", b"", 1))
     marks = [sha256(text).hexdigest() for text in (now, case.read_bytes())]
     summary.write_text(summary.read_text(encoding="utf-8").replace(*marks), encoding="utf-8")
-    assert protractile("report", again) == 2
-    assert capsys.readouterr().err == (
-        f"protractile: {again}: case.toml: is another version's, which had other keys; run the "
-        "case again\n"
+    assert refusal("report", again) == (
+        "case.toml: is another version's, which had other keys; run the case again\n"
     )
 
 
 @pytest.mark.parametrize("command", ["report", "snapshot"])
 @pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "viewer.html"])
-def test_a_flipped_bit_is_one_line(
-    series: Path, tmp_path: Path, name: str, command: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_flipped_bit_is_one_line(again: Path, name: str, command: str, refusal: Refusal) -> None:
     """The file reads as before; ``sha256sum -c .manifest`` finds it, too."""
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     content = bytearray((again / name).read_bytes())
     content[-40] ^= 1
     (again / name).write_bytes(content)
-    assert protractile(command, again) == 2
-    assert capsys.readouterr() == (
-        "",
-        f"protractile: {again}: {name}: is damaged, its SHA-256 is not that of .manifest; remove "
-        "it, or run the case again\n",
+    assert refusal(command, again) == (
+        f"{name}: is damaged, its SHA-256 is not that of .manifest; remove it, or run the case "
+        "again\n"
     )
     told = subprocess.run(
         ["sha256sum", "--quiet", "-c", ".manifest"], cwd=again, capture_output=True, text=True
@@ -159,22 +158,15 @@ def test_a_flipped_bit_is_one_line(
 
 
 @pytest.mark.parametrize("name", ["trajectories.nc", ".manifest", "then.json", "readings.json"])
-def test_a_pipe_in_place_of_a_file_is_one_line(
-    series: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_pipe_in_place_of_a_file_is_one_line(again: Path, name: str, refusal: Refusal) -> None:
     """Who reads it would wait for its writer for ever. Long paths are cut in the middle."""
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     (again / name).unlink(missing_ok=True)
     os.mkfifo(again / name)
-    status, (_, err) = protractile("report", again), capsys.readouterr()
     if name == ".manifest":
-        assert (status, err) == (0, "")
+        assert protractile("report", again) == 0
     else:
-        assert status == 2
-        assert err.startswith(
-            f"protractile: {again}: {name}: cannot be understood ([Errno 22] not a regul"
-        )
+        err = refusal("report", again)
+        assert err.startswith(f"{name}: cannot be understood ([Errno 22] not a regul")
         assert err.count("\n") == 1
 
 
@@ -197,49 +189,36 @@ def test_results_of_python_read_back(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "case.toml"])
 def test_a_damaged_folder_is_one_line(
-    series: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+    series: Path, again: Path, name: str, refusal: Refusal
 ) -> None:
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     for part in (0.0, 0.001, 0.3, 0.9):
         whole_file = (series / name).read_bytes()
         (again / name).write_bytes(whole_file[: int(part * len(whole_file))])
-        assert protractile("report", again) == 2
-        message = capsys.readouterr().err
-        assert message.startswith(f"protractile: {again}")
+        message = refusal("report", again)
         assert (name in message, message.count("\n")) == (True, 1)
     (again / name).unlink()
-    assert protractile("report", again) == 2
-    assert capsys.readouterr().err == (
-        f"protractile: {again}: {name}: missing; give the folder of a run that has finished\n"
-    )
+    missing = f"{name}: missing; give the folder of a run that has finished\n"
+    assert refusal("report", again) == missing
 
 
 @pytest.mark.parametrize("command", ["report", "snapshot"])
 def test_a_summary_of_another_version_is_one_line(
-    series: Path, tmp_path: Path, command: str, capsys: pytest.CaptureFixture[str]
+    again: Path, command: str, refusal: Refusal
 ) -> None:
     """Reference: a folder as a version has written it that did not know one of today's keys."""
-    again = tmp_path / "out"
-    shutil.copytree(series, again)
     (again / ".manifest").unlink()
-    summary = json.loads((series / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((again / "summary.json").read_text(encoding="utf-8"))
     del summary["models"]["kantorovich-5"]["contact_changes"]
     (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    assert protractile(command, again) == 2
-    assert capsys.readouterr().err == (
-        f"protractile: {again}: summary.json: models: kantorovich-5: contact_changes: Field "
-        "required; is damaged or another version's; run the case again\n"
+    assert refusal(command, again) == (
+        "summary.json: models: kantorovich-5: contact_changes: Field required; is damaged or "
+        "another version's; run the case again\n"
     )
 
 
-def test_a_run_without_a_shell_has_no_snapshots(
-    series: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert protractile("snapshot", series) == 2
-    assert capsys.readouterr().err == (
-        f"protractile: {series}: fields.nc: missing; give the folder of a run with a shell\n"
-    )
+def test_a_run_without_a_shell_has_no_snapshots(series: Path, refusal: Refusal) -> None:
+    missing = "fields.nc: missing; give the folder of a run with a shell\n"
+    assert refusal("snapshot", series) == missing
 
 
 @pytest.mark.usefixtures("few_figures")
