@@ -11,7 +11,7 @@ from scipy.linalg import block_diag, null_space
 
 from beam_model.component import Component, Modes, Motion, SegmentModel, natural_modes
 from beam_model.drawn_rows import moving_thrusts
-from dynamics.drive.moving_thrust import MovingThrust
+from dynamics.drive.row_table import MovingThrust
 from dynamics.second_order import buckling_factor, softened
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction

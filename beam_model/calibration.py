@@ -4,7 +4,7 @@
 E J and G A_s of a segment are those with which the shear-flexible beam answers static probes far
 from their places as the shell does, G J_t likewise; shear lag, Poisson's effect and folds are in
 them. What pressed places still give way by more is the residual compliance
-(:mod:`dynamics.reduction.residual`).
+(:mod:`dynamics.reduction`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from beam_model.finite_element import finite_element_segment
 from beam_model.segment_model import AT_PADS, gap_system
 from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
-from dynamics.reduction.residual import residual_compliance, with_springs
+from dynamics.reduction import residual_compliance, with_springs
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.far_field import FAR_SHIFT, Bent, FarField
@@ -55,7 +55,7 @@ class Calibration:
     Args:
         segments: their stiffness.
         residual: (num_resisting, num_resisting) in m/N what contact rows, friction rows and
-            dashpots give way beyond the beam, see :mod:`dynamics.reduction.residual`.
+            dashpots give way beyond the beam, see :mod:`dynamics.reduction`.
     """
 
     segments: Sequence[Stiffness]

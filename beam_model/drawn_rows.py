@@ -13,8 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from beam_model.component import SegmentModel
-from dynamics.drive.moving_thrust import MovingThrust
-from dynamics.drive.row_table import RowTable
+from dynamics.drive.row_table import MovingThrust, RowTable
 from dynamics.drive.travel import Travel
 from dynamics.gap_builder import GapBuilder
 from geometry.arrays import Array

@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from dynamics.arrays import Array
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.march import Output, State
+from dynamics.kernels.march import State
 from dynamics.motion import MOST_STEPS, Motion
 from dynamics.time_step import Integration
-from dynamics.trajectory import Trajectory
+from dynamics.trajectory import Output, Trajectory
 
 # Part of the range of the observed deflections by which the step may change them.
 TOLERANCE = 1.0e-3

@@ -29,7 +29,6 @@ from dynamics.kernels.march import (
     TALLY,
     Course,
     LoopSystem,
-    Output,
     State,
     march,
 )
@@ -38,7 +37,7 @@ from dynamics.kernels.moving_rows import moving_rows, stacked_rows
 from dynamics.kernels.moving_thrusts import add_thrust_forces, thrust_arrays, thrust_energies
 from dynamics.kernels.row_forces import row_laws, row_problem
 from dynamics.motion import Motion
-from dynamics.trajectory import OF_DRIVES, Trajectory
+from dynamics.trajectory import OF_DRIVES, Output, Trajectory
 
 # How often a step is halved whose forces do not converge.
 _HALVINGS = 10
@@ -168,14 +167,8 @@ class Integration:
         check_energy(output.energies, least=least)
         found = Trajectory.record(
             motion.system,
-            time=motion.output_step * np.arange(motion.outputs + 1),
-            states=output.states,
-            velocities=output.velocities,
-            energies=output.energies,
-            row_gaps=output.gaps,
-            row_forces=output.means,
-            row_peaks=output.peaks,
-            row_frictions=output.frictions,
+            motion.output_step * np.arange(motion.outputs + 1),
+            output,
             step=step,
             steps=int(tally[STEPS]),
             first_contact=float(tally[FIRST_CONTACT]),

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -57,6 +57,28 @@ OF_DRIVES: Mapping[str, Mapping[str, str]] = {
 
 # A peak below this part of the deflection is the round-off of something at rest.
 STILL = 1.0e-6
+
+
+class Output(NamedTuple):
+    """Records (num_outputs, …) at the end of each output interval.
+
+    Args:
+        states, velocities: modal; velocities may have no columns.
+        energies: in J, as in ``dynamics.energy.ENERGIES``.
+        gaps: of the contacts in m.
+        means, peaks: of contact forces within the interval in N.
+        frictions: mean friction forces in N.
+        drives: work of drives so far in J at each row and thrust; may have no columns.
+    """
+
+    states: Array
+    velocities: Array
+    energies: Array
+    gaps: Array
+    means: Array
+    peaks: Array
+    frictions: Array
+    drives: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,30 +139,21 @@ class Trajectory:
     def record(
         cls,
         system: GapSystem,
-        *,
         time: Array,
-        states: Array,
-        velocities: Array,
-        energies: Array,
-        row_gaps: Array,
-        row_forces: Array,
-        row_peaks: Array,
-        row_frictions: Array,
+        output: Output,
+        *,
         step: float,
         steps: int,
         first_contact: float,
         contact_changes: int,
         least_energy: float = 0.0,
     ) -> Trajectory:
-        """Label what an integrator leaves; rows are gathered by station.
+        """Label the output of an integrator; rows are gathered by station.
 
         Args:
+            system: that has moved.
             time: (num_times,) in s.
-            states, velocities: (num_times, num_modes) a and ȧ; the latter may be empty where no
-                observer reads rates.
-            energies: in J, as in :func:`dynamics.energy.energy_residual`.
-            row_gaps, row_forces, row_peaks: (num_times, num_rows) in m, N, N.
-            row_frictions: (num_times, num_frictions) in N.
+            output: at these times.
             step: in s.
             steps: how many were made, several that are made at once counted as one.
             first_contact: in s.
@@ -152,10 +165,10 @@ class Trajectory:
         rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
         rows_at = np.maximum(belongs.sum(axis=0), 1)
         # Rows of one side press together, those of the other at another moment.
-        up, down = np.maximum(row_peaks, 0.0) @ belongs, np.minimum(row_peaks, 0.0) @ belongs
+        up, down = np.maximum(output.peaks, 0.0) @ belongs, np.minimum(output.peaks, 0.0) @ belongs
 
         def read(seen: Observer) -> Array:
-            values = (velocities if seen.derivative else states) @ seen.row
+            values = (output.velocities if seen.derivative else output.states) @ seen.row
             return _mean_rate(time, values) if seen.derivative == 2 else values
 
         variables: dict[str, tuple[Dims, Array, dict[str, str]]] = {
@@ -163,10 +176,10 @@ class Trajectory:
             for name, seen in system.observers.items()
         }
         by_station = {
-            "contact_force": row_forces @ belongs,
+            "contact_force": output.means @ belongs,
             "contact_force_peak": np.where(up >= -down, up, down),
-            "friction_force": row_frictions @ rubs,
-            "gap": row_gaps @ belongs / rows_at,
+            "friction_force": output.frictions @ rubs,
+            "gap": output.gaps @ belongs / rows_at,
         }
         variables |= {
             name: (("time", "station"), values, {**OF_STATIONS[name]})
@@ -174,7 +187,7 @@ class Trajectory:
         }
         variables |= {
             name: ("time", column, {"units": "J", "long_name": name.replace("_", " ")})
-            for name, column in zip(DRAWN_ENERGIES, energies.T, strict=False)
+            for name, column in zip(DRAWN_ENERGIES, output.energies.T, strict=False)
         }
         import xarray as xr
 
@@ -194,10 +207,12 @@ class Trajectory:
                 "steps": steps,
                 "first_contact": first_contact,
                 "contact_changes": contact_changes,
-                "energy_residual": float(np.abs(energy_residual(energies, least_energy)).max()),
+                "energy_residual": float(
+                    np.abs(energy_residual(output.energies, least_energy)).max()
+                ),
             },
         )
-        return cls(data, states)
+        return cls(data, output.states)
 
     @classmethod
     def of_states(
@@ -223,16 +238,11 @@ class Trajectory:
             energies[:, 2] += law.energy(gaps[:, row])
         pressed = forces != 0.0
         touching = pressed.any(axis=1)
+        none = np.zeros((time.size, 0))
         return cls.record(
             system,
-            time=time,
-            states=states,
-            velocities=velocities,
-            energies=energies,
-            row_gaps=gaps,
-            row_forces=forces,
-            row_peaks=forces,
-            row_frictions=np.zeros((time.size, 0)),
+            time,
+            Output(states, velocities, energies, gaps, forces, forces, none, none),
             step=float(time[1] - time[0]),
             steps=time.size - 1,
             first_contact=float(time[np.argmax(touching)]) if touching.any() else np.nan,

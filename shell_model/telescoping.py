@@ -21,13 +21,11 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.drive.moving_thrust import MovingThrust
-from dynamics.drive.row_table import RowTable
+from dynamics.drive.row_table import MovingThrust, RowTable
 from dynamics.drive.travel import KINDS, Kind, Travel
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
-from dynamics.reduction.condensation import fewer
-from dynamics.reduction.residual import with_coordinates
+from dynamics.reduction import fewer, with_coordinates
 from geometry.arrays import Array, Mask
 from geometry.axial import borne, entry
 from geometry.boom import SAME_PLACE, Boom

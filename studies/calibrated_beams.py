@@ -17,7 +17,7 @@ import numpy as np
 
 from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
-from dynamics.reduction.condensation import condensed
+from dynamics.reduction import condensed
 from geometry.arrays import Array
 from runs.case.kinds.finite_element import FIELDS, BeamElements
 from runs.case.schema import Case, Model

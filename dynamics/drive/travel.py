@@ -16,8 +16,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.drive.moving_thrust import MovingThrust
-from dynamics.drive.row_table import RowTable
+from dynamics.drive.row_table import MovingThrust, RowTable
 from dynamics.drive.stick_slip import Pulled
 from dynamics.excitation import History
 

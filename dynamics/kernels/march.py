@@ -21,6 +21,7 @@ from dynamics.kernels.moving_rows import Moving, move_rows
 from dynamics.kernels.moving_thrusts import Thrusts, add_thrust_forces, thrust_energies
 from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_rows
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
+from dynamics.trajectory import Output
 
 # Positions in the tally. From the work on as in ``dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
@@ -95,28 +96,6 @@ class Course(NamedTuple):
     mean: Array
     change: Array
     ways: Array
-
-
-class Output(NamedTuple):
-    """(num_outputs, …) what is recorded at the end of each output interval.
-
-    Args:
-        states, velocities: modal; velocities may have no columns.
-        energies: in J, as in ``dynamics.energy.ENERGIES``.
-        gaps: of the contacts in m.
-        means, peaks: of contact forces within the interval in N.
-        frictions: mean friction forces in N.
-        drives: work of drives so far in J at each row and thrust; may have no columns.
-    """
-
-    states: Array
-    velocities: Array
-    energies: Array
-    gaps: Array
-    means: Array
-    peaks: Array
-    frictions: Array
-    drives: Array
 
 
 @njit(**SUMS)

@@ -28,7 +28,7 @@ class Thrusts(NamedTuple):
         knots: of all, in m.
         slopes: (num_pieces, 3, most_modes) of w′ over the powers of the part passed, and
         passed: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds before each piece; see
-            :class:`dynamics.drive.moving_thrust.MovingThrust`.
+            :class:`dynamics.drive.row_table.MovingThrust`.
     """
 
     force: Array

@@ -12,7 +12,7 @@ import numpy as np
 from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
-from dynamics.reduction.tied import tied_system
+from dynamics.reduction import tied_system
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom

@@ -23,7 +23,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import contact_energy, contact_forces, term_slope
 from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
+from dynamics.trajectory import Output, Trajectory
 
 # Rounds of gaps and friction within a step, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
@@ -100,16 +100,13 @@ def integrate(motion: Motion, scheme: Scheme, settled: bool) -> Stepped:
     energies[:, 3] = (states - states[0]) @ system.load
     energies[:, 5] = losses
     pressed = forces != 0.0
+    rubbed = -np.sign(speeds @ system.friction_rows.T) * drag
     trajectory = Trajectory.record(
         system,
-        time=h * np.arange(n + 1),
-        states=states,
-        velocities=speeds,
-        energies=energies,
-        row_gaps=gaps,
-        row_forces=forces,
-        row_peaks=np.abs(forces),
-        row_frictions=-np.sign(speeds @ system.friction_rows.T) * drag,
+        h * np.arange(n + 1),
+        Output(
+            states, speeds, energies, gaps, forces, np.abs(forces), rubbed, np.zeros((n + 1, 0))
+        ),
         step=h,
         steps=lasted,
         first_contact=h * int(np.argmax(pressed.any(axis=1))) if pressed.any() else np.nan,

@@ -11,8 +11,7 @@ import pytest
 from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
-from dynamics.drive.moving_thrust import MovingThrust
-from dynamics.drive.row_table import RowTable
+from dynamics.drive.row_table import MovingThrust, RowTable
 from dynamics.drive.travel import SCurve, Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Table

@@ -11,8 +11,7 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.reduction.condensation import condensed
-from dynamics.reduction.residual import elastic_compliance, residual_compliance, with_springs
+from dynamics.reduction import condensed, elastic_compliance, residual_compliance, with_springs
 
 MODES = 60
 

@@ -98,7 +98,7 @@ class BeamElements(CalibratedTable):
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def moving(self, built: Built, shell: ReducedShell, boom: Boom) -> Built:
-        from dynamics.reduction.condensation import condensed
+        from dynamics.reduction import condensed
 
         if not self.section_fields:
             return super().moving(built, shell, boom)

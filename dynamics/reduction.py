@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Gap systems made of others: in fewer coordinates, with residual springs, without play.
+
+**Condensed.** Some modes stay as they are: a few as the slowest, the others as those whose inertia
+answers most to what pushes. Under a push b a mode gives way by b²/ω², its inertia by b²/ω⁴. Of the
+rest the motions that forces excite are kept, matched with ``MOMENTS`` derivatives at rest, so that
+statics is exact and the inertia of what gives way is right to the first orders (MacNeal 1971; Rubin
+1975, whose residual modes are the first block).
+
+**With springs.** With B the rows of contacts, friction and dashpots and C = B Ω⁻² Bᵀ over the
+elastic modes, the residual compliance of a coarse model beside a fine one is D = C_fine − C_coarse
+(MacNeal 1971). Both have the same rigid motions, so forces that no support carries are carried by
+inertia alike, and D is what pressed places alone give way. Its positive part D = Σ g gᵀ is as many
+springs without mass, each a coordinate with the rows ω_s g and a frequency ω_s well above the
+motion.
+
+**Tied.** Contacts that press at rest are held where they would touch without play, and at stations
+where none does all of them. What they press still gives way, as it does with play: the wall of a
+shell, say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from dynamics.arrays import Array, Indices
+from dynamics.gap_system import GapSystem
+
+# Blocks Ω⁻²ᵏ Bᵀ of what is pushed.
+MOMENTS = 2
+# Blocks take no more than this part of the coordinates, unless one alone does.
+_OF_ALL = 1.0 / 3.0
+# Of the coordinates, the slowest modes whether anything pushes them or not.
+_SLOWEST = 1.0 / 8.0
+# A push that is left with less than this part of its size is in the space already.
+_DEPENDENT = 1.0e-6
+# ω_s/2π in Hz: the swing of a boom is slower by a factor of ten and more.
+SPRING_FREQUENCY = 400.0
+
+# A pattern of forces that gives way by less than this part of what others do, does not.
+_NOTHING = 1.0e-3
+# Of the least of the segments' own ω²: motions below it are rigid.
+_RIGID = 1.0e-6
+
+
+def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
+    """The system in ``most`` coordinates at most, unless what is pushed alone takes more, and
+    (num_modes, num_coordinates) what these are in its own.
+
+    Args:
+        system: without modal damping, which a case adds later.
+        most: of all segments together.
+
+    Raises:
+        ValueError: the system has modal damping.
+    """
+    if system.damping.any():
+        raise ValueError("a system is condensed before it is damped")
+    if system.num_modes <= most:
+        return system, np.eye(system.num_modes)
+    pushes = _pushes(system)
+    order = _telling_first(system.omega2, pushes, round(_SLOWEST * most))
+    count = len(_independent((pushes * (system.omega2 > 0.0)).T).T)
+    moments = int(np.clip(_OF_ALL * most // max(count, 1), 1, MOMENTS))
+    kept, rest = np.split(order, [max(most - moments * count, (system.omega2 <= 0.0).sum())])
+    kept, rest = (part[np.argsort(system.omega2[part], kind="stable")] for part in (kept, rest))
+    omega2, shapes = fewer(system.omega2, pushes, kept, rest, moments)
+    return system.transformed(omega2, shapes), shapes
+
+
+def fewer(
+    omega2: Array, pushes: Array, kept: Indices, rest: Indices, moments: int
+) -> tuple[Array, Array]:
+    """(num_shapes,) ω² and (num_modes, num_shapes) of modes kept, and of what else is pushed.
+
+    Args:
+        omega2: (num_modes,) in rad²/s², positive of the rest.
+        pushes: (num_pushes, num_modes) that the rest answers by few of its motions.
+        kept, rest: positions of modes.
+        moments: of what the rest answers, in statics, that are taken along.
+    """
+    elastic = omega2[rest, None]
+    blocks = [_independent(pushes[:, rest].T)]
+    for _ in range(moments):
+        blocks.append(_independent(blocks[-1] / elastic))
+    basis = _independent(np.hstack(blocks[1:]))
+    stiffness, turn = eigh(basis.T @ (elastic * basis))
+    shapes = np.zeros((omega2.size, kept.size + stiffness.size))
+    shapes[kept, np.arange(kept.size)] = 1.0
+    shapes[rest, kept.size :] = basis @ turn
+    return np.concatenate([omega2[kept], stiffness]), shapes
+
+
+def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:
+    """(num_modes,) positions: so many of the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
+    elastic = omega2 > 0.0
+    gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
+    whole = gives.sum(axis=1, keepdims=True)
+    parts = (gives / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
+    told = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
+    told[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
+    return np.asarray(np.lexsort((omega2, -told)))
+
+
+def _pushes(system: GapSystem) -> Array:
+    """(num_pushes, num_modes) all that can act."""
+    constant = [system.load, system.released, system.thrown]
+    excited = [excitation.load for excitation in system.excitations]
+    return np.vstack([system.rows, system.friction_rows, system.dashpots, *constant, *excited])
+
+
+def _independent(block: Array) -> Array:
+    """(num_modes, rank) an orthonormal basis of what the columns span, each of the same size."""
+    sizes = np.linalg.norm(block, axis=0)
+    kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
+    basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
+    return np.asarray(basis[:, values > _DEPENDENT * values.max(initial=0.0)])
+
+
+def elastic_compliance(system: GapSystem) -> Array:
+    """(num_resisting, num_resisting) B Ω⁻² Bᵀ in m/N of rows, friction rows, then dashpots."""
+    elastic = system.omega2 > 0.0
+    rows = _resisting(system)[:, elastic]
+    return np.asarray(rows / system.omega2[elastic] @ rows.T)
+
+
+def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
+    """(num_resisting, num_resisting) D in m/N, not made positive.
+
+    Raises:
+        ValueError: they do not touch, rub and drag in as many places.
+    """
+    if _resisting(coarse).shape[0] != _resisting(fine).shape[0]:
+        raise ValueError("both models must touch, rub and drag in the same places")
+    return elastic_compliance(fine) - elastic_compliance(coarse)
+
+
+def with_springs(system: GapSystem, residual: Array) -> GapSystem:
+    """The system with the positive part of a (num_resisting, num_resisting) residual as springs.
+
+    That is in m/N.
+    """
+    sizes = np.sqrt(np.abs(np.diag(residual)))
+    sizes[sizes == 0.0] = 1.0
+    # Normalised, since friction rows, pads and dashpots differ by orders of magnitude.
+    amounts, patterns = np.linalg.eigh(residual / np.outer(sizes, sizes))
+    kept = amounts > _NOTHING * max(amounts.max(initial=0.0), 0.0)
+    spring = 2.0 * np.pi * SPRING_FREQUENCY
+    rows = spring * sizes[:, None] * patterns[:, kept] * np.sqrt(amounts[kept])
+    return with_coordinates(system, np.full(rows.shape[1], spring**2), rows)
+
+
+def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
+    """The system with coordinates that contacts, friction and dashpots alone move.
+
+    Args:
+        system: none of its rows moves.
+        omega2: (num_added,) in rad²/s².
+        rows: (num_resisting, num_added) in 1/√kg, of dashpots in 1/√s.
+    """
+    touching, rubbing, dragged = np.split(
+        rows, np.cumsum([len(system.laws), len(system.frictions)])
+    )
+    wider = system.transformed(
+        np.concatenate([system.omega2, omega2]),
+        np.eye(system.num_modes, system.num_modes + omega2.size),
+    )
+    return replace(
+        wider,
+        rows=np.hstack([system.rows, touching]),
+        friction_rows=np.hstack([system.friction_rows, rubbing]),
+        dashpots=np.hstack([system.dashpots, dragged]),
+    )
+
+
+def _resisting(system: GapSystem) -> Array:
+    return np.vstack([system.rows, system.friction_rows, system.dashpots])
+
+
+def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
+    """The tied system, whose stations are those of the ground, and (num_modes, num_tied_modes) what
+    its coordinates are in those of the other.
+
+    >>> from dynamics.reduction import tied_system
+    >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
+    ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
+    ...     released=np.zeros(2), thrown=np.zeros(2), dashpots=np.zeros((0, 2)),
+    ...     friction_rows=np.zeros((0, 2)))
+    >>> tied_system(pair, [np.zeros(2)])[0].omega2.round(6)
+    array([2.])
+
+    Args:
+        system: with its contacts.
+        rests: (num_modes,) where it rests under the loads that count.
+    """
+    on_ground = np.isin(system.station_of_row, system.grounded)
+    pressing = np.zeros(len(system.laws), dtype=bool)
+    for rest in rests:
+        gaps = system.rows @ rest
+        pressing |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
+    pressed = np.isin(system.station_of_row, system.station_of_row[pressing])
+    held = system.rows[~on_ground & (pressing | ~pressed)]
+    free = null_space(held) if held.size else np.eye(system.num_modes)
+    omega2, shapes = eigh(free.T @ system.stiffness @ free)
+    least = _RIGID * min(system.omega2[system.omega2 > 0.0], default=0.0)
+    omega2[np.abs(omega2) <= least] = 0.0
+    basis = free @ shapes
+    grounded = list(system.grounded)
+    stays = np.flatnonzero(on_ground)
+    found = replace(
+        system.transformed(omega2, basis),
+        rows=system.rows[stays] @ basis,
+        laws=[system.laws[row] for row in stays],
+        station_of_row=np.array(
+            [grounded.index(system.station_of_row[row]) for row in stays], dtype=np.int64
+        ),
+        stations=[system.stations[station] for station in grounded],
+        station_directions=[system.station_directions[station] for station in grounded],
+        grounded=range(len(grounded)),
+        friction_rows=np.zeros((0, omega2.size)),
+        frictions=(),
+    )
+    return found, basis
