@@ -114,7 +114,7 @@ def run(
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     # After the case, whose mistakes need not wait for them.
-    from runs.client import FILES, judge
+    from runs.client import judge
     from runs.folder.cache import Cache
     from runs.folder.files import whole_folder
     from runs.pipeline import estimates
@@ -137,7 +137,7 @@ def run(
             return 0
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
-            whole_folder(folder, FILES) as part,
+            whole_folder(folder) as part,
             progress.told([model.name for model in effective.models]) as tell,
         ):
             finished = run_case(effective, case, Means(comm, tell, cache, cache))

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runs.paper.statements import FILES as FILES
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -25,7 +24,7 @@ def judge(results: Results, folder: Path | None = None) -> Addition:
 
     Args:
         results: of the run.
-        folder: of a finished run, which may hold ``FILES``.
+        folder: of a finished run, which may hold the client's files.
 
     Raises:
         BadInput: one of these files is damaged, or of another case.

@@ -1,33 +1,39 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Results kept under the content of what they depend on, for whoever asks for the same again.
 
-An entry is a folder of files that is renamed into its place when it is whole: whatever interrupts a
-run, and whoever shares the cache, there is no half of one. Beside the files lie their checksums
-with the entry's own name, as ``sha256sum -c`` reads them in the cache's folder, so that a disk
-that forgets and a file that was copied from elsewhere are found out. Nothing is ever changed in
-place, and what is out of date is never asked for again, so that it is the least recently used, and
-goes.
+An entry is a file whose first line is the SHA-256 of its key and of what follows, so that a disk
+that forgets and a file that was copied from elsewhere are found out. It appears whole or not at
+all, and is never changed. What is out of date is never asked for again, so that it is the least
+recently used, and goes.
 """
 
 from __future__ import annotations
 
+import fcntl
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
-from itertools import chain
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from hashlib import file_digest, sha256
+from io import BufferedIOBase
 from pathlib import Path
-from typing import Any, TypeVar
-
-import numpy as np
+from time import perf_counter
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from runs.folder import records
-from runs.folder.files import beside, checksum, in_turn
+from runs.folder.files import whole
+from runs.folder.versions import program
 from runs.process.notices import NOTICES
 from runs.process.shown import shown
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from shell_model.reduced_shell import ReducedShell
+
 Kept = TypeVar("Kept")
-Files = Mapping[str, memoryview]
 
 # Bytes that the entries of a user may take together.
 ROOM = 4 * 1024**3
@@ -35,16 +41,20 @@ ROOM = 4 * 1024**3
 # Where another folder than the user's own is to be taken.
 VARIABLE = "PROTRACTILE_CACHE"
 
-SUMS = "SHA256SUMS"
+_SUFFIX = ".record"
+# Bytes of the line with an entry's checksum.
+_HEAD = 65
 
 
 def key(*content: Any) -> str:
-    """SHA-256 of content: numbers to the last bit, dataclasses with their names.
+    """Return the SHA-256 of content, numbers to the last bit, and of the program that computes.
 
     Raises:
-        TypeError: something cannot be a record's, see :func:`runs.folder.records.pack`.
+        TypeError: something cannot be a record's, see :func:`runs.folder.records.write`.
     """
-    return checksum(chain.from_iterable(records.pack(content).values()))
+    digest = sha256()
+    records.write((content, program()), SimpleNamespace(write=digest.update))
+    return digest.hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +69,7 @@ class Cache:
 
     @classmethod
     def of_user(cls) -> Cache | None:
-        """In ``$PROTRACTILE_CACHE``, or in ``protractile`` in the user's folder of caches.
+        """Return that in ``$PROTRACTILE_CACHE``, or in the user's folder of caches.
 
         None, and a notice, for one who has no home.
         """
@@ -76,69 +86,66 @@ class Cache:
             return None
         return cls(Path(caches) / "protractile")
 
-    def load(self, key: str, read: Callable[[Files], Kept]) -> Kept | None:
-        """What an entry holds; None where there is none, or none that is as it was kept.
-
-        Args:
-            key: of the entry.
-            read: makes something of the entry's files.
-        """
-        entry = self.folder / key
+    def load(self, key: str, kind: type[Kept]) -> Kept | None:
+        """Return an entry of a class; None where there is none, or none that is as it was kept."""
+        entry = self._entry(key)
         # An entry of another user's can be read, too.
         with suppress(OSError):
             os.utime(entry)
+        if not entry.is_file():
+            return None
         try:
-            files = {path.name: _content(path) for path in entry.iterdir()}
-            if files.pop(SUMS) == _sums(key, {name: [data] for name, data in files.items()}):
-                return read(files)
+            with entry.open("rb") as file:
+                if file.read(_HEAD) == _head(key, file):
+                    file.seek(_HEAD)
+                    return records.read(file, kind)
         except MemoryError:
             raise
+        except FileNotFoundError:
+            return None
         except Exception:
             # Whatever has become of it on the disk, and whoever made it.
-            if not os.path.lexists(entry):
-                return None
+            pass
         NOTICES.warning(
             "%s: is not as it was kept; it is dropped, and computed again", shown(str(entry))
         )
-        self._drop(entry)
+        with suppress(OSError):
+            entry.unlink()
         return None
 
     @contextmanager
     def making(self, key: str) -> Iterator[None]:
-        """Who else is at the same entry waits meanwhile, unless the cache cannot be written."""
+        """Keep other processes waiting that want the same entry.
+
+        They do not wait where the cache cannot be written.
+        """
         with ExitStack() as stack:
             with suppress(OSError):
                 self.folder.mkdir(parents=True, exist_ok=True)
-                stack.enter_context(in_turn(self.folder / f".{key}.lock"))
+                lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
+                # A byte of its own for each entry, so that no file of locks is left.
+                fcntl.lockf(lock, fcntl.LOCK_EX, 1, int(key[:15], 16))
             yield
 
-    def keep(self, key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> None:
-        """Keep an entry. Where another process has kept the same meanwhile, that one stays.
-
-        Args:
-            key: of the entry.
-            files: the parts of each file, by its name.
+    def keep(self, key: str, thing: Any) -> None:
+        """Keep an entry.
 
         Raises:
             OSError: it cannot be written.
+            TypeError: it cannot be a record.
         """
-        entry = self.folder / key
-        with beside(entry) as part:
-            made = part / key
-            made.mkdir()
-            for name, content in {**files, SUMS: [_sums(key, files)]}.items():
-                with (made / name).open("wb") as file:
-                    file.writelines(content)
-            try:
-                made.rename(entry)
-            except OSError:
-                if not entry.is_dir():
-                    raise
+        with whole(self._entry(key)) as part, part.open("w+b") as file:
+            file.write(bytes(_HEAD))
+            records.write(thing, file)
+            file.seek(_HEAD)
+            head = _head(key, file)
+            file.seek(0)
+            file.write(head)
 
-    def remember(self, key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> None:
+    def remember(self, key: str, thing: Any) -> None:
         """Keep an entry, and room for others; a notice says so where it cannot be written."""
         try:
-            self.keep(key, files)
+            self.keep(key, thing)
             self.make_room()
         except OSError as error:
             NOTICES.warning(
@@ -152,31 +159,72 @@ class Cache:
     def make_room(self, room: int = ROOM) -> None:
         """Drop the least recently used entries until the others take ``room`` bytes together."""
         used: list[tuple[float, int, Path]] = []
-        for entry in self.folder.iterdir():
+        for entry in self.folder.glob(f"*{_SUFFIX}"):
             # Another process may take it away while it is looked at.
             with suppress(OSError):
-                size = sum(path.stat().st_size for path in entry.rglob("*"))
-                used.append((entry.stat().st_mtime, size, entry))
+                status = entry.stat()
+                used.append((status.st_mtime, status.st_size, entry))
         total = sum(size for _, size, _ in used)
         for _, size, entry in sorted(used)[:-1]:
             if total <= room:
                 return
-            self._drop(entry)
+            entry.unlink(missing_ok=True)
             total -= size
 
-    def _drop(self, entry: Path) -> None:
-        """Take an entry away at once, since others may be reading it."""
-        with suppress(OSError), beside(entry) as part:
-            entry.rename(part / entry.name)
+    def _entry(self, key: str) -> Path:
+        return self.folder / f"{key}{_SUFFIX}"
 
 
-def _content(path: Path) -> memoryview:
-    if not path.is_file():
-        raise ValueError(f"{path} is no file")
-    return np.fromfile(path, np.uint8).data
+class Memory:
+    """Entries as :class:`Cache` has them, as long as somebody holds them, and not on the disk."""
+
+    def __init__(self) -> None:
+        self._entries: dict[str, Any] = {}
+
+    def load(self, key: str, kind: type[Kept]) -> Kept | None:
+        """Return a copy of an entry; None where there is none."""
+        thing = deepcopy(self._entries.get(key))
+        assert thing is None or isinstance(thing, kind)
+        return thing
+
+    def remember(self, key: str, thing: Any) -> None:
+        """Keep a copy."""
+        self._entries[key] = deepcopy(thing)
 
 
-def _sums(key: str, files: Mapping[str, Sequence[bytes | memoryview]]) -> bytes:
-    """A line for each file of an entry."""
-    lines = [f"{checksum(content)}  {key}/{name}\n" for name, content in sorted(files.items())]
-    return "".join(lines).encode()
+def remembered(
+    cache: Cache,
+    content: Sequence[Any],
+    comm: MPI.Comm,
+    compute: Callable[[], ReducedShell],
+) -> ReducedShell:
+    """Return a reduced shell, from the cache if it is there. Collective.
+
+    A cache that cannot be read or written costs time and a line to say so, and nothing else. Of
+    processes that want the same shell at a time one makes it, and the others wait for it.
+
+    Args:
+        cache: of the user.
+        content: all that the shell depends on.
+        comm: the ranks that share the work; the first one reads and writes.
+        compute: the shell. Collective.
+    """
+    from shell_model.reduced_shell import ReducedShell
+
+    start = perf_counter()
+    name = key(list(content))
+    with cache.making(name) if comm.rank == 0 else nullcontext():
+        found = cache.load(name, ReducedShell) if comm.rank == 0 else None
+        # Fields and meshes are the first rank's alone.
+        shared = comm.bcast(None if found is None else replace(found, fields=None, meshes=[]))
+        if shared is not None:
+            return replace(found or shared, seconds={"cache": perf_counter() - start})
+        reduced = compute()
+        if comm.rank == 0:
+            cache.remember(name, reduced)
+    return reduced
+
+
+def _head(key: str, file: BufferedIOBase) -> bytes:
+    """Return the SHA-256 of a name and of the rest of a file, as a line."""
+    return file_digest(file, lambda: sha256(key.encode())).hexdigest().encode() + b"\n"

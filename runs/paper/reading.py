@@ -16,7 +16,7 @@ from dynamics.predictability.ensemble import perturbations
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case
-from runs.folder.memory import Memory
+from runs.folder.cache import Memory
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.paper.verdicts import Judgement
 from runs.pipeline.means import Means

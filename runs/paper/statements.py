@@ -28,7 +28,7 @@ STATEMENTS: dict[StatementId, str] = {
 
 # What a run's folder may hold a copy of: a survey of the paper's readings, and what numerics of its
 # time show.
-SURVEY_FILE, THEN_FILE = FILES = ("readings.json", "then.json")
+SURVEY_FILE, THEN_FILE = "readings.json", "then.json"
 
 
 class CaseKeys(Table):

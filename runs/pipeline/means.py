@@ -7,8 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from runs.folder.cache import Cache
-from runs.folder.memory import Keeper
+from runs.folder.cache import Cache, Memory
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -36,7 +35,7 @@ class Means:
     comm: MPI.Intracomm | None = None
     progress: Progress = silent
     cache: Cache | None = None
-    kept: Keeper | None = None
+    kept: Cache | Memory | None = None
 
     @property
     def first_rank(self) -> bool:

@@ -22,9 +22,7 @@ from geometry.boom import Boom, Segment
 from runs.case import toml
 from runs.case.kinds.model import Built, Workshop
 from runs.case.schema import Case, Model
-from runs.folder import records
 from runs.folder.cache import key
-from runs.folder.versions import program
 from runs.pipeline import members
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.models import Plan, build
@@ -129,13 +127,13 @@ def run_model(
         alone = case.unjudged().model_copy(update={"models": (model,), "title": ""})
         system, kept = built.system, means.kept
         content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
-        name = key([*content], program())
-        moved = kept.load(name, lambda files: records.unpack(files, Finished)) if kept else None
+        name = key([*content])
+        moved = kept.load(name, Finished) if kept else None
         if moved is None:
             moving = Stages(model.name, means.progress)
             moved = _move(built, model, case, cutoff, executor, moving)
             if kept is not None:
-                kept.remember(name, records.pack(moved))
+                kept.remember(name, moved)
     summary, reduced = moved.summary, built.shell
     if boom.compressed:
         summary.critical_factor = built.critical_factor

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from runs.case.messages import BadInput
 from runs.case.user_files import check_left
-from runs.folder.files import beside, real, write_whole
+from runs.folder.files import MANIFEST, beside, real, write_whole
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
@@ -47,12 +47,12 @@ def prepare(out: str, file: str) -> Path:
         )
     try:
         with beside(folder):
-            names = [path.name for path in folder.glob("*") if not path.name.startswith(".")]
+            names = {path.name for path in folder.glob("*")}
     except OSError as error:
         raise BadInput(
             file, key, f"cannot be written ({error.strerror}); give a folder that can"
         ) from None
-    if names and TRAJECTORIES not in names:
+    if names and not {MANIFEST, TRAJECTORIES} <= names:
         raise BadInput(
             file, key, "holds files that are not a run's; give a new folder or an earlier run's"
         )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import xarray as xr
 from rich.console import Console
 
 from geometry.arrays import Array
-from runs.folder.files import alone, changed_folder, whole, whole_folder
+from runs.folder.files import alone, changed_folder, whole
 from runs.pipeline.results import CONVENTIONS
 from runs.report.numerals import NONE, number
 from runs.report.tables import TextTable
@@ -77,8 +78,10 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         changed_folder(folder) as part,
         whole(part / NETCDF) as netcdf,
         whole(part / CSV) as table,
-        whole_folder(part / "figures") as figures,
     ):
+        figures = part / "figures"
+        shutil.rmtree(figures, ignore_errors=True)
+        figures.mkdir()
         data.to_netcdf(netcdf, engine="scipy")
         _write_csv(data, outcomes, table)
         draw(data, plan.play_free, figures)

@@ -1,41 +1,36 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Runs the points of a sweep on all cores or ranks, and keeps each one that is done.
 
-A point, ``points/HASH/point.json``, is there whole or not at all, with its checksum beside it. Its
-name is the hash of the point's effective case, of the program's sources and of the libraries, so
-what is done is not done again, whatever sweep of the folder asks for it.
+A point is an entry of a cache in the sweep's folder. Its key is the hash of the point's effective
+case, of the program's sources and of the libraries, so what is done is not done again, whatever
+sweep of the folder asks for it.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
-from functools import partial
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from pydantic import TypeAdapter
 
 from dynamics.failure import NumericsError
 from runs.case import toml
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.user_files import check_left
-from runs.folder.cache import Cache, Files, key
-from runs.folder.versions import program
+from runs.folder.cache import Cache, key
 from runs.pipeline import members
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.run import run_case
 from runs.process import ranks
 from runs.process import workers as processes
 from runs.process.interruption import undone
-from runs.sweep.distances import DISTANCES, Seen, comparable_until
-from runs.sweep.points import Plan, Point
-from runs.sweep.quantities import QUANTITIES, Measured, measure
+from runs.sweep.distances import Seen, comparable_until
+from runs.sweep.points import Plan
+from runs.sweep.quantities import Measured, measure
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -43,7 +38,6 @@ if TYPE_CHECKING:
     from runs.pipeline.results import Results
 
 POINTS = "points"
-_POINT = "point.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,13 +125,8 @@ def run_points(
     """
     points, reference = plan.points, plan.reference
     kept = Cache(folder / POINTS)
-    computed_by = program()
-    asked = [] if reference is None else [reference]
-    names = [key(toml.digest(point.case), computed_by, *asked) for point in points]
-    outcomes = [
-        kept.load(name, partial(_read, point.case, reference))
-        for name, point in zip(names, points, strict=True)
-    ]
+    names = [key(toml.digest(point.case), reference) for point in points]
+    outcomes = [kept.load(name, Outcome) for name in names]
     stage = f"{len(points)} points"
     futures = {
         pool.submit(run_point, point.case, cache, reference): i
@@ -152,7 +141,7 @@ def run_points(
             for future in as_completed(futures):
                 i = futures[future]
                 outcomes[i] = outcome = future.result()
-                kept.keep(names[i], _written(outcome, points[i]))
+                kept.keep(names[i], outcome)
                 done += 1
                 progress("sweep", stage, done / len(points))
     except BrokenProcessPool:
@@ -198,30 +187,3 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
     }
     off = {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
     return Outcome(models, failures, off, until)
-
-
-def _written(outcome: Outcome, point: Point) -> dict[str, list[bytes]]:
-    """The file of a point, for people too."""
-    data = {"point": point.label, "case_hash": toml.digest(point.case), **asdict(outcome)}
-    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
-    return {_POINT: [f"{text}\n".encode()]}
-
-
-def _read(case: Case, reference: str | None, files: Files) -> Outcome:
-    """What :func:`_written` has written of a case.
-
-    Raises:
-        ValueError: it is something else.
-    """
-    outcome = TypeAdapter(Outcome).validate_json(bytes(files[_POINT]))
-    models = {model.name for model in case.models}
-    quantities = {quantity.name for quantity in QUANTITIES}
-    measured = all(numbers.keys() == quantities for numbers in outcome.models.values())
-    compared = outcome.models.keys() - {reference} if reference in outcome.models else set()
-    distances = {distance.name for distance in DISTANCES}
-    measured &= all(parts.keys() == distances for parts in outcome.off.values())
-    measured &= outcome.off.keys() == compared
-    measured &= (outcome.until is None) == (reference not in outcome.models)
-    if not measured or outcome.models.keys() | outcome.failures.keys() != models:
-        raise ValueError(f"{_POINT} is not of the case's models")
-    return outcome

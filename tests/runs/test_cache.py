@@ -9,133 +9,108 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from shutil import rmtree
-from typing import cast
 
 import numpy as np
 import pytest
 
 from geometry.boom import Boom
-from runs.folder.cache import Cache, key
+from runs.folder.cache import Cache, Memory, key
 from runs.process.shown import shown
 
-TEXT = "text"
 ROOT = Path(__file__).parents[2]
+# The file of the entry "a".
+ENTRY = "a.record"
 
 
-def keep(cache: Cache, name: str, text: str) -> None:
-    cache.keep(name, {TEXT: [text.encode()]})
-
-
-def load(cache: Cache, name: str) -> str | None:
-    return cache.load(name, lambda files: bytes(files[TEXT]).decode())
-
-
-def test_an_entry_is_found_again(tmp_path: Path) -> None:
-    cache = Cache(tmp_path / "cache")
-    assert load(cache, "a") is None
-    keep(cache, "a", "first")
-    assert load(cache, "a") == "first"
-    assert load(cache, "b") is None
+@pytest.mark.parametrize("keeper", ["Cache", "Memory"])
+def test_an_entry_is_found_again(tmp_path: Path, keeper: str) -> None:
+    cache = Cache(tmp_path / "cache") if keeper == "Cache" else Memory()
+    assert cache.load("a", dict) is None
+    thing = {"array": np.arange(3.0)}
+    cache.remember("a", thing)
+    thing["array"][0] = 1.0
+    for _ in range(2):
+        found = cache.load("a", dict)
+        assert found is not None
+        assert found.pop("array").tolist() == [0.0, 1.0, 2.0]
+    assert cache.load("b", dict) is None
 
 
 def test_an_interrupted_entry_leaves_nothing(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     with pytest.raises(TypeError):
-        cache.keep("a", {"first": [b"whole"], "second": cast("list[bytes]", ["no bytes"])})
+        cache.keep("a", [np.zeros(3), print])
     assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_kept_is_told_by_its_name(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(NotADirectoryError) as caught:
-        keep(Cache(tmp_path / "file"), "a", "text")
-    assert caught.value.filename == str(tmp_path / "file" / "a")
+        Cache(tmp_path / "file").keep("a", "text")
+    assert caught.value.filename == str(tmp_path / "file" / ENTRY)
 
 
-def test_of_two_that_keep_the_same_the_first_stays(tmp_path: Path) -> None:
+def test_an_entry_is_kept_again(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "a", "first")
-    keep(cache, "a", "second")
-    assert load(cache, "a") == "first"
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+    for text in ("first", "second"):
+        cache.keep("a", text)
+        assert cache.load("a", str) == text
+    assert [path.name for path in tmp_path.iterdir()] == [ENTRY]
 
 
 def test_the_least_recently_used_goes(tmp_path: Path) -> None:
+    """What is no entry stays, and so does the newest one, whatever its size."""
     cache = Cache(tmp_path)
+    (tmp_path / "mine").write_text(200 * "x", encoding="utf-8")
     for name, used in (("a", 10.0), ("b", 20.0)):
-        keep(cache, name, 100 * "x")
-        os.utime(tmp_path / name, (used, used))
-    assert load(cache, "a") is not None  # uses it
-    keep(cache, "c", 100 * "x")
-    cache.make_room(500)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "c"]
+        cache.keep(name, 100 * "x")
+        os.utime(tmp_path / f"{name}.record", (used, used))
+    assert cache.load("a", str) is not None  # uses it
+    cache.keep("c", 100 * "x")
+    cache.make_room(350)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [ENTRY, "c.record", "mine"]
+    cache.make_room(10)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["c.record", "mine"]
 
 
 def test_what_a_killed_process_has_left_goes(tmp_path: Path) -> None:
     program = (
         "import os; from pathlib import Path; from runs.folder.cache import Cache; "
-        "Path.rename = lambda *_: os._exit(9); "
-        f"Cache(Path({str(tmp_path)!r})).keep('a', {{'text': [b'first']}})"
+        f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).keep('a', 'first')"
     )
     killed = subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False)
     assert killed.returncode == 9
     (left,) = tmp_path.iterdir()
     cache = Cache(tmp_path)
-    assert load(cache, "a") is None
-    keep(cache, "a", "second")
-    assert load(cache, "a") == "second"
+    assert cache.load("a", str) is None
+    cache.keep("a", "second")
+    assert cache.load("a", str) == "second"
     assert not left.exists()
 
 
-def test_one_entry_may_be_larger_than_the_room(tmp_path: Path) -> None:
-    cache = Cache(tmp_path)
-    keep(cache, "a", 100 * "x")
-    cache.make_room(10)
-    assert load(cache, "a") is not None
-
-
-@pytest.mark.parametrize("file", [TEXT, "SHA256SUMS"])
-def test_every_flipped_bit_is_found(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture, file: str
-) -> None:
-    cache = Cache(tmp_path)
-    keep(cache, "a", "1.5")
-    whole = (tmp_path / "a" / file).read_bytes()
+def test_every_flipped_bit_is_found(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    cache, entry = Cache(tmp_path), tmp_path / ENTRY
+    cache.keep("a", np.array(1.5))
+    whole = entry.read_bytes()
     bits = range(8 * len(whole))
     for bit in bits:
-        damaged = bytearray(whole)
-        damaged[bit // 8] ^= 1 << bit % 8
-        (tmp_path / "a" / file).write_bytes(damaged)
-        assert load(cache, "a") is None
+        flipped = bytearray(whole)
+        flipped[bit // 8] ^= 1 << bit % 8
+        entry.write_bytes(flipped)
+        assert cache.load("a", np.ndarray) is None
         assert list(tmp_path.iterdir()) == []
-        keep(cache, "a", "1.5")
-    message = (
-        f"{shown(str(tmp_path / 'a'))}: is not as it was kept; it is dropped, and computed again"
-    )
+    message = f"{shown(str(entry))}: is not as it was kept; it is dropped, and computed again"
     assert [record.getMessage() for record in caplog.records] == [message for _ in bits]
 
 
 def longer(entry: Path) -> None:
-    with (entry / TEXT).open("a") as file:
+    with entry.open("a") as file:
         file.write("more")
 
 
 def of_another_entry(entry: Path) -> None:
-    cache = Cache(entry.parent)
-    keep(cache, "b", "another")
-    rmtree(entry)
-    (entry.parent / "b").rename(entry)
-
-
-def a_file(entry: Path) -> None:
-    rmtree(entry)
-    entry.write_text("file")
-
-
-def no_text(entry: Path) -> None:
-    rmtree(entry)
-    Cache(entry.parent).keep(entry.name, {TEXT: [b"\xff"]})
+    Cache(entry.parent).keep("b", "another")
+    (entry.parent / "b.record").replace(entry)
 
 
 @pytest.mark.parametrize(
@@ -143,25 +118,27 @@ def no_text(entry: Path) -> None:
     [
         longer,
         of_another_entry,
-        a_file,
-        no_text,
-        lambda entry: (entry / TEXT).unlink(),
-        lambda entry: (entry / "more").touch(),
-        lambda entry: os.mkfifo(entry / "pipe"),
-        lambda entry: [path.unlink() for path in entry.iterdir()],
+        lambda entry: entry.write_text(""),
+        lambda entry: os.truncate(entry, entry.stat().st_size - 1),
+        lambda entry: Cache(entry.parent).keep("a", ["no text"]),
     ],
 )
 def test_what_was_not_kept_there_is_dropped(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, become: Callable[[Path], object]
 ) -> None:
     cache = Cache(tmp_path)
-    keep(cache, "a", "first")
-    become(tmp_path / "a")
-    assert load(cache, "a") is None
+    cache.keep("a", "first")
+    become(tmp_path / ENTRY)
+    assert cache.load("a", str) is None
     assert len(caplog.records) == 1
     assert list(tmp_path.iterdir()) == []
-    keep(cache, "a", "second")
-    assert load(cache, "a") == "second"
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
+def test_what_is_no_file_is_no_entry(tmp_path: Path, make: Callable[[Path], object]) -> None:
+    """A pipe would wait for its writer."""
+    make(tmp_path / ENTRY)
+    assert Cache(tmp_path).load("a", str) is None
 
 
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
@@ -173,8 +150,8 @@ def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
     assert key(paper_boom, 0.1) == key(same, 0.1)
     assert len({key(paper_boom, 0.1), key(changed, 0.1), key(paper_boom, 0.2)}) == 3
     assert key(np.arange(3.0)) != key(np.arange(3)) != key(np.arange(3).reshape(3, 1))
-    with pytest.raises(TypeError, match="function cannot be kept: it is no data"):
-        key(keep)
+    with pytest.raises(TypeError, match="builtin_function_or_method cannot be kept: it is no data"):
+        key(print)
 
 
 def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -7,12 +7,13 @@ import os
 import signal
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from runs.folder.files import MANIFEST, alone, beside, changed_folder, whole, whole_folder
+from runs.folder.files import MANIFEST, alone, changed_folder, damaged, whole, whole_folder
 
 ROOT = Path(__file__).parents[2]
 
@@ -106,40 +107,41 @@ def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["figures"]
 
 
-def test_what_is_the_user_s_stays(tmp_path: Path) -> None:
-    """Files, folders, links and what comes while the new folder is written."""
+def test_a_new_folder_has_what_was_written_and_the_rights_of_the_old_one(tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    for content in ("earlier", "later"):
+    for name in ("earlier", "later"):
         with whole_folder(folder) as part:
-            (part / "figures").mkdir()
-            (part / "figures" / f"{content}.png").write_text(content, encoding="utf-8")
-            if content == "later":
-                (folder / "late.txt").write_text("mine", encoding="utf-8")
-        if content == "earlier":
-            (folder / "figures" / "my.png").write_text("mine", encoding="utf-8")
-            (folder / "notes" / "empty").mkdir(parents=True)
-            (folder / "link").symlink_to("nowhere")
+            write(part, name)
+        if name == "earlier":
+            write(folder, "mine")
             folder.chmod(0o750)
-    mine = {"figures/my.png": "mine", "late.txt": "mine"}
-    assert contents(folder) == {"figures/later.png": "later", **mine}
-    assert (folder / "notes" / "empty").is_dir()
-    assert os.readlink(folder / "link") == "nowhere"
+    assert contents(folder) == {"later": "later"}
     assert folder.stat().st_mode & 0o777 == 0o750
-    assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
 def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
-    """What the user has put there is the user's still at the next run."""
+    """What the user has put there is not listed, so that it may change."""
     folder = tmp_path / "out"
     with whole_folder(folder) as part:
         write(part, "data", "report")
-    write(folder, "mine")
+    write(folder, "mine", "deep/mine")
+    (folder / "empty").mkdir()
+    (folder / "link").symlink_to("nowhere")
+    os.mkfifo(folder / "pipe")
     with alone(folder), changed_folder(folder) as part, whole(part / "report") as report:
         report.write_text("again", encoding="utf-8")
-    assert contents(folder) == {"data": "data report", "report": "again", "mine": "mine"}
-    with whole_folder(folder) as part:
-        write(part, "data")
-    assert contents(folder) == {"data": "data", "mine": "mine"}
+    mine = dict.fromkeys(("mine", "deep/mine"), "mine deep/mine")
+    assert contents(folder) == {"data": "data report", "report": "again", **mine}
+    assert (folder / "empty").is_dir()
+    assert os.readlink(folder / "link") == "nowhere"
+    assert (folder / "pipe").is_fifo()
+    listed = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
+    assert [line.split()[1] for line in listed] == ["data", "report"]
+    assert damaged(folder) is None
+    (folder / "mine").write_text("other", encoding="utf-8")
+    assert damaged(folder) is None
+    (folder / "data").write_text("other", encoding="utf-8")
+    assert damaged(folder) == "data"
 
 
 def test_a_failing_folder_leaves_the_one_that_was_there(tmp_path: Path) -> None:
@@ -177,38 +179,26 @@ def test_a_folder_that_was_away_when_its_process_was_killed_comes_back(tmp_path:
     folder = tmp_path / "out"
     with whole_folder(folder) as part:
         write(part, "earlier")
-    folder.rename(tmp_path / ".out.protractile-01234567.away")
+    folder.rename(tmp_path / ".out.away")
     with alone(folder):
         assert contents(folder) == {"earlier": "earlier"}
 
 
-def test_so_does_one_that_has_never_had_a_manifest(tmp_path: Path) -> None:
-    write(tmp_path / ".out.protractile-01234567.away", "mine")
-    with alone(tmp_path / "out"):
-        assert contents(tmp_path / "out") == {"mine": "mine"}
+def test_who_changes_a_folder_keeps_others_waiting(tmp_path: Path) -> None:
+    """Reference: by construction. The other one replaces the folder when it is left alone."""
+    folder = tmp_path / "out"
 
+    def replace() -> None:
+        with whole_folder(folder) as part:
+            write(part, "later")
 
-def test_what_another_process_has_just_begun_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Its files come right after each look at its folder."""
-    other = tmp_path / ".out.protractile-01234567"
-    other.mkdir()
-
-    def look_early(look: Any) -> Any:
-        def looked(path: Any, *arguments: Any, **named: Any) -> Any:
-            try:
-                return look(path, *arguments, **named)
-            finally:
-                if str(path).startswith(str(other)) and not os.path.lexists(other / MANIFEST):
-                    os.close(os.open(other / MANIFEST, os.O_CREAT))
-
-        return looked
-
-    for name in ("stat", "listdir"):
-        monkeypatch.setattr(os, name, look_early(getattr(os, name)))
-    with beside(tmp_path / "out"):
-        assert (other / MANIFEST).exists()
+    with ThreadPoolExecutor(1) as pool:
+        with alone(folder):
+            other = pool.submit(replace)
+            time.sleep(0.1)
+            assert not other.done()
+        other.result()
+    assert contents(folder) == {"later": "later"}
 
 
 def test_what_a_killed_process_leaves_goes_and_what_a_live_one_writes_stays(

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import json
 import pickle
+from io import BytesIO
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,16 +16,21 @@ import xarray as xr
 from dynamics.contact import PowerContact
 from dynamics.gap_system import Observer
 from geometry.boom import Boom
-from runs.folder.records import pack, unpack
+from runs.folder.records import read, write
+
+Kind = TypeVar("Kind")
 
 
-def joined(thing: Any) -> dict[str, memoryview]:
-    """The files of a record as they are read from a disk."""
-    return {name: memoryview(bytearray(b"".join(parts))) for name, parts in pack(thing).items()}
+def again(thing: Any, kind: type[Kind]) -> Kind:
+    """What is written, read."""
+    file = BytesIO()
+    write(thing, file)
+    file.seek(0)
+    return read(file, kind)
 
 
 def test_a_boom_comes_back(paper_boom: Boom) -> None:
-    assert unpack(joined(paper_boom), Boom) == paper_boom
+    assert again(paper_boom, Boom) == paper_boom
 
 
 @pytest.mark.parametrize(
@@ -45,12 +50,12 @@ def test_a_boom_comes_back(paper_boom: Boom) -> None:
 )
 def test_an_array_comes_back_with_its_order_in_memory(array: npt.NDArray[Any]) -> None:
     """Sums over another order would have other round-off."""
-    again = unpack(joined(array), np.ndarray)
-    assert (again.dtype, again.shape) == (array.dtype, array.shape)
-    assert again.tobytes() == array.tobytes()
-    assert again.flags.writeable
+    found = again(array, np.ndarray)
+    assert (found.dtype, found.shape) == (array.dtype, array.shape)
+    assert found.tobytes() == array.tobytes()
+    assert found.flags.writeable
     if array.size and array.flags.contiguous:
-        assert again.strides == array.strides
+        assert found.strides == array.strides
 
 
 def test_numbers_texts_and_what_they_are_in(paper_law: PowerContact) -> None:
@@ -60,9 +65,9 @@ def test_numbers_texts_and_what_they_are_in(paper_law: PowerContact) -> None:
         (1, "key"): {},
         "laws": [paper_law, paper_law.upper()],
     }
-    again = unpack(joined(thing), dict)
-    assert again == thing
-    assert str(again) == str(thing)
+    found = again(thing, dict)
+    assert found == thing
+    assert str(found) == str(thing)
 
 
 def test_datasets_and_named_tuples() -> None:
@@ -71,10 +76,10 @@ def test_datasets_and_named_tuples() -> None:
         coords={"model": ["a", "bc"], "kind": ("model", ["beam", "shell"])},
         attrs={"step": 1.0e-3, "steps": 3},
     ).assign(time=("time", np.arange(3.0), {"units": "s"}))
-    again, observer = unpack(joined((data, Observer(np.ones(2), "rad"))), tuple)
-    assert again.identical(data)
-    assert list(again.variables) == list(data.variables) == ["tip", "model", "kind", "time"]
-    assert bytes(again.to_netcdf(engine="scipy")) == bytes(data.to_netcdf(engine="scipy"))
+    found, observer = again((data, Observer(np.ones(2), "rad")), tuple)
+    assert found.identical(data)
+    assert list(found.variables) == list(data.variables) == ["tip", "model", "kind", "time"]
+    assert bytes(found.to_netcdf(engine="scipy")) == bytes(data.to_netcdf(engine="scipy"))
     assert isinstance(observer, Observer)
     assert observer.unit == "rad"
 
@@ -86,7 +91,7 @@ class Stranger(NamedTuple):
 @pytest.mark.parametrize("thing", [Path("a"), np.array([None]), len, {1}, Stranger(Path("a"))])
 def test_what_is_no_data_is_not_kept(thing: object) -> None:
     with pytest.raises(TypeError, match="cannot be kept: it is no data"):
-        pack(thing)
+        write(thing, BytesIO())
 
 
 @pytest.mark.parametrize(
@@ -99,44 +104,29 @@ def test_what_is_no_data_is_not_kept(thing: object) -> None:
         '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
         '{"record": ["dynamics.contact", "PowerContact"], "parts": {"stiffness": -1.0}}',
         '{"record": ["dynamics.contact", "restitution_damping"], "parts": {}}',
-        '{"array": ["|O", [1], 0, "C"]}',
-        '{"array": ["<f8", [3], 0, "C"]}',
-        '{"array": ["<f8", [-1], 0, "C"]}',
-        '{"array": ["<f8", [1], -8, "C"]}',
+        '{"array": [3]}',
         '{"unknown": []}',
         "not JSON",
         "5",
     ],
 )
 def test_what_is_no_record_is_refused(text: str) -> None:
-    files = {
-        "record.json": memoryview(text.encode()),
-        "numbers.bin": memoryview(bytearray(16)),
-    }
     with pytest.raises((ValueError, TypeError)):
-        unpack(files, PowerContact)
+        read(BytesIO(f"{text}\n".encode()), PowerContact)
 
 
-def test_a_pickle_is_not_run() -> None:
+@pytest.mark.parametrize("record", [b"", b'{"array": [1]}\n'])
+def test_a_pickle_is_not_run(record: bytes) -> None:
     class Harm:
         def __reduce__(self) -> tuple[Any, ...]:
             return pytest.fail, ("a pickle was run",)
 
-    files = {name: memoryview(pickle.dumps(Harm())) for name in joined(1)}
-    with pytest.raises(ValueError, match="codec can't decode"):
-        unpack(files, int)
+    array = BytesIO()
+    np.save(array, np.array([Harm()]), allow_pickle=True)
+    with pytest.raises(ValueError, match=r"codec can't decode|Object arrays cannot be loaded"):
+        read(BytesIO(record + (array.getvalue() if record else pickle.dumps(Harm()))), np.ndarray)
 
 
 def test_a_record_of_another_class_is_refused(paper_law: PowerContact) -> None:
     with pytest.raises(ValueError, match="the record is no Boom"):
-        unpack(joined(paper_law), Boom)
-
-
-def test_the_json_says_what_the_numbers_are() -> None:
-    files = joined([np.arange(2.0), np.arange(2)])
-    assert json.loads(bytes(files["record.json"])) == {
-        "list": [{"array": ["<f8", [2], 0, "C"]}, {"array": ["<i8", [2], 64, "C"]}]
-    }
-    assert (
-        bytes(files["numbers.bin"]) == np.arange(2.0).tobytes() + bytes(48) + np.arange(2).tobytes()
-    )
+        again(paper_law, Boom)

@@ -12,6 +12,7 @@ import pytest
 from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.case.user_files import LARGEST, check_left
+from runs.folder.files import MANIFEST
 from runs.report import output
 from tests.runs.coarse_case import COARSE
 
@@ -85,7 +86,8 @@ def test_nobody_s_folder_is_replaced_around_them(
 ) -> None:
     folder = tmp_path / "out"
     (folder / "figures").mkdir(parents=True)
-    (folder / "trajectories.nc").touch()
+    for name in (MANIFEST, "trajectories.nc"):
+        (folder / name).touch()
     monkeypatch.chdir(folder / inside)
     for other in (folder / "other", tmp_path / "other", tmp_path / "ou"):
         check_left(other, "case.toml", "--out other")

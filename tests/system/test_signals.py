@@ -66,7 +66,7 @@ def works(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:
 
 
 def has_a_point(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:
-    return lambda process: bool(list(folder.glob("out/points/*/point.json")))
+    return lambda process: bool(list(folder.glob("out/points/*.record")))
 
 
 def wait_until(happens: Callable[[subprocess.Popen[str]], bool], it: subprocess.Popen[str]) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import shutil
 import subprocess
@@ -17,6 +16,8 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from runs.folder.cache import Cache
+from runs.sweep.run import Outcome
 from tests import at_once
 from tests.system.run_folder import COARSE, ROOT, files, protractile
 
@@ -61,9 +62,9 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def stamps(folder: str | Path) -> dict[str, int]:
-    """When each point was written."""
+    """The file of each point, which is another one when it is written again."""
     points = Path(folder, "points").glob("[!.]*")
-    return {path.name: (path / "point.json").stat().st_mtime_ns for path in points}
+    return {path.name: path.stat().st_ino for path in points}
 
 
 @pytest.mark.usefixtures("_in_this_process")
@@ -77,8 +78,7 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     before = stamps("out")
     assert len(before) == 3
     expected = {".manifest", "sweep.nc", "sweep.csv"}
-    expected |= {"figures/sweep-lines.png", "figures/.manifest"}
-    expected |= {f"points/{k}/{name}" for k in before for name in ("point.json", "SHA256SUMS")}
+    expected |= {"figures/sweep-lines.png", *(f"points/{name}" for name in before)}
     assert files(Path("out")) == expected
     with Image.open("out/figures/sweep-lines.png") as image:
         image.verify()
@@ -141,7 +141,9 @@ def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
     before = stamps("out")
     assert len(before) > 0
     for name in before:
-        assert json.loads((points / name / "point.json").read_text(encoding="utf-8"))["models"]
+        outcome = Cache(points).load(Path(name).stem, Outcome)
+        assert outcome is not None
+        assert outcome.models
     assert not Path("out/sweep.csv").exists()
     assert protractile(*arguments) == 0
     after = stamps("out")

@@ -63,7 +63,7 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
     NOTICES.addHandler(count)
     wrong = untold = 0
     for _ in range(tries):
-        path = random.choice(np.array(sorted(entries.glob("*/*"))))
+        path = random.choice(np.array(sorted(entries.glob("*.record"))))
         content = bytearray(path.read_bytes())
         bit = int(random.integers(8 * len(content)))
         content[bit // 8] ^= 1 << bit % 8

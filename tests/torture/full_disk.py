@@ -144,11 +144,9 @@ def _case(folder: Path, duration: float) -> str:
 def _torture(
     name: str, place: Path, before: Sequence[str], command: Sequence[str], tries: int
 ) -> Iterator[Row]:
-    """A command beside what another one has left, and what the user has put there."""
+    """A command beside what another one has left."""
     place.mkdir(exist_ok=True)
     assert _run(before)[0] == 0
-    (place / "out" / "my-fields.nc").write_text("mine")
-    (place / "out" / "figures" / "my.png").write_text("mine")
     old = _left(place)
     disk = Disk(place, float("inf"), 0)
     with disk.in_use():

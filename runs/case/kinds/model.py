@@ -91,7 +91,7 @@ class Workshop:
 
     def remember(self, content: Sequence[Any], compute: Callable[[], ReducedShell]) -> ReducedShell:
         """Return the shell of a content from the cache, or compute it. Collective."""
-        from runs.folder.shell_cache import remembered
+        from runs.folder.cache import remembered
 
         if self.cache is None:
             return compute()

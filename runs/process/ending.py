@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How a process ends before its work is done: by Ctrl-C or SIGTERM, or by an error on one rank.
+
+A signal ends a command with one line, whatever it is doing. Nothing is unwound: what is being
+written lies beside its place until it is whole, so that a process may end at any moment. Python
+runs a signal's handler between two of its own instructions. Where a compiled loop, or a message of
+another rank, keeps it waiting, a thread of its own does the same.
+
+MPI itself is entered for a shell alone: a beam's run neither needs nor imports mpi4py, and the
+other processes of ``mpirun -n N protractile`` have nothing to do.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import stat
+import sys
+import termios
+import time
+from array import array
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from threading import Event, RLock, Thread
+from typing import TYPE_CHECKING, NoReturn
+
+from runs.process.terminal import say
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+LINE = b"protractile: interrupted\n"
+
+# Seconds for which the thread leaves it to the handler.
+GRACE = 1.0
+
+# Clears the line of a progress bar, and shows the cursor again.
+_CLEAR = b"\r\x1b[K\x1b[?25h"
+
+# Rank as the launcher tells it before MPI is entered: Open MPI, PMIx, MPICH and its kin.
+_LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
+
+# Seconds for which another rank's message waits: if rank 0 has failed too, it speaks alone.
+_GRACE_OF_RANKS = 5.0
+# Seconds for which a message may wait to be read, and between looks at whether it was.
+_UNREAD, _LOOK = 5.0, 1.0e-3
+
+_undone: list[Callable[[], object]] = []
+_ending = RLock()
+_signals: list[int] = []
+
+
+def listen() -> None:
+    """From now on Ctrl-C and SIGTERM end this process, with exit status 130 or 143.
+
+    A signal that whoever has started the process ignores stays ignored, as with ``nohup``.
+    """
+    caught, told = os.pipe()
+    os.set_blocking(told, False)
+    signal.set_wakeup_fd(told)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _end)
+    Thread(target=_watch, args=(caught,), daemon=True).start()
+
+
+@contextmanager
+def undone(work: Callable[[], object]) -> Iterator[None]:
+    """Do something besides if the process is interrupted meanwhile."""
+    _undone.append(work)
+    try:
+        yield
+    finally:
+        _undone.remove(work)
+
+
+def launched_rank() -> int | None:
+    """Return the rank that a launcher has given this process, None without a launcher."""
+    given = (os.environ.get(name, "") for name in _LAUNCHERS)
+    # What is no number is none's.
+    return next((int(number) for number in given if number.isdecimal()), None)
+
+
+def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
+    """End all ranks, with one line on stderr.
+
+    Args:
+        line: what went wrong.
+        code: exit status.
+        comm: None as long as MPI has not been entered. Until then all ranks do the same and
+            end by themselves; the status is rank 0's, since a launcher would cut its message
+            short if another one ended before it with a status other than 0.
+    """
+    if comm is None or comm.size == 1:
+        if launched_rank():
+            sys.exit(0)
+        say(line)
+        sys.exit(code)
+    if comm.rank != 0:
+        time.sleep(_GRACE_OF_RANKS)
+    say(line)
+    with suppress(OSError):
+        _wait_until_read(sys.stderr.fileno())
+    comm.Abort(code)
+    raise AssertionError("MPI_Abort returned")
+
+
+def _wait_until_read(stream: int) -> None:
+    """Wait until a pipe is empty, so that what its reader says of the end comes after it.
+
+    Open MPI 5 else puts our line behind its own on the abort, and in the same line of the terminal.
+
+    Args:
+        stream: a file descriptor that can be written; only a pipe is waited for.
+    """
+    if not stat.S_ISFIFO(os.fstat(stream).st_mode):
+        return
+    unread = array("i", [1])
+    deadline = time.monotonic() + _UNREAD
+    while unread[0] and time.monotonic() < deadline:
+        time.sleep(_LOOK)
+        fcntl.ioctl(stream, termios.FIONREAD, unread)
+
+
+def _watch(caught: int) -> None:
+    while True:
+        (number,) = os.read(caught, 1)
+        if number in (signal.SIGINT, signal.SIGTERM):
+            time.sleep(GRACE)
+            _end(number)
+
+
+def _end(number: int, frame: object = None) -> None:
+    if not _ending.acquire(blocking=False):
+        # The other one is at it.
+        Event().wait()
+    _signals.append(number)
+    if len(_signals) > 1:
+        # A second one interrupts this very function, which goes on.
+        return
+    # The first rank speaks for all; it is interrupted when another one is.
+    if not launched_rank():
+        with suppress(OSError):
+            os.write(2, _CLEAR + LINE if os.isatty(2) else LINE)
+    for work in reversed(_undone):
+        with suppress(Exception):
+            work()
+    os._exit(128 + number)
