@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from runs.process.interruption import listen
+from runs.process.ending import listen
 
 
 def main() -> None:

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 # Each command imports what it needs: the libraries of all of them take seconds.
-from runs.process import notices, progress, ranks, terminal
-from runs.process.shown import message, printable, shown
-from runs.process.terminal import Terminal, say
+from runs.process import ending, progress, terminal
+from runs.process.terminal import Terminal, message, printable, say, shown
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -131,7 +130,7 @@ def run(
     if comm is None and effective.ensemble is not None:
         comm = launched_world(case)
     with _all_ranks_end_together(comm):
-        if (ranks.launched_rank() if comm is None else comm.rank) != 0:
+        if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
                 run_case(effective, case, Means(comm, cache=cache))
             return 0
@@ -279,14 +278,14 @@ def frequencies(
     comm = _enter_mpi(cases[0], case)
     cache = None if no_cache else Cache.of_user()
     with _all_ranks_end_together(comm):
-        if (ranks.launched_rank() if comm is None else comm.rank) != 0:
+        if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
-                charts.measure(cases, comm, progress.silence, cache)
+                charts.measure(cases, comm, cache)
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
         with progress.told() as tell:
-            data = charts.gather(plan, charts.measure(cases, comm, tell, cache))
+            data = charts.gather(plan, charts.measure(cases, comm, cache, tell))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
         charts.table(data).text.show(Terminal())
@@ -349,7 +348,7 @@ def schema() -> int:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit; whatever the user can mend is one line on stderr."""
     terminal.prepare()
-    notices.show()
+    terminal.show_notices()
     # Figures are drawn into files, whatever shows them to those who started this process.
     os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)
@@ -360,7 +359,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         known = _explain(error)
         if known is None:
             raise
-        ranks.fail(*known, None)
+        ending.fail(*known, None)
     sys.exit(status or 0)
 
 
@@ -395,7 +394,7 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
         if comm is None or comm.size == 1:
             raise
         known = _explain(error)
-        ranks.fail(*(known or (traceback.format_exc(), 1)), comm)
+        ending.fail(*(known or (traceback.format_exc(), 1)), comm)
 
 
 def _names(models: str | None) -> list[str] | None:

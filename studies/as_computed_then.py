@@ -20,7 +20,7 @@ from runs.case import toml
 from runs.paper.reading import LITERAL
 from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.paper.statements import THEN_FILE
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.numerals import NONE, number
 from runs.report.tables import Cell, Table, wide_console, write
 from studies.study import Piece, Plot, Tell, titled
@@ -246,5 +246,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    notices.show()
+    show_notices()
     main()

@@ -21,7 +21,7 @@ from time import perf_counter
 from rich.console import Console
 
 from runs.folder.files import whole_folder, write_whole
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.pages import page
 from runs.report.tables import wide_console, write
 from studies import plots, verification
@@ -76,7 +76,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
     found: dict[str, Study] = {}
     # FEniCSx does not outlive a fork, and a study's memory ends with its process.
     fresh = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(os.cpu_count(), fresh, notices.show, max_tasks_per_child=1) as pool:
+    with ProcessPoolExecutor(os.cpu_count(), fresh, show_notices, max_tasks_per_child=1) as pool:
         running = {pool.submit(run, name): name for name in names}
         for done in as_completed(running):
             study, seconds = done.result()
@@ -97,7 +97,7 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
 
 def main() -> None:
     """Run the studies that are named on the command line, or all; 1 if a proof does not hold."""
-    notices.show()
+    show_notices()
     console = wide_console()
     names = sys.argv[1:] or STUDIES
     unknown = [name for name in names if name not in STUDIES]

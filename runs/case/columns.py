@@ -21,7 +21,7 @@ from runs.case.limits import MOST_TIMES
 from runs.case.messages import BadInput
 from runs.case.units import Unit
 from runs.case.user_files import read_any_text
-from runs.process.shown import shown
+from runs.process.terminal import shown
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 _HEADED = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")

@@ -14,7 +14,7 @@ from runs.case import schema
 from runs.case.kinds import KINDS
 from runs.case.limits import NAME, described
 from runs.case.sections import SHAPES
-from runs.process.shown import shown
+from runs.process.terminal import shown
 
 # Keys of the case that are arrays of tables.
 _ARRAYS = ("segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model")

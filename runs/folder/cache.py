@@ -25,8 +25,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from runs.folder import records
 from runs.folder.files import whole
 from runs.folder.versions import program
-from runs.process.notices import NOTICES
-from runs.process.shown import shown
+from runs.process.terminal import NOTICES, shown
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -22,7 +22,7 @@ from glob import escape
 from pathlib import Path
 from secrets import token_hex
 
-from runs.process.interruption import undone
+from runs.process.ending import undone
 
 MANIFEST = ".manifest"
 

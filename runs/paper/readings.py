@@ -44,7 +44,7 @@ from runs.paper.reading import (
 from runs.paper.rules import DIVERGENCE
 from runs.paper.statements import SURVEY_FILE
 from runs.paper.verdicts import MARKS, TEMPLATES, read_copy
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.numerals import number
 from runs.report.pages import page
 from runs.report.tables import TextTable, write
@@ -204,5 +204,5 @@ def load(folder: Path, case: Case) -> list[TextTable]:
 
 
 if __name__ == "__main__":
-    notices.show()
+    show_notices()
     survey(all_readings(), OUT, Console())

@@ -24,8 +24,7 @@ from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case
 from runs.case.user_files import read_text
 from runs.paper.statements import STATEMENTS, THEN_FILE
-from runs.process.shown import message, shown
-from runs.process.terminal import say
+from runs.process.terminal import message, say, shown
 from runs.report.numerals import NONE, number
 from runs.report.pages import Addition
 from runs.report.tables import TextTable, as_json

@@ -10,18 +10,13 @@ from time import perf_counter
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from runs.process.shown import printable
-from runs.process.terminal import say
+from runs.process.terminal import printable, say
 
 # Called with the model's name, the stage, and the part of it that is done.
 Tell = Callable[[str, str, float], None]
 
 # Seconds between two lines at least; what ends sooner says nothing.
 EVERY = 5.0
-
-
-def silence(model: str, stage: str, part: float) -> None:
-    """A :data:`Tell` that nobody watches."""
 
 
 @contextmanager

@@ -1,22 +1,32 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Standard output and standard error, whatever the user has connected them to."""
+"""Standard output and standard error: printable texts, notices, streams that are closed."""
 
 from __future__ import annotations
 
 import io
+import logging
 import os
 import sys
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 from rich.console import Console
+
+# Whoever imports the package may listen as to any logger of Python's.
+NOTICES = logging.getLogger("protractile")
+
+# Characters of a message, its newline included, and of a path or a key in it.
+LONGEST, LONGEST_PART = 300, 120
+
+_GAP = " ... "
 
 
 class Terminal(Console):
     """A console whose reader may leave early, as ``head`` does."""
 
     def on_broken_pipe(self) -> None:
-        """What has been read is enough; the command goes on."""
+        """Go on: what has been read is enough."""
         _discard_output()
 
 
@@ -42,24 +52,71 @@ def flushed() -> Iterator[None]:
     try:
         yield
     finally:
-        _flush()
+        try:
+            sys.stdout.flush()
+        except BrokenPipeError:
+            _discard_output()
+        except OSError:
+            _discard_output()
+            raise
 
 
 def say(line: str) -> None:
-    """One write with its newline, which nobody else's words can come between."""
+    """Write a line to stderr at once, so that no other text comes between it and its newline."""
     with suppress(OSError):
         sys.stderr.write(f"{line}\n")
         sys.stderr.flush()
 
 
-def _flush() -> None:
-    try:
-        sys.stdout.flush()
-    except BrokenPipeError:
-        _discard_output()
-    except OSError:
-        _discard_output()
-        raise
+def message(text: str) -> str:
+    """Return a text as one line for stderr."""
+    return shown(f"protractile: {' '.join(text.split())}", LONGEST - 1)
+
+
+def shown(text: str, longest: int = LONGEST_PART) -> str:
+    """Return a printable text, its middle left out where it is long."""
+    # Escaping makes it longer, never shorter: ends of this length are enough.
+    safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
+    if len(safe) <= longest:
+        return safe
+    half = (longest - len(_GAP)) // 2
+    return safe[:half] + _GAP + safe[-half:]
+
+
+def printable(text: str) -> str:
+    """Return a text with what no terminal should be sent escaped."""
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+        for letter in text
+    )
+
+
+def show_notices() -> None:
+    """Print notices from now on, and not what libraries tell their callers.
+
+    A user cannot mend that. Filters hold as before: tests make errors of warnings.
+    """
+    NOTICES.addHandler(_LINES)
+    # Some warn while they are imported.
+    warnings.showwarning = lambda *_, **__: None
+    logging.getLogger().addHandler(logging.NullHandler())
+
+
+class _Lines(logging.Handler):
+    """Prints each notice as a line on stderr, once."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.said: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        line = message(record.getMessage())
+        if line not in self.said:
+            self.said.add(line)
+            say(line)
+
+
+_LINES = _Lines()
 
 
 def _discard_output() -> None:

@@ -12,8 +12,8 @@ from multiprocessing import active_children, get_context, parent_process
 from threading import Thread
 from typing import Any
 
-from runs.process import notices
-from runs.process.interruption import undone
+from runs.process.ending import undone
+from runs.process.terminal import show_notices
 
 # A process has one thread, though its libraries would take all cores. They warn nobody while they
 # are imported, nor does the process that counts what others share when all are killed.
@@ -30,7 +30,7 @@ class _Deaf(ProcessPoolExecutor):
     """Its processes never hear signals to all of a group, as Ctrl-C is one."""
 
     def submit(self, work: Callable[..., Any], /, *given: Any, **named: Any) -> Future[Any]:
-        """As of any executor; this is when the processes start."""
+        """Submit work as to any executor; this is when the processes start."""
         signals = {signal.SIGINT, signal.SIGTERM}
         signal.pthread_sigmask(signal.SIG_BLOCK, signals)
         try:
@@ -41,7 +41,7 @@ class _Deaf(ProcessPoolExecutor):
 
 @contextmanager
 def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
-    """What does several things at a time, each in a process of its own; they end with this one.
+    """Give an executor of several processes, which end with this one.
 
     What is given to them and what they answer is pickled.
 
@@ -50,7 +50,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         prepare: what each does first.
     """
     # A process takes these from here when it starts.
-    outside = {name: os.environ.get(name) for name in _OF_WORKERS}
+    outside = {name: os.environ[name] for name in _OF_WORKERS if name in os.environ}
     os.environ.update(_OF_WORKERS)
     pool = _Deaf(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
@@ -61,11 +61,9 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         raise
     finally:
         pool.shutdown(cancel_futures=True)
-        for name, value in outside.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        for name in _OF_WORKERS:
+            del os.environ[name]
+        os.environ.update(outside)
 
 
 def end() -> None:
@@ -78,8 +76,8 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """A worker is no rank, and does not outlive its parent, which ends it when interrupted."""
-    notices.show()
+    """Make a process no rank, and end it with its parent, which does so when interrupted."""
+    show_notices()
     for name in [name for name in os.environ if name.startswith(_OF_RANKS)]:
         del os.environ[name]
     Thread(target=_end_with_parent, daemon=True).start()

@@ -21,7 +21,7 @@ from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.folder.files import whole
 from runs.pipeline.results import FIELDS, Results, read_fields
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.boom_drawing import draw_boom_of
 from shell_model.pictures.boom import Instant
 from shell_model.pictures.deformation import MovingShell
@@ -86,7 +86,7 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
 
 def main() -> int:
     """Write the gallery; the exit status."""
-    notices.show()
+    show_notices()
     GALLERY.mkdir(parents=True, exist_ok=True)
     try:
         for name, picture in pictures(RUNS):

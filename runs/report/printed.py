@@ -13,8 +13,7 @@ from rich.text import Text
 
 from geometry.typography import TO_MILLI, TO_PERCENT
 from runs.pipeline.results import Results
-from runs.process.shown import message, shown
-from runs.process.terminal import say
+from runs.process.terminal import message, say, shown
 from runs.report.model_tables import model_table
 from runs.report.numerals import number
 

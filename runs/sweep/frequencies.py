@@ -7,7 +7,7 @@ rest under its loads (:func:`dynamics.damping.pressed_modes`), and those with it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ from runs.case.build import build_boom, joined
 from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
 from runs.folder.files import alone, changed_folder, whole
+from runs.pipeline.means import Progress, silent
 from runs.pipeline.results import CONVENTIONS
 from runs.report.tables import Column, Table
 from runs.sweep.figures import draw_frequencies
@@ -72,8 +73,8 @@ def first_frequencies(
 def measure(
     cases: Sequence[Case],
     comm: MPI.Intracomm | None,
-    tell: Callable[[str, str, float], None],
     cache: Cache | None,
+    tell: Progress = silent,
 ) -> Array:
     """(num_cases, num_models, 2, MODES) first frequencies in Hz. Collective.
 

@@ -33,7 +33,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.tables import Table, wide_console
 from studies.cost import scaling
 from studies.cost.drawing import MODELS, drawing
@@ -305,7 +305,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    notices.show()
+    show_notices()
     shown_on = wide_console()
     bench(Sizes(), OUT, shown_on)
     scaling.scaling(scaling.Sizes(), scaling.OUT, shown_on)

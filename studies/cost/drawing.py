@@ -19,7 +19,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.tables import Table, wide_console
 from studies.motions import OUTPUT_STEP, gap_system, model_of, move
 
@@ -110,5 +110,5 @@ def _cost(case: Case, name: str) -> Cost:
 
 
 if __name__ == "__main__":
-    notices.show()
+    show_notices()
     drawing(sys.argv[1:] or MODELS).text.show(wide_console())

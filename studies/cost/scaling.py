@@ -29,7 +29,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom, contact_laws
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
-from runs.process import notices
+from runs.process.terminal import show_notices
 from runs.report.tables import Table, wide_console
 from studies.cost.timing import leave
 
@@ -225,7 +225,7 @@ def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    notices.show()
+    show_notices()
     if len(sys.argv) > 1:
         _run(*sys.argv[1:])
     else:

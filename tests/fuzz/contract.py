@@ -20,7 +20,7 @@ from pathlib import Path
 from runs import cli
 from runs.case import reading as case_file
 from runs.pipeline import estimates
-from runs.process.shown import LONGEST
+from runs.process.terminal import LONGEST
 
 # What commands import when they are given, which each process would do by itself.
 for name in ("pipeline.inferred", "pipeline.run", "report.output", "paper.rules", "sweep.run"):

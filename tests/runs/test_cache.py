@@ -15,7 +15,7 @@ import pytest
 
 from geometry.boom import Boom
 from runs.folder.cache import Cache, Memory, key
-from runs.process.shown import shown
+from runs.process.terminal import shown
 
 ROOT = Path(__file__).parents[2]
 # The file of the entry "a".

@@ -25,7 +25,7 @@ from runs.case.schema import Case, LoadTable
 from runs.case.sections import SectionTable
 from runs.folder.cache import Cache, remembered
 from runs.pipeline.models import build
-from runs.process.shown import shown
+from runs.process.terminal import shown
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 
 pytestmark = pytest.mark.slow

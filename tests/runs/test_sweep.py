@@ -17,7 +17,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.process.shown import shown
+from runs.process.terminal import shown
 from runs.sweep import output
 from runs.sweep import run as sweep
 from runs.sweep.quantities import QUANTITIES, measure, settling_time

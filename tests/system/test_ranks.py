@@ -38,9 +38,9 @@ LONELY_FAILURE = """
 from mpi4py import MPI
 from dynamics.failure import NumericsError
 from runs.cli import _all_ranks_end_together
-from runs.process import ranks
+from runs.process import ending
 
-ranks._GRACE = 0.5
+ending._GRACE_OF_RANKS = 0.5
 comm = MPI.COMM_WORLD
 with _all_ranks_end_together(comm):
     if comm.rank == 1:

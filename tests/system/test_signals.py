@@ -24,15 +24,15 @@ SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0
 # A second signal comes while the first one is being obeyed.
 AGAIN = """
 import signal, time
-from runs.process import interruption
+from runs.process import ending
 
 def clean():
     signal.raise_signal(signal.SIGTERM)
     print("clean", flush=True)
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job ignores it
-interruption.listen()
-with interruption.undone(clean):
+ending.listen()
+with ending.undone(clean):
     signal.raise_signal(signal.SIGINT)
     time.sleep(60.0)
 """
@@ -136,10 +136,10 @@ def test_who_presses_twice_does_not_wait_for_ever() -> None:
 
 WORKERS = """
 import time
-from runs.process import interruption
+from runs.process import ending
 from runs.process.workers import workers
 
-interruption.listen()
+ending.listen()
 with workers(2) as pool:
     pool.submit(print, "works", flush=True).result()
     pool.submit(time.sleep, 60.0).result()

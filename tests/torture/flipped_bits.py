@@ -21,7 +21,7 @@ from runs.case import reading as case_file
 from runs.folder.cache import Cache
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
-from runs.process.notices import NOTICES
+from runs.process.terminal import NOTICES
 from runs.sweep import run as sweep
 from runs.sweep.points import plan
 

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""What a command says, on streams of every kind, and how ranks end together."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from runs import CASES
+from runs.process import ending, progress
+from runs.process.terminal import LONGEST, message, shown
+
+ROOT = Path(__file__).parents[2]
+
+
+def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A command as a shell runs it; ``check`` alone is that of the coarse case."""
+    line = line.replace("check", f"check {CASES / 'coarse.toml'}")
+    return subprocess.run(
+        ["bash", "-o", "pipefail", "-c", f"{sys.executable} -m protractile {line}"],
+        cwd=ROOT,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_full_disk_is_one_line() -> None:
+    answer = in_a_shell("check >/dev/full")
+    assert (answer.returncode, answer.stderr) == (
+        2,
+        "protractile: output: file: cannot be used (No space left on device)\n",
+    )
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["check >&-", "check 2>&- >/dev/null", "check | head -n 1", "check | true", "schema | true"],
+)
+def test_whom_nobody_hears_ends_in_peace(line: str) -> None:
+    """The schema is a long text whose reader leaves in the middle."""
+    answer = in_a_shell(line)
+    assert (answer.returncode, answer.stderr) == (0, "")
+
+
+def test_letters_that_the_terminal_lacks_are_spelled_out() -> None:
+    answer = in_a_shell("check", PYTHONIOENCODING="ascii")
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert "The paper's boom, coarse and short" in answer.stdout
+    assert "J (m\\u2074)" in answer.stdout
+
+
+@given(st.text(st.characters(), max_size=2000))
+def test_a_message_is_one_short_printable_line(text: str) -> None:
+    line = message(text)
+    assert line.startswith("protractile: ")
+    assert line.isprintable()
+    assert len(line) < LONGEST
+
+
+def test_controls_are_escaped() -> None:
+    assert shown("a\x1b[31mb\u202ec\udcff é") == "a\\x1b[31mb\\u202ec\\udcff é"
+
+
+def test_the_middle_goes_and_both_ends_stay() -> None:
+    """Reference: analytic, the name of a file at the end of a long path."""
+    assert (
+        shown("/" + "long/" * 100 + "case.toml", 41) == "/long/long/long/lo ... ong/long/case.toml"
+    )
+    assert shown("a" * 41, 41) == "a" * 41
+
+
+def test_tells_the_stage_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: by hand. Of 40 % in 12 s, 18 s are left; what follows within five seconds is not
+    told, nor what has ended by then. What a stage took that is told of at its end is not known."""
+    every = 5.0
+    monkeypatch.setattr(progress, "EVERY", every)
+    said: list[str] = []
+    times: list[float] = [0.0]
+    lines = progress.Lines(["beam", "shell"], said.append, lambda: times[-1])
+    for now, model, stage, part in (
+        (0.0, "beam", "build", 0.0),
+        (0.1, "beam", "build", 1.0),
+        (0.2, "shell", "reduction", 0.0),
+        (12.2, "shell", "reduction", 0.4),
+        (12.2 + 0.9 * every, "shell", "reduction", 0.5),
+        (30.2, "shell", "reduction", 1.0),
+        (40.0, "shell", "motion", 0.0),
+        (50.0, "shell", "fields", 1.0),
+        (60.0, "report", "pictures", 0.0),
+    ):
+        times.append(now)
+        lines(model, stage, part)
+    assert said == [
+        "shell (2 of 2): reduction 40 %, 18 s left",
+        "shell (2 of 2): reduction took 30 s",
+        "shell (2 of 2): motion begins",
+        "shell (2 of 2): fields is done",
+        "report: pictures begins",
+    ]
+
+
+def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reader comes late: whoever asks for the end at once asks before the line is read."""
+    reader, writer = os.pipe()
+    read: list[bytes] = []
+    at_abort: list[list[bytes]] = []
+
+    def read_late() -> None:
+        time.sleep(0.1)
+        read.append(os.read(reader, 100))
+
+    comm = SimpleNamespace(size=2, rank=0, Abort=lambda code: at_abort.append(list(read)))
+    with os.fdopen(writer, "w") as stderr, ThreadPoolExecutor(1) as pool:
+        monkeypatch.setattr("sys.stderr", stderr)
+        pool.submit(read_late)
+        with pytest.raises(AssertionError, match="MPI_Abort returned"):
+            ending.fail("protractile: no number is finite", 3, comm)
+    os.close(reader)
+    assert at_abort == [[b"protractile: no number is finite\n"]]
+
+
+def test_aborts_at_once_where_nothing_is_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
+    codes: list[int] = []
+    comm = SimpleNamespace(size=2, rank=0, Abort=codes.append)
+    monkeypatch.setattr("sys.stderr", io.StringIO())
+    with pytest.raises(AssertionError, match="MPI_Abort returned"):
+        ending.fail("protractile: no number is finite", 3, comm)
+    assert codes == [3]
