@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.sweep.distances import DISTANCES, LEVELS, TIP_OFF, UNTIL
 from runs.sweep.figures import RC, at_ends, finish, finish_lines, in_shown_units, marked, scale_axis
-from runs.sweep.quantities import Quantity
+from runs.sweep.quantities import DISTANCES, LEVELS, TIP_OFF, UNTIL, Quantity
 
 _Word = TypeVar("_Word", bound=str)
 

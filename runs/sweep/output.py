@@ -19,10 +19,9 @@ from runs.pipeline.results import CONVENTIONS
 from runs.report.numerals import NONE, number
 from runs.report.tables import TextTable
 from runs.sweep.distance_figures import draw_distances
-from runs.sweep.distances import DISTANCES, UNTIL
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import QUANTITIES, STEP_ERROR, Measured, Quantity
+from runs.sweep.quantities import DISTANCES, QUANTITIES, STEP_ERROR, UNTIL, Measured, Quantity
 from runs.sweep.run import Outcome
 from runs.sweep.swings import said, swings
 
@@ -40,8 +39,8 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
     Returns:
         dims: the varied keys, in the unit of the case, and ``model``; the quantities of
-        :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference those of
-        :mod:`runs.sweep.distances`, and ``compared_until``, up to when tips are compared;
+        :mod:`runs.sweep.quantities`, NaN where a model has none, and with a reference distances
+        from it, and ``compared_until``, up to when tips are compared;
         ``failed``, 1 where the numerics did.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]

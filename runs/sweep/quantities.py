@@ -1,17 +1,35 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a sweep charts of each model: at rest, in motion, and what it is worth."""
+"""What a sweep charts of each model, and how far models are from one of them, the reference.
+
+Tips are compared from moment to moment as long as that says anything: to the end where friction
+under given forces makes motions regular, else until a small change of the loads parts the reference
+from itself. All else is of the whole run.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.signal import find_peaks
 
+from dynamics.failure import NumericsError
+from dynamics.predictability.ensemble import Member, Vary, run_members
+from dynamics.predictability.horizon import SHARES, horizon
 from geometry.arrays import Array
-from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
+from runs.case.build import build_boom
+from runs.case.kinds.model import Workshop
+from runs.case.schema import Case, Model
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from runs.folder.cache import Cache
 
 # Name of the quantity → its value in SI, None where a model has none.
 Measured = dict[str, float | None]
@@ -22,6 +40,12 @@ BAND = 0.05
 FINAL = 0.2
 # A tip at rest, which started in equilibrium say, moves by round-off of this part.
 ROUND_OFF = 1.0e-12
+# The relative change of the loads that tells how long the reference can be predicted.
+CHANGE = 1.0e-6
+# In s, over which the force of a pad is averaged: single blows are a matter of microseconds.
+HELD = 0.02
+# Slow peaks stand out by this part of the tip's range.
+OUTSTANDING = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +92,23 @@ QUANTITIES = (
     STEP_ERROR,
 )
 
+TIP_OFF = "tip_off"
+# Each as a part of the reference's.
+DISTANCES = (
+    Quantity("first_peak_off", "1", "first peak off", TO_PERCENT, "%"),
+    Quantity("slow_period_off", "1", "slow period off", TO_PERCENT, "%"),
+    Quantity("pad_force_off", "1", "pad force off", TO_PERCENT, "%"),
+    Quantity("stress_off", "1", "stress off", TO_PERCENT, "%"),
+    Quantity(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
+)
+# Up to when tips are compared, in s: of a point, and of all its models.
+UNTIL = "compared_until"
+# Contours in percent.
+LEVELS = (1.0, 5.0, 20.0)
+
 
 def measure(results: Results, model: str) -> Measured:
-    """The quantities of one model of a run.
+    """Return the quantities of one model of a run.
 
     The tip at rest is that under the largest loads, wherever it is drawn to, the deflection's
     static part; the tip's amplitude, its dynamic part, is half the way between its highest and its
@@ -83,14 +121,33 @@ def measure(results: Results, model: str) -> Measured:
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
-    summary, answers = results.summary.models[model], results.summary.answers.models
+    summary = results.summary.models[model]
+    own = results.summary.answers.models.get(model, ModelAnswers())
+    moved, swing = own.moved, own.swing
+    peaks = () if moved is None else moved.peaks
+    deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
+    contacts = (peak.largest for peak in peaks if peak.what == "contact force")
+    fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
+    walls = () if moved is None else (wall.patch for wall in moved.walls)
+    damages = (one.life_damage for one in own.life if one.life_damage is not None)
     return {
-        **_answered(answers.get(model, ModelAnswers())),
+        "tip_at_rest": None if deflection is None else deflection.at_rest,
         "tip_amplitude": float(0.5 * np.ptp(tip)),
+        "dynamic_factor": None if deflection is None else deflection.factor,
+        "contact_force": max(contacts, default=None),
         "peak_contact_force": summary.peak_contact_force,
-        "mass": mass(results.boom),
+        "stress": max(fibres, default=None),
+        "wall_stress": max(walls, default=None),
+        "damage": max(damages, default=None),
+        "first_frequency": own.modes[0].frequency if own.modes else None,
+        # Of all segments and of what they carry.
+        "mass": sum(segment.mass for segment in results.boom.segments),
+        "swing": None if swing is None else swing.tip,
+        "swing_where_begun": None if swing is None else swing.where_begun,
+        "swing_where_ended": None if swing is None else swing.where_ended,
         "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
         "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
+        "drive_speed": None if swing is None else swing.speed,
         "settling_time": settling_time(time, tip),
         "first_contact": summary.first_contact,
         "energy_residual": summary.energy_residual,
@@ -98,35 +155,8 @@ def measure(results: Results, model: str) -> Measured:
     }
 
 
-def _answered(own: ModelAnswers) -> Measured:
-    """What a model answers."""
-    peaks = () if own.moved is None else own.moved.peaks
-    fibres, walls = ((), ()) if own.moved is None else (own.moved.fibres, own.moved.walls)
-    tip = next((peak for peak in peaks if peak.what == "deflection"), None)
-    contacts = (peak.largest for peak in peaks if peak.what == "contact force")
-    damages = (one.life_damage for one in own.life if one.life_damage is not None)
-    return {
-        "tip_at_rest": None if tip is None else tip.at_rest,
-        "dynamic_factor": None if tip is None else tip.factor,
-        "contact_force": max(contacts, default=None),
-        "stress": max((abs(fibre.stress) for fibre in fibres), default=None),
-        "wall_stress": max((wall.patch for wall in walls), default=None),
-        "damage": max(damages, default=None),
-        "first_frequency": own.modes[0].frequency if own.modes else None,
-        "swing": None if own.swing is None else own.swing.tip,
-        "swing_where_begun": None if own.swing is None else own.swing.where_begun,
-        "swing_where_ended": None if own.swing is None else own.swing.where_ended,
-        "drive_speed": None if own.swing is None else own.swing.speed,
-    }
-
-
-def mass(boom: Boom) -> float:
-    """Of all segments and of what they carry, in kg."""
-    return sum(segment.mass for segment in boom.segments)
-
-
 def settling_time(time: Array, tip: Array) -> float | None:
-    """After which time the tip stays within 5 % of its initial amplitude around its final mean.
+    """Return when the tip begins to stay within 5 % of its initial amplitude around its final mean.
 
     The final mean is that of the last fifth of the run; the initial amplitude is the largest
     distance from it. None where the tip leaves the band within that last fifth: it does not settle
@@ -143,3 +173,105 @@ def settling_time(time: Array, tip: Array) -> float | None:
         return None
     # What is inside from the start settles at once.
     return float(time[np.flatnonzero(outside)[-1] + 1]) if outside.any() else float(time[0])
+
+
+@dataclass(frozen=True, slots=True)
+class Features:
+    """What is compared of a model."""
+
+    tip: Array  #: (num_times,) in m, as long as it is compared
+    first_peak: float  #: in m
+    slow_period: float  #: mean time between the tip's outstanding peaks in s
+    pad_force: float  #: the largest mean over ``HELD`` at any station in N
+    stress: float  #: the largest of an outer fibre in Pa
+
+    @classmethod
+    def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
+        """Return those of a model of a run, whose tip is compared up to a time in s."""
+        data = results.trajectories.sel(model=model)
+        time = np.asarray(data["time"].values, dtype=float)
+        tip = np.asarray(data["tip"].values, dtype=float)
+        _, height = results.summary.models[model].first_peak["tip"]
+        return cls(
+            tip[time <= until],
+            np.nan if height is None else height,
+            slow_period(time, tip),
+            held_force(time, np.asarray(data["contact_force"].values)),
+            np.nan if stress is None else stress,
+        )
+
+    def distances_from(self, reference: Features) -> Measured:
+        """Return the distances from the reference; None where one of both has no number."""
+        span = float(np.ptp(reference.tip)) if reference.tip.size else 0.0
+        apart = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
+        parts = {
+            name: abs(getattr(self, name) / getattr(reference, name) - 1.0)
+            for name in ("first_peak", "slow_period", "pad_force", "stress")
+            if getattr(reference, name)
+        } | {"tip": apart}
+        found = {one.name: parts.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES}
+        return {name: part if np.isfinite(part) else None for name, part in found.items()}
+
+
+def slow_period(time: Array, tip: Array) -> float:
+    """Return the mean time between peaks in s; NaN where fewer than two peaks stand out.
+
+    Args:
+        time: (num_times,) in s.
+        tip: (num_times,) in m, which sets out from its first value.
+    """
+    if tip.size < 3:
+        return float("nan")
+    off = tip - tip[0]
+    side = np.sign(off[np.abs(off).argmax()])
+    peaks, _ = find_peaks(side * tip, prominence=OUTSTANDING * np.ptp(tip))
+    return float(np.diff(time[peaks]).mean()) if peaks.size > 1 else float("nan")
+
+
+def held_force(time: Array, forces: Array) -> float:
+    """Return the largest mean over ``HELD`` in N; NaN where nothing is known to touch so long.
+
+    Args:
+        time: (num_times,) in s, evenly spaced.
+        forces: (num_times, num_stations) in N, means of the output intervals.
+    """
+    if time.size < 2 or not np.isfinite(forces).any():
+        return float("nan")
+    count = max(1, round(HELD / (time[1] - time[0])))
+    sums = np.cumsum(np.pad(forces, ((1, 0), (0, 0))), axis=0)
+    means = (sums[count:] - sums[:-count]) / count
+    return float(np.nanmax(np.abs(means))) if means.size else float("nan")
+
+
+def comparable_until(
+    case: Case,
+    model: Model,
+    results: Results,
+    comm: MPI.Intracomm | None,
+    cache: Cache | None,
+) -> float:
+    """Return until when motions can be compared from moment to moment, in s.
+
+    Args:
+        case: a checked one.
+        model: the reference, of the case.
+        results: what it has left.
+        comm, cache: as of :class:`runs.pipeline.means.Means`.
+    """
+    time = np.asarray(results.trajectories["time"].values, dtype=float)
+    end = float(time[-1])
+    if model.play_free or case.regular:
+        return end
+    tools = None if comm is None else Workshop(comm, cache=cache)
+    plan = Plan.of(build(case, build_boom(case), model, tools).system, case, model)
+    vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
+    try:
+        same = plan.integrator.like(plan.trajectory())
+        (run,) = run_members([Member(plan.motion, vary, CHANGE, same, ("tip",))])
+    except NumericsError:
+        # What one step more or less decides is compared nowhere.
+        return float(time[0])
+    tip = results.trajectories["tip"].sel(model=model.name).values
+    return float(
+        np.nan_to_num(horizon(np.array([tip, run["tip"].values]), time, SHARES[0]), nan=end)
+    )

@@ -25,12 +25,11 @@ from runs.folder.cache import Cache, key
 from runs.pipeline import members
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.run import run_case
-from runs.process import ranks
+from runs.process import ending
 from runs.process import workers as processes
-from runs.process.interruption import undone
-from runs.sweep.distances import Seen, comparable_until
+from runs.process.ending import undone
 from runs.sweep.points import Plan
-from runs.sweep.quantities import Measured, measure
+from runs.sweep.quantities import Features, Measured, comparable_until, measure
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -77,7 +76,7 @@ def launched_world(file: str) -> MPI.Intracomm | None:
     Raises:
         BadInput: it did, and mpi4py is not installed.
     """
-    if not ranks.launched():
+    if ending.launched_rank() is None:
         return None
     try:
         from mpi4py import MPI
@@ -181,9 +180,10 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         return Outcome(models, failures)
     (against,) = (model for model in case.models if model.name == reference)
     until = comparable_until(case, against, runs[reference], comm, cache)
-    seen = {
-        name: Seen.of(results, name, models[name]["stress"], until)
+    features = {
+        name: Features.of(results, name, models[name]["stress"], until)
         for name, results in runs.items()
     }
-    off = {name: one.off(seen[reference]) for name, one in seen.items() if name != reference}
+    compared = features.pop(reference)
+    off = {name: one.distances_from(compared) for name, one in features.items()}
     return Outcome(models, failures, off, until)

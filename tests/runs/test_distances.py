@@ -22,17 +22,17 @@ from runs.folder.cache import Cache
 from runs.pipeline.models import Plan as Moving
 from runs.pipeline.models import build
 from runs.sweep import output
-from runs.sweep.distances import (
+from runs.sweep.points import Plan, plan
+from runs.sweep.quantities import (
     CHANGE,
     DISTANCES,
     HELD,
-    Seen,
+    Features,
+    Measured,
     comparable_until,
     held_force,
     slow_period,
 )
-from runs.sweep.points import Plan, plan
-from runs.sweep.quantities import Measured
 from runs.sweep.run import Outcome, run_point
 from tests.runs.sweeping import COARSE, run
 
@@ -41,23 +41,23 @@ MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
 RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
 
 
-def seen(height: float, period: float) -> Seen:
+def features(height: float, period: float) -> Features:
     """A swing of so many m, from rest, in so many s."""
     tip = 0.5 * height * (1.0 - np.cos(2.0 * np.pi * TIME / period))
-    return Seen(tip, height, slow_period(TIME, tip), 2e3 * height, 1e8 * height)
+    return Features(tip, height, slow_period(TIME, tip), 2e3 * height, 1e8 * height)
 
 
 def test_distances_are_parts_of_the_reference() -> None:
     """Reference: analytic; at 1 s swings of 0.5 and 0.4 s are in a valley and on a peak."""
-    off = seen(0.11, 0.4).off(seen(0.10, 0.4))
+    off = features(0.11, 0.4).distances_from(features(0.10, 0.4))
     heights = "first_peak_off", "pad_force_off", "stress_off", "tip_off"
     assert [off[name] for name in heights] == pytest.approx(4 * [0.1])
     assert off["slow_period_off"] == 0.0
-    slower = seen(0.10, 0.5).off(seen(0.10, 0.4))
+    slower = features(0.10, 0.5).distances_from(features(0.10, 0.4))
     assert slower["slow_period_off"] == pytest.approx(0.25)
     assert slower["tip_off"] == pytest.approx(1.0)
-    still = replace(seen(0.1, 0.4), tip=np.zeros(TIME.size), slow_period=np.nan, stress=0.0)
-    assert seen(0.1, 0.4).off(still) == {
+    still = replace(features(0.1, 0.4), tip=np.zeros(TIME.size), slow_period=np.nan, stress=0.0)
+    assert features(0.1, 0.4).distances_from(still) == {
         "first_peak_off": 0.0,
         "slow_period_off": None,
         "pad_force_off": 0.0,
@@ -145,7 +145,7 @@ def test_a_sweep_says_until_when_it_compares_and_what_steps_change(against: Plan
 def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
     """Reference: analytic; what is cut off the tip is cut off nothing else."""
     results = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[:1]))
-    whole, part = (Seen.of(results, MODELS[0], 1e6, until) for until in (0.9, 0.3))
+    whole, part = (Features.of(results, MODELS[0], 1e6, until) for until in (0.9, 0.3))
     assert (whole.tip.size, part.tip.size) == (901, 301)
     np.testing.assert_array_equal(part.tip, whole.tip[:301])
     for name in ("first_peak", "slow_period", "pad_force", "stress"):
