@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,6 +34,11 @@ def protractile(*arguments: str | Path) -> int | str | None:
 def files(folder: Path) -> set[str]:
     """All files of a folder, by their paths in it."""
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def summary_of(folder: Path) -> Any:
+    """What summary.json says."""
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
 def trajectories(folder: Path) -> xr.Dataset:
@@ -77,7 +83,7 @@ def check_common_files(folder: Path, models: list[str]) -> None:
     last = data.isel(model=-1, time=-1)
     assert rows[-1]["model"] == models[-1]
     assert float(rows[-1]["tip"]) == pytest.approx(float(last["tip"]), rel=1e-8)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(folder)
     assert list(summary["models"]) == models
     judged = folder / "verdicts.json"
     verdicts = json.loads(judged.read_text(encoding="utf-8")) if judged.exists() else []

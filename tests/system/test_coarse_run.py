@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +27,7 @@ from tests.system.run_folder import (
     check_common_files,
     files,
     protractile,
+    summary_of,
     trajectories,
 )
 
@@ -55,9 +55,15 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture
+def again(whole: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return shutil.copytree(whole, tmp_path / "out")
+
+
 def test_every_file_of_a_whole_run_opens(whole: Path) -> None:
     check_common_files(whole, [*BEAMS, "shell"])
-    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(whole)
     assert summary["models"]["shell"]["degrees_of_freedom"] > 10_000
     assert summary["versions"]["dolfinx"] is not None
     for name in ("outer", "inner"):
@@ -79,7 +85,7 @@ def test_stresses_beside_a_support_are_those_of_a_beam(whole: Path) -> None:
     """Reference: analytic. A patch of a flange beside the support at 2 m has σ = M z / J, with
     the moment that the walls carry to both sides of it, within 5 %, though the mesh is coarse.
     """
-    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(whole)
     stress = summary["models"]["shell"]["stress"]
     with xr.open_dataset(whole / "stress.nc", engine="scipy") as data:
         assert data["segment"].values.tolist() == ["outer", "inner"]
@@ -124,7 +130,7 @@ def can_draw() -> bool:
 def test_before_the_first_contact_the_inner_segment_falls_freely(whole: Path) -> None:
     """Reference: analytic. Its load is its mass times 1 m/s², so its tip moves by t²/2."""
     data = trajectories(whole)
-    summary = json.loads((whole / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(whole)
     for name in (*SERIES, "beam-fe", "timoshenko", "shell"):
         first = summary["models"][name]["first_contact"]
         free = data.sel(model=name).where(data["time"] < first, drop=True)
@@ -136,7 +142,7 @@ def test_before_the_first_contact_the_inner_segment_falls_freely(whole: Path) ->
 
 def test_the_shell_touches_when_the_shear_flexible_beam_does(whole: Path) -> None:
     """Reference: other model. Shear is all that a beam lacks for the slow motion."""
-    models = json.loads((whole / "summary.json").read_text(encoding="utf-8"))["models"]
+    models = summary_of(whole)["models"]
     shell, beam = models["shell"]["first_contact"], models["timoshenko"]["first_contact"]
     assert shell == pytest.approx(beam, rel=1e-3)
     slender = models["beam-fe"]["first_contact"]
@@ -155,9 +161,7 @@ def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
 
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
-def test_snapshots_of_given_times_join_the_others(whole: Path, tmp_path: Path) -> None:
-    again = tmp_path / "out"
-    shutil.copytree(whole, again)
+def test_snapshots_of_given_times_join_the_others(whole: Path, again: Path) -> None:
     if not can_draw():
         pytest.skip("pictures take OpenGL, and VTK finds none that works")
     assert protractile("snapshot", again, "--time", "0.25") == 0
@@ -178,11 +182,9 @@ def test_a_time_outside_the_run_is_one_line(
 
 
 def test_fields_of_another_version_are_one_line(
-    whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    again: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Reference: a folder whose fields do not name their plates, as those of a version."""
-    again = tmp_path / "out"
-    shutil.copytree(whole, again)
     fields = xr.load_dataset(again / "fields.nc", engine="scipy")
     fields.drop_vars("plate_1").to_netcdf(again / "fields.nc", engine="scipy")
     (again / ".manifest").unlink()
@@ -194,20 +196,15 @@ def test_fields_of_another_version_are_one_line(
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
 def test_a_run_without_opengl_says_so_and_goes_on(
-    whole: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    again: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
     monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
-    again = tmp_path / "out"
-    shutil.copytree(whole, again)
     assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
-    summary = json.loads((again / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(again)
     assert summary["snapshots"] == {"written": [], "skipped": "no OpenGL"}
     assert not (again / "snapshots").exists()
     assert protractile("snapshot", again) == 2
@@ -231,7 +228,7 @@ def test_pictures_can_be_left_to_later(
     assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "they were not asked for; protractile snapshot draws them"
     assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(out)
     assert summary["snapshots"] == {"written": [], "skipped": later}
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +12,13 @@ import pytest
 
 from runs.report import figures
 from tests import at_once
-from tests.system.run_folder import COARSE, check_common_files, protractile, trajectories
+from tests.system.run_folder import (
+    COARSE,
+    check_common_files,
+    protractile,
+    summary_of,
+    trajectories,
+)
 from tests.unprinted import ONE_BLANK_FIGURE
 
 pytestmark = pytest.mark.slow
@@ -76,7 +81,7 @@ def test_two_ranks_run_a_shell_as_one_does(
     assert (answer.returncode, complaints(answer)) == (0, [])
     assert answer.stdout.count("two/report.html") == 1
     one, two = trajectories(tmp_path / "one"), trajectories(tmp_path / "two")
-    summaries = [json.loads((tmp_path / n / "summary.json").read_text()) for n in ("one", "two")]
+    summaries = [summary_of(tmp_path / name) for name in ("one", "two")]
     low_one, low_two = (s["models"]["shell"]["frequencies"] for s in summaries)
     assert low_two == pytest.approx(low_one, rel=1e-8, abs=1e-9)
     for place in ("tip", "head", "tail"):

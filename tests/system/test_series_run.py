@@ -26,6 +26,7 @@ from tests.system.run_folder import (
     check_common_files,
     files,
     protractile,
+    summary_of,
     trajectories,
 )
 
@@ -207,7 +208,7 @@ def test_a_summary_of_another_version_is_one_line(
 ) -> None:
     """Reference: a folder as a version has written it that did not know one of today's keys."""
     (again / ".manifest").unlink()
-    summary = json.loads((again / "summary.json").read_text(encoding="utf-8"))
+    summary = summary_of(again)
     del summary["models"]["kantorovich-5"]["contact_changes"]
     (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     assert refusal(command, again) == (
