@@ -120,7 +120,7 @@ def run(
     from runs.pipeline.means import Means
     from runs.pipeline.run import run_case
     from runs.report import output
-    from runs.report.printed import say_what_failed
+    from runs.report.document import say_what_failed
     from runs.sweep.run import launched_world
 
     if not large:
@@ -288,7 +288,7 @@ def frequencies(
             data = charts.gather(plan, charts.measure(cases, comm, cache, tell))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
-        charts.table(data).text.show(Terminal())
+        charts.table(data).show(Terminal())
     return 0
 
 
@@ -454,7 +454,7 @@ def _check_temporary_folder(file: str) -> None:
 def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
     """Print the tables of runs, by their file, and what is amiss; the exit status."""
     from runs.client import show
-    from runs.report.printed import print_models
+    from runs.report.document import print_models
 
     console = Terminal()
     for results in runs.values():

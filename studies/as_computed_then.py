@@ -232,7 +232,7 @@ def leave(survey: Survey, made: Sequence[Table], folder: Path) -> None:
         "case_hashes": [toml.digest(case) for case in cases],
         "outcomes": {key: asdict(found) for key, found in survey.outcomes.items()},
     }
-    write(folder, Path(THEN_FILE).stem, TITLE, data, [table.text for table in made])
+    write(folder, Path(THEN_FILE).stem, TITLE, data, [table for table in made])
 
 
 def main() -> None:
@@ -240,7 +240,7 @@ def main() -> None:
     survey = Survey.of(lambda what: print(f"{what} ...", flush=True))
     made = tables(survey)
     for table in made:
-        table.text.show(wide_console())
+        table.show(wide_console())
     leave(survey, made, OUT)
     print(f"written to {OUT}")
 

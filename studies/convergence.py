@@ -82,13 +82,13 @@ def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
             study, seconds = done.result()
             found[running[done]] = study
             for table in study.tables:
-                table.text.show(console)
+                table.show(console)
             console.print(f"{study.title}: {seconds:.0f} s\n")
     studies = [found[name] for name in names]
     proving = [study for study in studies if study.proofs]
     for study in proving:
         verification.table(study).show(console)
-    tables = [table.text for study in studies for table in study.tables]
+    tables = [table for study in studies for table in study.tables]
     write(folder, "convergence", TITLE, {one.name: one.data for one in studies}, tables)
     write_whole(folder / "verification.md", verification.markdown(studies))
     _write_report(studies, folder)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from runs.report.numerals import fixed, number
-from runs.report.tables import TextTable
+from runs.report.tables import Table
 from studies.study import Proof, Study
 
 INTRODUCTION = """\
@@ -25,13 +25,13 @@ table to `runs/out/convergence/verification.md` is
 """
 
 
-def table(study: Study) -> TextTable:
+def table(study: Study) -> Table:
     """The proofs of one study."""
-    return TextTable(
+    return Table.of_rows(
+        f"proofs-{study.name}",
         study.title,
         ("what", "value", "reference", "error (%)", "allowed", "", "order", "kind", "source"),
         [_row(proof) for proof in study.proofs],
-        name=f"proofs-{study.name}",
     )
 
 

@@ -47,7 +47,7 @@ from runs.paper.verdicts import MARKS, TEMPLATES, read_copy
 from runs.process.terminal import show_notices
 from runs.report.numerals import number
 from runs.report.pages import page
-from runs.report.tables import TextTable, write
+from runs.report.tables import Table, write
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/readings")
@@ -88,9 +88,10 @@ def conclude(judged: Sequence[Judged]) -> list[str]:
     return sentences
 
 
-def verdict_table(judged: Sequence[Judged]) -> TextTable:
+def verdict_table(judged: Sequence[Judged]) -> Table:
     """A line for each reading: what each statement says of it."""
-    return TextTable(
+    return Table.of_rows(
+        "readings",
         "Readings of the data, and the statements on them",
         ("Δ mm, stiffness, base, n", *JUDGED, "excluded"),
         [
@@ -107,18 +108,18 @@ def verdict_table(judged: Sequence[Judged]) -> TextTable:
             f"are more than {100.0 * DIVERGENCE:g} % apart at some time from "
             f"{STRATIFIED_FROM:g} s on. S4 without the shell.",
         ),
-        name="readings",
     )
 
 
-def number_table(judged: Sequence[Judged]) -> TextTable:
+def number_table(judged: Sequence[Judged]) -> Table:
     """A line for each reading: what the verdicts are from."""
 
     def cell(finding: Finding) -> str:
         ends = (min(finding.measured), max(finding.measured)) if finding.measured else ()
         return "…".join(dict.fromkeys(number(end, 2) for end in ends))
 
-    return TextTable(
+    return Table.of_rows(
+        "readings-measured",
         "Measured",
         (
             "Δ mm, stiffness, base, n",
@@ -145,11 +146,10 @@ def number_table(judged: Sequence[Judged]) -> TextTable:
             f"The restored stiffness of n = 1 and 3/2 has the tangent of the quadratic law at "
             f"{PAD_FORCE / 1e3:g} kN; the literal one is {number(LITERAL)} for every n.",
         ),
-        name="readings-measured",
     )
 
 
-def shown(judged: Sequence[Judged]) -> list[TextTable]:
+def shown(judged: Sequence[Judged]) -> list[Table]:
     """The tables of a survey, its conclusion below the first."""
     table = verdict_table(judged)
     return [replace(table, notes=(*table.notes, *conclude(judged))), number_table(judged)]
@@ -185,7 +185,7 @@ def survey(
     return judged
 
 
-def load(folder: Path, case: Case) -> list[TextTable]:
+def load(folder: Path, case: Case) -> list[Table]:
     """The tables of the survey that lies in a run's folder; none where none does.
 
     Args:
@@ -196,7 +196,7 @@ def load(folder: Path, case: Case) -> list[TextTable]:
         BadInput: the file is damaged, or of another case.
     """
 
-    def read(data: Any) -> tuple[list[str], list[TextTable]]:
+    def read(data: Any) -> tuple[list[str], list[Table]]:
         judged = TypeAdapter(list[Judged]).validate_python(data["readings"])
         return [data["case_hash"]], shown(judged)
 

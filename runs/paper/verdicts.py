@@ -27,7 +27,7 @@ from runs.paper.statements import STATEMENTS, THEN_FILE
 from runs.process.terminal import message, say, shown
 from runs.report.numerals import NONE, number
 from runs.report.pages import Addition
-from runs.report.tables import TextTable, as_json
+from runs.report.tables import Table, as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]
 MARKS: Mapping[Judgement, str] = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
@@ -138,9 +138,7 @@ def read_copy(
     raise BadInput(str(path.parent), path.name, f"{what}; remove it, or {remedy}")
 
 
-def addition(
-    case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[TextTable] = ()
-) -> Addition:
+def addition(case: Case, verdicts: Sequence[Verdict], surveyed: Sequence[Table] = ()) -> Addition:
     """Return what verdicts, and a survey of the case's readings, add to the report of its run."""
     judged = [verdict.verdict for verdict in verdicts]
     known = evidence(case)

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer asks of a boom, as tables: each answer by itself."""
+"""What a designer asks of a boom, as tables: rest, modes, motion, drives, pads, stress, life."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from geometry.typography import TO_KILO, TO_MILLI, TO_PERCENT
+import numpy as np
+
 from runs.pipeline.answers import Added, AtRest, Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
-from runs.report.drive_tables import drive_table, stick_slip_table, swing_table
 from runs.report.numerals import NONE, amount, number
-from runs.report.strength_tables import life_table, pad_table, stress_table
 from runs.report.tables import Column, Table
 
 # A part of a number that is next to nothing.
@@ -20,138 +19,8 @@ HARDLY = 0.005
 ROUND_OFF = 1.0e-9
 
 
-def play_table(results: Results) -> Table | None:
-    """Every number beside that of the same boom tied."""
-    found = results.play
-    if found is None:
-        return None
-    rows = found.numbers
-    columns = (
-        Column("", [_named(one.what, one.where) for one in rows]),
-        Column("with play", [amount(one.played, one.unit) for one in rows]),
-        Column("without play", [amount(one.tied, one.unit) for one in rows]),
-        Column(
-            "play adds",
-            ["next to nothing" if hardly(one) else amount(one.added, one.unit) for one in rows],
-        ),
-        Column("%", [None if hardly(one) else one.share for one in rows], ".3g", TO_PERCENT),
-    )
-    notes = ("By their absolute values.",)
-    return Table(f"What play adds: {found.model}", columns, notes, "play")
-
-
-def rest_tables(results: Results) -> list[Table]:
-    """Tilts by play, what presses and what holds, at rest under the largest loads."""
-    answers = results.summary.answers
-    farthest = {name: own.farthest_rest for name, own in answers.models.items()}
-    rests = {name: rest for name, rest in farthest.items() if rest is not None}
-    as_drawn = of_rests(results.case, rests.values())
-    tables = []
-    tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
-    if tilts:
-        columns = (
-            Column("model", [name for name, _ in tilts]),
-            Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
-            Column("rotation\nmrad", [tilt.rotation for _, tilt in tilts], ".3g", TO_MILLI),
-            Column("moves the tip\nmm", [tilt.tip for _, tilt in tilts], ".1f", TO_MILLI),
-        )
-        tables.append(
-            Table(
-                "At rest under the largest loads: what joints give way",
-                columns,
-                (
-                    "By play and by what is pressed in: of a shell, also by its walls beside them."
-                    + as_drawn,
-                ),
-                "tilts",
-            )
-        )
-    places = {pressed.place: pressed for rest in rests.values() for pressed in rest.stations}
-    if places:
-        tables.append(_pressed_table(rests, list(places), as_drawn))
-    if answers.reactions:
-        tied = {(one.segment, one.x): one for one in answers.tied_reactions}
-        beside = [tied.get((one.segment, one.x)) for one in answers.reactions]
-        held = (
-            Column("holds", [f"{one.segment} at {one.x:g} m" for one in answers.reactions]),
-            Column("force\nkN", [one.force for one in answers.reactions], ".4g", TO_KILO),
-            *_unless_none("along the boom\nkN", [one.along for one in answers.reactions], ".4g"),
-            *_unless_none("moment\nkN m", [one.moment for one in answers.reactions], ".3g"),
-            Column(
-                "tied: force\nkN", [one.force if one else None for one in beside], ".4g", TO_KILO
-            ),
-        )
-        notes = (
-            "Of beam elements, under the loads of t = 0; positive upwards, along the boom towards "
-            "its tip.",
-        )
-        tables.append(Table("At rest at t = 0: what holds the boom", held, notes, "reactions"))
-    return tables
-
-
-def _unless_none(heading: str, borne: Sequence[float], form: str) -> Iterator[Column]:
-    """What is borne, in kilo, without the round-off of what bears none; no column of zeros."""
-    most = max(map(abs, borne), default=0.0)
-    if most > 0.0:
-        told = [each if abs(each) > ROUND_OFF * most else 0.0 for each in borne]
-        yield Column(heading, told, form, TO_KILO)
-
-
-def _pressed_table(rests: dict[str, AtRest], places: Sequence[str], as_drawn: str) -> Table:
-    columns = [Column("station", [f"x = {place} m" for place in places])]
-    for name, rest in rests.items():
-        forces = {one.place: one for one in rest.stations}
-        if forces:
-            cells = [forces[place].force if place in forces else None for place in places]
-            columns.append(Column(f"{name}\nkN", cells, ".4g", TO_KILO))
-    what = "Forces of stations, positive where the inner segment presses up, or to larger y."
-    return Table(
-        "At rest under the largest loads: what presses", columns, (what + as_drawn,), "pressed"
-    )
-
-
-def mode_table(results: Results) -> Table | None:
-    """The first modes of the boom as it works, its joints pressed, of all models side by side."""
-    answers = results.summary.answers.models
-    with_modes = {name: own.modes for name, own in answers.items() if own.modes}
-    if not with_modes:
-        return None
-    ways = dict.fromkeys((mode.way, mode.number) for modes in with_modes.values() for mode in modes)
-    of = {
-        name: {(mode.way, mode.number): mode.frequency for mode in modes}
-        for name, modes in with_modes.items()
-    }
-    rows = sorted(ways, key=lambda way: min(found.get(way, float("inf")) for found in of.values()))
-    columns = [Column("mode", [f"{way} {count}" for way, count in rows])]
-    columns += [
-        Column(f"{name}\nHz", [found.get(way) for way in rows], ".4g") for name, found in of.items()
-    ]
-    notes = ("Of the boom at rest under the loads of t = 0, its joints pressed as they are then.",)
-    return Table("Modes at rest at t = 0", columns, notes, "modes")
-
-
-def peak_table(results: Results) -> Table | None:
-    """Largest of the motion beside what is at rest, of the models that are read first."""
-    moved = results.moved
-    wheres = dict.fromkeys(
-        (peak.what, peak.where, peak.unit) for own in moved.values() for peak in own.peaks
-    )
-    if not wheres:
-        return None
-    columns = [Column("at most", [_named(what, where) for what, where, _ in wheres])]
-    for name, own in moved.items():
-        found = {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
-        cells = [_peak_cell(found.get(where)) for where in wheres]
-        columns.append(Column(name, cells))
-    notes = (
-        "By their absolute values. In brackets: how many times what is at rest under the largest "
-        "loads.",
-    )
-    return Table("Forces and deflections in motion", columns, notes, "peaks")
-
-
 def answer_tables(results: Results) -> list[Table]:
-    """All but the first look, in the order of the questions."""
+    """Return all but the first look that the run has numbers for, in the order of the questions."""
     found = [
         play_table(results),
         *rest_tables(results),
@@ -165,6 +34,133 @@ def answer_tables(results: Results) -> list[Table]:
         life_table(results),
     ]
     return [table for table in found if table is not None]
+
+
+def play_table(results: Results) -> Table | None:
+    """Return every number beside that of the same boom tied."""
+    found = results.play
+    if found is None:
+        return None
+    rows = found.numbers
+    added = ["next to nothing" if hardly(one) else amount(one.added, one.unit) for one in rows]
+    columns = (
+        Column("", [_named(one.what, one.where) for one in rows]),
+        Column("with play", [amount(one.played, one.unit) for one in rows]),
+        Column("without play", [amount(one.tied, one.unit) for one in rows]),
+        Column("play adds", added),
+        Column("", [None if hardly(one) else one.share for one in rows], ".3g", "%"),
+    )
+    notes = ("By their absolute values.",)
+    return Table(f"What play adds: {found.model}", columns, notes, "play")
+
+
+def rest_tables(results: Results) -> list[Table]:
+    """Return tilts by play, contact forces and reactions, at rest under the largest loads."""
+    farthest = {name: own.farthest_rest for name, own in results.summary.answers.models.items()}
+    rests = {name: rest for name, rest in farthest.items() if rest is not None}
+    as_drawn = of_rests(results.case, rests.values())
+    found = _tilt_table(rests, as_drawn), _pressed_table(rests, as_drawn), _reaction_table(results)
+    return [table for table in found if table is not None]
+
+
+def _tilt_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
+    tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
+    if not tilts:
+        return None
+    columns = (
+        Column("model", [name for name, _ in tilts]),
+        Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
+        Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
+        Column("moves the tip", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
+    )
+    note = "By play and by what is pressed in: of a shell, also by its walls beside them."
+    title = "At rest under the largest loads: what joints give way"
+    return Table(title, columns, (note + as_drawn,), "tilts")
+
+
+def _pressed_table(rests: dict[str, AtRest], as_drawn: str) -> Table | None:
+    places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
+    if not places:
+        return None
+    columns = [Column("station", [f"x = {place} m" for place in places])]
+    for name, rest in rests.items():
+        forces = {one.place: one.force for one in rest.stations}
+        if forces:
+            columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
+    note = "Forces of stations, positive where the inner segment presses up, or to larger y."
+    title = "At rest under the largest loads: what presses"
+    return Table(title, columns, (note + as_drawn,), "pressed")
+
+
+def _reaction_table(results: Results) -> Table | None:
+    answers = results.summary.answers
+    found = answers.reactions
+    if not found:
+        return None
+    tied = {(one.segment, one.x): one.force for one in answers.tied_reactions}
+    beside = [tied.get((one.segment, one.x)) for one in found]
+    columns = (
+        Column("holds", [f"{one.segment} at {one.x:g} m" for one in found]),
+        Column("force", [one.force for one in found], ".4g", "kN"),
+        *_unless_none("along the boom", [one.along for one in found], ".4g", "kN"),
+        *_unless_none("moment", [one.moment for one in found], ".3g", "kN m"),
+        Column("tied: force", beside, ".4g", "kN"),
+    )
+    notes = (
+        "Of beam elements, under the loads of t = 0; positive upwards, along the boom towards its "
+        "tip.",
+    )
+    return Table("At rest at t = 0: what holds the boom", columns, notes, "reactions")
+
+
+def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
+    """Give what is carried, without the round-off of what carries none; no column of zeros."""
+    most = max(map(abs, carried), default=0.0)
+    if most > 0.0:
+        cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]
+        yield Column(title, cells, form, unit)
+
+
+def mode_table(results: Results) -> Table | None:
+    """Return the first modes of the boom, its joints pressed, of all models side by side."""
+    of = {
+        name: {(mode.way, mode.number): mode.frequency for mode in own.modes}
+        for name, own in results.summary.answers.models.items()
+        if own.modes
+    }
+    if not of:
+        return None
+    lowest: dict[tuple[str, int], float] = {}
+    for found in of.values():
+        for way, frequency in found.items():
+            lowest[way] = min(frequency, lowest.get(way, frequency))
+    rows = sorted(lowest, key=lambda way: lowest[way])
+    columns = [Column("mode", [f"{way} {count}" for way, count in rows])]
+    columns += [
+        Column(name, [found.get(way) for way in rows], ".4g", "Hz") for name, found in of.items()
+    ]
+    notes = ("Of the boom at rest under the loads of t = 0, its joints pressed as they are then.",)
+    return Table("Modes at rest at t = 0", columns, notes, "modes")
+
+
+def peak_table(results: Results) -> Table | None:
+    """Return the largest of the motion beside what is at rest, of the models read first."""
+    of = {
+        name: {(peak.what, peak.where, peak.unit): peak for peak in own.peaks}
+        for name, own in results.moved.items()
+    }
+    rows = dict.fromkeys(where for found in of.values() for where in found)
+    if not rows:
+        return None
+    columns = [Column("at most", [_named(what, where) for what, where, _ in rows])]
+    columns += [
+        Column(name, [_peak_cell(found.get(where)) for where in rows]) for name, found in of.items()
+    ]
+    notes = (
+        "By their absolute values. In brackets: how many times what is at rest under the largest "
+        "loads.",
+    )
+    return Table("Forces and deflections in motion", columns, notes, "peaks")
 
 
 def hardly(one: Added) -> bool:
@@ -187,3 +183,181 @@ def _named(what: str, where: str) -> str:
     if what == "cylinder force":
         return where.replace("_", " ").replace("-", " ")
     return f"{what}, {where}" if where else what
+
+
+def drive_table(results: Results) -> Table | None:
+    """Return forces, power and work of every model and drive; None without telescoping."""
+    data = results.trajectories
+    rows = [
+        (str(model), inner, *_effort(results, str(model), suffix))
+        for suffix, inner in results.case.driven.items()
+        if f"drive_power{suffix}" in data
+        for model in data["model"].values
+    ]
+    if not rows:
+        return None
+    models, driven, mean, force, power, work = zip(*rows, strict=True)
+    columns = (
+        Column("model", models),
+        Column("drive of", driven),
+        Column("against friction:\nmean", mean, ".3g", "kN"),
+        Column("at most", force, ".3g", "kN"),
+        Column("power, at most", power, ".3g", "kW"),
+        Column("work", work, ".3g", "kJ"),
+    )
+    notes = (
+        "Against the friction of pads along the boom, while it is drawn; power and work with what "
+        "contact forces do on their slope, and against what presses along the boom.",
+    )
+    return Table("Drives", columns, notes, "drives")
+
+
+def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
+    """Return mean and largest force in N, largest power in W, work in J of a drive."""
+    data = results.trajectories.sel(model=model)
+    way, friction, power = (
+        np.asarray(data[name + suffix].values, dtype=float)
+        for name in ("drawn_out", "drive_friction", "drive_power")
+    )
+    moving = np.diff(way, prepend=way[0]) != 0.0
+    mean = float(np.abs(friction[moving]).mean()) if moving.any() else 0.0
+    work = float((power[1:] * np.diff(data["time"].values)).sum())
+    return mean, float(np.abs(friction).max()), float(power.max()), work
+
+
+def stick_slip_table(results: Results) -> Table | None:
+    """Return what every model and drive of a given stiffness does; None where all are stiff."""
+    rows = [
+        (model, inner, own.stick_slip[name])
+        for suffix, inner in results.case.driven.items()
+        for model, own in results.summary.models.items()
+        if (name := f"drive_force{suffix}") in own.stick_slip
+    ]
+    if not rows:
+        return None
+    found = [one for *_, one in rows]
+    columns = (
+        Column("model", [model for model, *_ in rows]),
+        Column("drive of", [inner for _, inner, _ in rows]),
+        Column("force:\nmean", [one.mean for one in found], ".3g", "kN"),
+        Column("at most", [one.peak for one in found], ".3g", "kN"),
+        Column("sticks", [one.sticks for one in found], unit="times"),
+        Column("slips by at most", [one.slip for one in found], ".3g", "mm"),
+        Column("ends behind by", [one.behind for one in found], ".3g", "mm"),
+        Column("at most", [one.speed for one in found], ".3g", "m/s"),
+        Column("at most", [one.acceleration for one in found], ".3g", "m/s²"),
+    )
+    notes = (
+        "Force: against friction, with what weighs along and what is sped up. Sticks: how often it "
+        "comes to stand while it is drawn. Slips: how far it catches up with its drive in one "
+        "slip. Then its own speed and acceleration. The boom moves as it is drawn by a stiff one. "
+        "Friction is that of the mean force of each output step: where pads chatter faster than "
+        "that, it sticks at other times, and a smaller output_step tells.",
+    )
+    return Table("Drives that give way", columns, notes, "stick-slip")
+
+
+def swing_table(results: Results) -> Table | None:
+    """Return how the tip swings in every model that telescopes, beside the boom that stands."""
+    models = results.summary.answers.models
+    rows = {name: own.swing for name, own in models.items() if own.swing is not None}
+    if not rows:
+        return None
+    swings = list(rows.values())
+    columns = (
+        Column("model", list(rows)),
+        Column("tip swings", [one.tip for one in swings], ".4g", "mm"),
+        Column("at", [one.time for one in swings], ".3f", "s"),
+        Column("at rest where\nit begins", [one.where_begun for one in swings], ".4g", "mm"),
+        Column("at rest where\nit ends", [one.where_ended for one in swings], ".4g", "mm"),
+    )
+    notes = (
+        "The largest distance of the tip from where it would rest, drawn out as far as it is and "
+        "under the loads of that moment; beside it that of the same boom that is not drawn.",
+    )
+    return Table("Swing while it is drawn", columns, notes, "swing")
+
+
+def pad_table(results: Results) -> Table | None:
+    """Return how hard the pads of each joint are pressed; None without pads of a size."""
+    pads = results.summary.pads
+    if not pads:
+        return None
+    columns = (
+        Column("model", [pad.model for pad in pads]),
+        Column("joint", [f"{pad.inner} in {pad.outer}" for pad in pads]),
+        Column("at", [f"{pad.x:g}" for pad in pads], unit="m"),
+        Column("side", [pad.side for pad in pads]),
+        Column("peak force", [pad.force for pad in pads], ".3g", "kN"),
+        Column("pressure", [pad.pressure for pad in pads], ".3g", "MPa"),
+        Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
+    )
+    note = (
+        "Of one pad. Those of one side of a station share its force as they are stiff, those of a "
+        "pair evenly, and bear it evenly."
+    )
+    return Table("Slide pads", columns, (note,), "pads")
+
+
+def stress_table(results: Results) -> Table | None:
+    """Return the largest stresses of each segment: outer fibres of all models, walls of shells."""
+    rows = []
+    for name, own in results.moved.items():
+        walls = {wall.segment: wall for wall in sorted(own.walls, key=lambda wall: wall.patch)}
+        rows += [(name, fibre, walls.get(fibre.segment)) for fibre in own.fibres]
+    if not rows:
+        return None
+    patches = [wall.patch if wall else None for *_, wall in rows]
+    parts = [(fibre.utilisation, wall.utilisation if wall else None) for _, fibre, wall in rows]
+    used = [max(filter(None, both), default=None) for both in parts]
+    columns = [
+        Column("model", [name for name, *_ in rows]),
+        Column("segment", [fibre.segment for _, fibre, _ in rows]),
+        Column("outer fibre", [abs(fibre.stress) for _, fibre, _ in rows], ".4g", "MPa"),
+        Column("at x", [fibre.x for _, fibre, _ in rows], ".4g", "m"),
+        Column("at", [fibre.time for _, fibre, _ in rows], ".3f", "s"),
+    ]
+    if any(wall for *_, wall in rows):
+        columns.append(Column("wall, over a patch", patches, ".4g", "MPa"))
+    if any(used):
+        columns.append(Column("of the yield strength", used, ".3g", "%"))
+    notes = (
+        "Outer fibre: along x, of section forces. Wall: von Mises, the mean over a patch of half a "
+        "wall near stations and supports, where plates bend besides.",
+    )
+    return Table("Stress", columns, notes, "stress")
+
+
+def life_table(results: Results) -> Table | None:
+    """Return rainflow ranges of each segment, of the models that are read first."""
+    models = results.summary.answers.models
+    rows = [
+        (name, life)
+        for name, own in models.items()
+        if name in results.read_first
+        for life in own.life
+    ]
+    if not rows:
+        return None
+    lives = [life for _, life in rows]
+    columns = [
+        Column("model", [name for name, _ in rows]),
+        Column("segment", [life.segment for life in lives]),
+        Column("at x", [life.x for life in lives], ".4g", "m"),
+        Column("cycles", [life.cycles for life in lives], ".3g"),
+        Column("largest range", [life.largest for life in lives], ".4g", "MPa"),
+        Column("equivalent range", [life.equivalent for life in lives], ".4g", "MPa"),
+    ]
+    damages = [life.damage for life in lives]
+    if any(damage is not None for damage in damages):
+        runs = [1.0 / damage if damage else None for damage in damages]
+        columns.append(Column("damage of a run", damages, ".3g"))
+        columns.append(Column("runs to failure", runs, ".3g"))
+    if any(life.life_damage is not None for life in lives):
+        columns.append(Column("of its life", [life.life_damage for life in lives], ".3g"))
+    notes = (
+        "Rainflow ranges of the outer fibre's stress where it varies most. Equivalent: what, once "
+        "in a run, does as much as all of them at a slope of 3. Runs to failure: how often its "
+        "motion may come until the damage is 1; none where no range does any.",
+    )
+    return Table("Life", columns, notes, "life")

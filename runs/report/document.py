@@ -3,24 +3,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
 
+from rich.console import Console
+
+from geometry.typography import TO_MILLI
 from runs.case import toml
 from runs.pipeline.results import Results
+from runs.process.terminal import message, say, shown
 from runs.report import theme
 from runs.report.answer_tables import answer_tables
-from runs.report.calibration_tables import calibration_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
 from runs.report.first_look import first_look
 from runs.report.knowledge import compared_tables, known_tables
-from runs.report.model_tables import model_tables
-from runs.report.numerals import number
+from runs.report.model_tables import model_table, model_tables
+from runs.report.numerals import number, percent
 from runs.report.pages import Addition, page
-from runs.report.stress_tables import wall_tables
-from runs.report.tables import Table, TextTable
+from runs.report.tables import Column, Table
+
+# Columns of the models' table that fit a terminal → their headings there.
+SHOWN = {
+    "model": "model",
+    "degrees of freedom": "dofs",
+    "first contact\ns": "first contact s",
+    "first tip peak\ns": "first tip peak s",
+    "mm": "mm",
+    "energy residual\nof the work": "energy\nresidual",
+    "wall time\ns": "wall s",
+}
 
 # Kinds of pictures in the order of their numbers.
 PARTS = "case", "motion", "rest", "snapshots", "knowledge", "numerics"
@@ -51,12 +64,9 @@ def render(
         "known": known_tables(results),
         "compared": compared_tables(results),
         "added": [],
-        "models": [*model_tables(results), *calibration_tables(results), *wall_tables(results)],
+        "models": model_tables(results),
     }
-    texts = {
-        part: [text for table in several if (text := table.text).rows]
-        for part, several in tables.items()
-    }
+    texts = {part: [table for table in several if table.rows] for part, several in tables.items()}
     texts |= {"added": [*addition.tables]}
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
@@ -92,9 +102,7 @@ def render(
     )
 
 
-def _numbered(
-    kind: str, things: Iterable[TextTable | Figure]
-) -> list[tuple[TextTable | Figure, str]]:
+def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:
     """Each with what the text calls it, *Table 1* and so forth; the blank does not break."""
     return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
 
@@ -113,7 +121,53 @@ def _costs(results: Results) -> Mapping[str, str]:
         if right_to is not None:
             parts.append(f"its modes right up to {number(right_to, 2)} Hz")
         if error := model.mesh_error:
-            off = number(100.0 * error, 2)
-            parts.append(f"local compliance {off} % off an infinitely fine mesh's")
+            parts.append(f"local compliance {percent(error, 2)} off an infinitely fine mesh's")
         costs[name] = ", ".join(parts)
     return costs
+
+
+def print_models(results: Results, console: Console) -> None:
+    """Print the table of a run's models, how near shells are, and cautions."""
+    found = {column.heading: column.text for column in model_table(results).columns}
+    columns = [Column(SHOWN[one], found[one]) for one in found if one in SHOWN]
+    Table(results.case.title, columns).show(console)
+    for line in (*_found_of_models(results), *results.summary.cautions):
+        console.print(line, markup=False, highlight=False)
+
+
+def _found_of_models(results: Results) -> Iterator[str]:
+    """Give how near shells are to what they stand for, and how tips swing while they telescope."""
+    for name, model in results.summary.models.items():
+        if errors := model.reduction_errors:
+            yield (
+                f"{name}: {model.modes} coordinates answer as the full shell does, contacts "
+                f"within {number(errors['contact_compliance'], 1)}, tip and head within "
+                f"{number(errors['readings'], 1)}"
+            )
+        if (error := model.mesh_error) is not None:
+            yield (
+                f"{name}: where the segments touch, the walls give way by {percent(error, 2)} more "
+                "or less than on an infinitely fine mesh"
+            )
+    for name, own in results.summary.answers.models.items():
+        if (swing := own.swing) is None:
+            continue
+        levels = swing.where_begun, swing.where_ended
+        ends = (number(None if level is None else TO_MILLI * level) for level in levels)
+        yield (
+            f"{name}: drawn out at {number(swing.speed)} m/s in the mean the tip swings by "
+            f"{number(TO_MILLI * swing.tip)} mm, at rest by {' and '.join(ends)} mm where that "
+            "begins and ends"
+        )
+
+
+def say_what_failed(file: str, results: Results) -> int:
+    """Print a line for all models that failed; return the exit status."""
+    numbers = {model.name: i for i, model in enumerate(results.case.models, start=1)}
+    failures = results.summary.failures
+    if not failures:
+        return 0
+    first, *others = (f"model[{numbers[name]}]" for name in failures)
+    too = f"{', '.join(others)} failed, too; first " if others else ""
+    say(message(f"{shown(file)}: {too}{first}: {next(iter(failures.values()))}"))
+    return 3

@@ -16,7 +16,7 @@ from runs.pipeline.results import Results
 from runs.pipeline.summary import PressedPad
 from runs.report.answer_tables import hardly
 from runs.report.figure_context import farthest
-from runs.report.numerals import NONE, SHOWN, amount, fixed, number
+from runs.report.numerals import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.tables import Column, Table
 
 # To which part a swing has died that nobody heeds any more.
@@ -59,26 +59,30 @@ def first_table(results: Results) -> Table | None:
     hardest = _hardest_pads(results)
     pads = {name: _pad(pad) for name, pad in hardest.items()}
     damages = [_life_damage(one) for one in own]
+    drawn = [_at_rest(one.drawn) for one in own]
+    fading = [_fading(results.case, one) for one in own]
+    stations = [None if hardest else _station(one) for one in own]
+    pins = _largest_of(own, "reaction, across and along")
     asked = (
-        Column("Tip at rest, t = 0, mm", [_at_rest(one.rests[:1]) for one in own], *_MM),
-        Column("Tip at rest, largest loads, mm", [_at_rest(one.rests[1:]) for one in own], *_MM),
-        Column("Tip at rest where it is drawn to, mm", [_at_rest(one.drawn) for one in own], *_MM),
-        Column("Tip in motion, farthest, mm", [*map(_farthest, own, tips)]),
-        Column("Tip travels, mm", [*map(_travels, tips)], *_MM),
-        Column("Tip swings while it is drawn, mm", [_swings(one) for one in own]),
-        Column("Tip to the sides, farthest, mm", _largest_of(own, "lateral deflection")),
-        Column("First frequency, Hz", [_frequency(one) for one in own], ".3g"),
-        Column("One swing takes, s", [_period(one) for one in own], ".3g"),
-        Column("Swings fade to a tenth in, s", [_fading(results.case, one) for one in own], ".2g"),
+        Column("Tip at rest, t = 0", [_at_rest(one.rests[:1]) for one in own], ".1f", "mm"),
+        Column("Tip at rest, largest loads", [_at_rest(one.rests[1:]) for one in own], ".1f", "mm"),
+        Column("Tip at rest where it is drawn to", drawn, ".1f", "mm"),
+        Column("Tip in motion, farthest", [*map(_farthest, own, tips)], unit="mm"),
+        Column("Tip travels", [*map(_travels, tips)], ".1f", "mm"),
+        Column("Tip swings while it is drawn", [_swings(one) for one in own], unit="mm"),
+        Column("Tip to the sides, farthest", _largest_of(own, "lateral deflection"), unit="mm"),
+        Column("First frequency", [_frequency(one) for one in own], ".3g", "Hz"),
+        Column("One swing takes", [_period(one) for one in own], ".3g", "s"),
+        Column("Swings fade to a tenth in", fading, ".2g", "s"),
         Column("Pad that presses most", [pads.get(name) for name in names]),
-        Column("Station pressed most, kN", [None if hardest else _station(one) for one in own]),
-        Column("Cylinder, at most, kN", _largest_of(own, "cylinder force")),
-        Column("Pin of the foot, at most, kN", _largest_of(own, "reaction, across and along")),
-        Column("Outer fibre, MPa", [one and _stress(one) for one in fibres]),
-        Column("Walls over a patch, MPa", [one and _stress(one) for one in walls]),
+        Column("Station pressed most", stations, unit="kN"),
+        Column("Cylinder, at most", _largest_of(own, "cylinder force"), unit="kN"),
+        Column("Pin of the foot, at most", pins, unit="kN"),
+        Column("Outer fibre", [one and _stress(one) for one in fibres], unit="MPa"),
+        Column("Walls over a patch", [one and _stress(one) for one in walls], unit="MPa"),
         Column("Damage of its life", damages, ".3g"),
     )
-    rows = {column.heading: column.text for column in asked}
+    rows = {column.heading.replace("\n", ", "): column.text for column in asked}
     told = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(told))]
     columns += [Column(name, [cells[i] for cells in told.values()]) for i, name in enumerate(names)]
@@ -143,13 +147,13 @@ def strength_sentence(results: Results) -> str:
     used: list[tuple[float, str]] = []
     for what, most in (("walls beside what presses", _walls(own)), ("outer fibres", _fibres(own))):
         if most is not None and most.part is not None:
-            bears = f"{_percent(most.part)} of their yield strength ({_place(most)})"
+            bears = f"{percent(most.part)} of their yield strength ({_place(most)})"
             used.append((most.part, f"{what} bear {bears}"))
     if pad is not None and pad.utilisation is not None:
-        bears = f"{_percent(pad.utilisation)} of their allowable pressure"
+        bears = f"{percent(pad.utilisation)} of their allowable pressure"
         used.append((pad.utilisation, f"pads bear {bears}"))
     if (damage := _life_damage(own)) is not None:
-        used.append((damage, f"{_percent(damage)} of a life is used"))
+        used.append((damage, f"{percent(damage)} of a life is used"))
     if not used:
         return ""
     used.sort(reverse=True)
@@ -248,11 +252,7 @@ def _used(part: float | None, borne: str) -> str:
     """A part of what may be borne."""
     if part is None:
         return ""
-    return f", {_percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
-
-
-def _percent(part: float) -> str:
-    return f"{number(TO_PERCENT * part)} %"
+    return f", {percent(part)}" + (f"\nbeyond {borne}" if part > 1.0 else "")
 
 
 def _place(largest: _Largest) -> str:
@@ -275,7 +275,7 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Tip swings while it is drawn, mm" in told:
         yield "It swings: about where it would rest; standing, where drives begin and end."
     if "Swings fade to a tenth in, s" in told:
-        ratio = _percent(results.case.damping.modal)
+        ratio = percent(results.case.damping.modal)
         yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} alone."
     if "Pad that presses most" in told:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
@@ -303,10 +303,6 @@ def _span(values: Iterable[float | None]) -> str:
     """From the least to the largest in MPa; empty where none is known."""
     known = sorted({TO_MEGA * value for value in values if value is not None})
     return f"{' to '.join(map(number, dict.fromkeys((known[0], known[-1]))))} MPa" if known else ""
-
-
-# Form and factor of a column in mm.
-_MM = ".1f", TO_MILLI
 
 
 def _at_rest(rests: Sequence[AtRest]) -> float | None:

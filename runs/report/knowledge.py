@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from dynamics.predictability.horizon import SHARES
-from geometry.typography import TO_MILLI, TO_PERCENT, signed
+from geometry.typography import TO_MILLI, signed
 from runs.pipeline.comparisons import DECIDES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
@@ -20,7 +20,7 @@ from runs.pipeline.summary import (
     Whole,
 )
 from runs.report.model_tables import horizon_column
-from runs.report.numerals import NONE, fixed, number, scientific
+from runs.report.numerals import NONE, fixed, number, percent, scientific
 from runs.report.tables import Column, Table
 
 # What a table says of ``limits``.
@@ -29,35 +29,34 @@ LIMITS = {
     "step": "the step",
     "nothing": "nothing in the run",
 }
+# Form and unit of times.
+_TIME = ".2f", "s"
 VARIED = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}
 
 
 def known_tables(results: Results) -> list[Table]:
-    """What each model's ensembles tell; empty without any."""
+    """Return what each model's ensembles tell; empty without any."""
     models, asked = results.summary.models, results.summary.ensemble
     sampled = {name: model for name, model in models.items() if model.ensemble}
     measured = {name: model.horizons for name, model in models.items() if model.horizons}
+    peaks = {name: found for name, model in sampled.items() if (found := _slow_peaks(model))}
     tables = []
     if asked is not None and sampled:
         tables.append(_horizon_table(asked, sampled, results.case.time.duration))
     if measured:
         tables.append(_growth_table(measured))
-    peaks = {name: found for name, model in sampled.items() if (found := _slow_peaks(model))}
     if peaks:
-        title = "Mean of an ensemble's members ± half the distance between its extremes. A column "
-        tables.append(
-            Table(
-                "Slow peaks",
-                _peak_columns({name: _heights(found) for name, found in peaks.items()}),
-                (f"{title}ends where not all members have the next peak.",),
-                "slow-peaks",
-            )
+        columns = _peak_columns({name: _heights(found) for name, found in peaks.items()})
+        note = (
+            "Mean of an ensemble's members ± half the distance between its extremes. A column "
+            "ends where not all members have the next peak."
         )
+        tables.append(Table("Slow peaks", columns, [note], "slow-peaks"))
     return tables
 
 
 def compared_tables(results: Results) -> list[Table]:
-    """How the models differ from the reference; empty where nothing is compared."""
+    """Return how the models differ from the reference; empty where nothing is compared."""
     compared = results.summary.comparisons
     tables: list[Table] = []
     if compared is not None and compared.ensembles:
@@ -74,14 +73,12 @@ def _slow_peaks(model: ModelSummary) -> CommonPeaks | None:
 def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], duration: float) -> Table:
     models = list(sampled.values())
     peaks = [_slow_peaks(model) for model in models]
+    periods = [_spread(one.period, one.period_spread, 3) if one else None for one in peaks]
     columns = (
         Column("model", list(sampled)),
         *(horizon_column(models, share, duration) for share in SHARES),
         Column("common slow peaks", [len(found.time) if found else None for found in peaks]),
-        Column(
-            "period\ns",
-            [_spread(found.period, found.period_spread, 3) if found else None for found in peaks],
-        ),
+        Column("period", periods, unit="s"),
     )
     notes = [
         f"Ensembles of {asked.members} members, {VARIED[asked.vary]} changed by up to "
@@ -99,19 +96,16 @@ def _horizon_table(asked: Ensembles, sampled: Mapping[str, ModelSummary], durati
 def _growth_table(measured: Mapping[str, Predictability]) -> Table:
     rows = [(name, found, i) for name, found in measured.items() for i in range(len(found.shares))]
     sizes = next(iter(measured.values())).relatives
+    times = [[found.times[k][i] for _, found, i in rows] for k in range(len(sizes))]
     columns = (
         Column("model", [name for name, _, _ in rows]),
-        Column(
-            "part of the range", [f"{TO_PERCENT * found.shares[i]:g} %" for _, found, i in rows]
-        ),
+        Column("part of the range", [percent(found.shares[i]) for _, found, i in rows]),
         *(
-            Column(
-                f"change {scientific(size)}\ns", [found.times[k][i] for _, found, i in rows], ".2f"
-            )
-            for k, size in enumerate(sizes)
+            Column(f"change {scientific(size)}", of_size, *_TIME)
+            for size, of_size in zip(sizes, times, strict=True)
         ),
-        Column("finer step\ns", [found.of_step[i] for _, found, i in rows], ".2f"),
-        Column("growth\n1/s", [found.rate[i] for _, found, i in rows], ".2g"),
+        Column("finer step", [found.of_step[i] for _, found, i in rows], *_TIME),
+        Column("growth", [found.rate[i] for _, found, i in rows], ".2g", "1/s"),
         Column("limited by", [LIMITS[found.limits[i]] for _, found, i in rows]),
     )
     notes = (
@@ -150,53 +144,38 @@ def _differences(found: PeaksLevel) -> list[str]:
 
 
 def _level_tables(reference: str, levels: Mapping[str, Levels]) -> list[Table]:
-    """From moment to moment, peak by peak, and of all values after the horizons."""
+    """Return comparisons from moment to moment, peak by peak, and of all values afterwards."""
     points = [level.pointwise for level in levels.values()]
     spreads = [level.distributions for level in levels.values()]
     models = Column("model", list(levels))
     pointwise = (
         models,
-        Column("until\ns", [found.until for found in points], ".2f"),
-        Column(
-            "largest difference\n% of the range",
-            [found.largest for found in points],
-            ".2f",
-            TO_PERCENT,
-        ),
-        Column("rms\n% of the range", [found.rms for found in points], ".2f", TO_PERCENT),
+        Column("until", [found.until for found in points], *_TIME),
+        Column("largest difference", [found.largest for found in points], ".2f", "% of the range"),
+        Column("rms", [found.rms for found in points], ".2f", "% of the range"),
     )
+    peaks = _peak_columns({name: _differences(level.peaks) for name, level in levels.items()})
     distributions = (
         models,
-        Column("from\ns", [found.since for found in spreads], ".2f"),
-        Column("range\nmm", [_both(found.range) for found in spreads]),
-        Column("mean\nmm", [_both(found.mean) for found in spreads]),
-        Column("standard deviation\nmm", [_both(found.deviation) for found in spreads]),
+        Column("from", [found.since for found in spreads], *_TIME),
+        Column("range", [_both(found.range) for found in spreads], unit="mm"),
+        Column("mean", [_both(found.mean) for found in spreads], unit="mm"),
+        Column("standard deviation", [_both(found.deviation) for found in spreads], unit="mm"),
         Column("Kolmogorov–Smirnov\ndistance", [found.distance for found in spreads], ".3f"),
     )
+    later = (
+        f"Each model's slow peak less that of {reference}, ± both spreads together. * beyond them "
+        "in time or in height."
+    )
+    every = f"All values of all members after the horizons: the model's / that of {reference}."
+    of = f"against {reference}"
     return [
+        Table(f"Tip {of}, from moment to moment", pointwise, [DECIDES["pointwise"]], "pointwise"),
+        Table(f"Slow peaks {of}", peaks, [later, DECIDES["peaks"]], "peaks-against"),
         Table(
-            f"Tip against {reference}, from moment to moment",
-            pointwise,
-            (DECIDES["pointwise"],),
-            "pointwise",
-        ),
-        Table(
-            f"Slow peaks against {reference}",
-            _peak_columns({name: _differences(level.peaks) for name, level in levels.items()}),
-            (
-                f"Each model's slow peak less that of {reference}, ± both spreads together. * "
-                "beyond them in time or in height.",
-                DECIDES["peaks"],
-            ),
-            "peaks-against",
-        ),
-        Table(
-            f"Distribution of the tip against {reference}",
+            f"Distribution of the tip {of}",
             distributions,
-            (
-                f"All values of all members after the horizons: the model's / that of {reference}.",
-                DECIDES["distributions"],
-            ),
+            [every, DECIDES["distributions"]],
             "distributions",
         ),
     ]
@@ -215,8 +194,8 @@ def _whole_table(reference: str, whole: Mapping[str, Whole]) -> Table:
         largest = [found.largest[i] for found in whole.values()]
         rms = [found.rms[i] for found in whole.values()]
         columns += [
-            Column(f"largest difference\nto {end:g} s, %", largest, ".2f", TO_PERCENT),
-            Column(f"rms\nto {end:g} s, %", rms, ".2f", TO_PERCENT),
+            Column(f"largest difference\nto {end:g} s", largest, ".2f", "%"),
+            Column(f"rms\nto {end:g} s", rms, ".2f", "%"),
         ]
     notes = (
         "Parts of the larger range of both within that time. What is well above the step error, "

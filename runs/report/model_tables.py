@@ -1,34 +1,44 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The models of a run as tables: what each found, its steps, its contact laws."""
+"""The models of a run as tables: results, steps, contact laws, calibrations, forces of walls."""
 
 from __future__ import annotations
 
+from itertools import groupby
+from typing import TYPE_CHECKING
+
 from dynamics.predictability.horizon import SHARES
-from geometry.typography import TO_KILO, TO_MICRO, TO_MILLI, TO_PERCENT
-from runs.case.build import contact_laws
+from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
+from runs.case.build import contact_laws, material_of
+from runs.case.schema import Case
 from runs.pipeline.results import Results
-from runs.pipeline.summary import FirstPeak, ModelSummary
-from runs.report.numerals import number
+from runs.pipeline.summary import CalibrationCard, FirstPeak, ModelSummary
+from runs.report.numerals import number, percent
 from runs.report.tables import Cell, Column, Table
+
+if TYPE_CHECKING:
+    from shell_model.stress.history import LargestPatch, StressSummary
 
 
 def model_tables(results: Results) -> list[Table]:
-    """What each model found, and how, where there is such a thing."""
+    """Return what each model found, and how, where there is such a thing."""
     found = (
         model_table(results),
         step_table(results),
         space_table(results),
         buckling_table(results),
         law_table(results),
+        *calibration_tables(results),
+        wall_table(results),
     )
     return [table for table in found if table is not None]
 
 
 def model_table(results: Results) -> Table:
-    """What each model found, in the case's order, and at the end those that failed."""
+    """Return what each model found, in the case's order, and at the end those that failed."""
     summary, duration = results.summary, results.case.time.duration
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
+    freedom = [str(model.degrees_of_freedom) for model in models]
     peaks = [_first_peak(model.first_peak["tip"], duration) for model in models]
     contacts = [model.first_contact for model in models]
     touching = 0.0 in contacts and not any(contacts)
@@ -36,19 +46,16 @@ def model_table(results: Results) -> Table:
     columns = (
         Column("model", [*summary.models, *(model.name for model in failed)]),
         Column("kind", [*(model.kind for model in models), *(model.kind for model in failed)]),
-        Column(
-            "degrees of freedom",
-            [*(str(model.degrees_of_freedom) for model in models), *("failed" for _ in failed)],
-        ),
+        Column("degrees of freedom", [*freedom, *("failed" for _ in failed)]),
         Column("modes", [str(model.modes) for model in models]),
-        Column("shortest step\nµs", [model.step for model in models], ".3g", TO_MICRO),
-        *([Column("first contact\ns", contacts, ".4f")] if not touching else []),
-        Column("first tip peak\ns", [time for time, _ in peaks], ".3f"),
-        Column("\nmm", [height for _, height in peaks], ".1f", TO_MILLI),
+        Column("shortest step", [model.step for model in models], ".3g", "µs"),
+        *([Column("first contact", contacts, ".4f", "s")] if not touching else []),
+        Column("first tip peak", [time for time, _ in peaks], ".3f", "s"),
+        Column("", [height for _, height in peaks], ".1f", "mm"),
         *(horizon_column(models, share, duration) for share in shares),
-        Column("peak contact force\nkN", [_peak_force(model) for model in models], ".3g", TO_KILO),
+        Column("peak contact force", [_peak_force(model) for model in models], ".3g", "kN"),
         Column("energy residual\nof the work", [model.energy_residual for model in models], ".1g"),
-        Column("wall time\ns", [model.wall_time for model in models], ".1f"),
+        Column("wall time", [model.wall_time for model in models], ".1f", "s"),
     )
     notes = []
     if shares:
@@ -72,7 +79,7 @@ def _peak_force(model: ModelSummary) -> Cell:
 
 
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
-    """When the members of each ensemble are a share of the tip's range apart.
+    """Return when the members of each ensemble are a share of the tip's range apart.
 
     ``> 10`` where they are not within 10 s.
     """
@@ -83,17 +90,16 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
         time = model.ensemble.horizon(share)
         return f"> {duration:g}" if time is None else time
 
-    return Column(
-        f"horizon {TO_PERCENT * share:g} %\ns", [horizon(model) for model in models], ".2f"
-    )
+    title = f"horizon {TO_PERCENT * share:g} %"
+    return Column(title, [horizon(model) for model in models], ".2f", "s")
 
 
 def step_table(results: Results) -> Table:
-    """How many steps each model took, and how many its motion needs."""
+    """Return how many steps each model took, and how many its motion needs."""
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
-        Column("shortest step\nµs", [model.step for model in models], ".3g", TO_MICRO),
+        Column("shortest step", [model.step for model in models], ".3g", "µs"),
         Column("steps", [model.steps for model in models]),
         Column("openings and closings", [model.contact_changes for model in models]),
     ]
@@ -105,19 +111,19 @@ def step_table(results: Results) -> Table:
     within = next((found for found in tried if found), None)
     if within is not None:
         fewest = [found.fewest if found else None for found in tried]
-        columns.append(Column("enough for slow peaks\nsteps", fewest))
+        columns.append(Column("enough for slow peaks", fewest, unit="steps"))
         notes.append(
             f"Enough for slow peaks: the fewest steps tried that keep the first {within.peaks} "
-            f"of them within {TO_PERCENT * within.within:g} %, beyond the ensemble's spread."
+            f"of them within {percent(within.within)}, beyond the ensemble's spread."
         )
     errors = [model.step_error for model in models]
     if any(error is not None for error in errors):
-        columns.append(Column("step error\n% of the tip's range", errors, ".2g", TO_PERCENT))
+        columns.append(Column("step error", errors, ".2g", "% of the tip's range"))
     return Table("Steps", columns, notes, "steps")
 
 
 def law_table(results: Results) -> Table | None:
-    """The contact law of each joint in each model with play, and the first peak it leads to."""
+    """Return the contact law of each joint in each model, and the first peak it leads to."""
     found = [
         (model.name, joint, law)
         for model in results.ran
@@ -132,9 +138,9 @@ def law_table(results: Results) -> Table | None:
     columns = (
         Column("model", [name for name, _, _ in found]),
         Column("joint", [f"{joint.inner} in {joint.outer}" for _, joint, _ in found]),
-        Column("play\nmm", [joint.play for _, joint, _ in found], ".1f", TO_MILLI),
-        Column("law\nk in N/mⁿ", [str(law) for _, _, law in found]),
-        Column("first tip peak\nmm", peaks, ".1f", TO_MILLI),
+        Column("play", [joint.play for _, joint, _ in found], ".1f", "mm"),
+        Column("law", [str(law) for _, _, law in found], unit="k in N/mⁿ"),
+        Column("first tip peak", peaks, ".1f", "mm"),
     )
     notes = ["Force = k · penetrationⁿ, beyond the part of the play that is on its side."]
     if not all(joint.pad or joint.pads for _, joint, _ in found):
@@ -147,7 +153,7 @@ def law_table(results: Results) -> Table | None:
 
 
 def space_table(results: Results) -> Table | None:
-    """First peaks along both directions against the reference; None for a flat boom."""
+    """Return first peaks along both directions against the reference; None for a flat boom."""
     models, duration = results.summary.models, results.case.time.duration
     reference = results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:
@@ -158,34 +164,25 @@ def space_table(results: Results) -> Table | None:
         shown = [_first_peak(peak, duration) for peak in peaks]
         other = models[reference].first_peak[place].height
         columns += [
-            Column(f"{way}\ns", [time for time, _ in shown], ".3f"),
-            Column(f"{way}\nmm", [height for _, height in shown], ".1f", TO_MILLI),
-            Column(
-                f"{way}, off {reference}\n%",
-                [_off(p.height, other) for p in peaks],
-                ".2g",
-                TO_PERCENT,
-            ),
+            Column(way, [time for time, _ in shown], ".3f", "s"),
+            Column(way, [height for _, height in shown], ".1f", "mm"),
+            Column(f"{way}, off {reference}", [_off(p.height, other) for p in peaks], ".2g", "%"),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
 
 
 def buckling_table(results: Results) -> Table | None:
-    """How near axial forces are to those under which the boom buckles; None without any."""
+    """Return how near axial forces are to those under which the boom buckles; None without any."""
     models = results.summary.models
     factors = [model.critical_factor for model in models.values()]
+    tips = [model.static_tip for model in models.values()]
     if not any(factors):
         return None
     columns = (
         Column("model", list(models)),
         Column("buckling factor", factors, ".4g"),
-        Column("of the critical\n%", [f and 1.0 / f for f in factors], ".3g", TO_PERCENT),
-        Column(
-            "tip at rest, constant loads\nmm",
-            [model.static_tip for model in models.values()],
-            ".4g",
-            TO_MILLI,
-        ),
+        Column("of the critical", [f and 1.0 / f for f in factors], ".3g", "%"),
+        Column("tip at rest, constant loads", tips, ".4g", "mm"),
     )
     notes = (
         "Buckling factor: by what the axial forces would have to grow for the boom to buckle, its "
@@ -201,3 +198,113 @@ def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
 
 def _off(height: float | None, other: float | None) -> float | None:
     return None if height is None or other is None else height / other - 1.0
+
+
+def wall_table(results: Results) -> Table | None:
+    """Return forces of the walls at the instant of the largest stress; None without shells."""
+    shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
+    walls = [
+        (name, section, wall, carried)
+        for name, stress in shells.items()
+        for section in stress.walls
+        for wall, carried in section.forces.items()
+    ]
+    if not walls:
+        return None
+    columns = (
+        Column("model", [name for name, *_ in walls]),
+        Column("segment", [section.segment for _, section, _, _ in walls]),
+        Column("at x", [f"{section.x:g}" for _, section, _, _ in walls], unit="m"),
+        Column("wall", [wall for _, _, wall, _ in walls]),
+        Column("axial force", [carried.axial for *_, carried in walls], ".2f", "kN"),
+        Column("shear force", [carried.shear for *_, carried in walls], ".2f", "kN"),
+        Column("moment", [carried.moment for *_, carried in walls], ".2f", "kN m"),
+    )
+    largest = [f"{name}: {_largest(results.case, stress)}" for name, stress in shells.items()]
+    means = (
+        "Means over the row of elements at x, at a mesh line of that towards the tip. Axial forces "
+        "pull; shear forces act on the part before the section, along each wall, upwards where it "
+        "is steep and else towards larger y; moments about the section's y-axis pull at the top."
+    )
+    title = "What the walls carry at the instant of the largest stress"
+    return Table(title, columns, (*largest, means), "walls")
+
+
+def _largest(case: Case, stress: StressSummary) -> str:
+    """What is judged, the mean over a patch, before what tells the instant alone."""
+    triangle = (
+        f"single triangle, beside a line of contact the more the finer the mesh: "
+        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_of_yield(case, stress)} at "
+        f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
+        f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
+    )
+    if (patch := stress.patch) is None:
+        return f"largest von Mises stress of a {triangle}"
+    return (
+        "largest von Mises stress over a patch of half a wall, which settles as the mesh refines: "
+        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_of_yield(case, patch)} near "
+        f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
+    )
+
+
+def _of_yield(case: Case, stress: StressSummary | LargestPatch) -> str:
+    """What part of the yield strength it is, where the case tells that."""
+    names = [segment.name for segment in case.segments]
+    strength = material_of(case, names.index(stress.segment)).yield_strength
+    if strength is None:
+        return ""
+    return f" ({percent(stress.von_mises / strength)} of the yield strength)"
+
+
+def calibration_tables(results: Results) -> list[Table]:
+    """Return segments and springs of calibrated beams; those of one shell share them."""
+    cards = {
+        name: model.calibration
+        for name, model in results.summary.models.items()
+        if model.calibration is not None
+    }
+    found: list[Table] = []
+    for count, (card, models) in enumerate(groupby(cards.items(), lambda one: one[1]), start=1):
+        names = ", ".join(name for name, _ in models)
+        found += [_segments(card, names, count), _springs(card, names, count)]
+    return found
+
+
+def _segments(card: CalibrationCard, names: str, count: int) -> Table:
+    rows = [
+        (beam, *plane)
+        for beam in card.segments
+        for plane in zip(
+            "zy", beam.bending, beam.bending_part, beam.shear, beam.shear_part, strict=False
+        )
+    ]
+    beams, along, bending, bending_part, shear, shear_part = zip(*rows, strict=True)
+    columns = [
+        Column("segment", [beam.segment for beam in beams]),
+        Column("bends along", along),
+        Column("E J", bending, ".4g", "MN m²"),
+        Column("of the section's", bending_part, ".2f", "%"),
+        Column("G A", shear, ".4g", "MN"),
+        Column("of the shear flow's", shear_part, ".1f", "%"),
+    ]
+    if any(beam.torsion is not None for beam in beams):
+        columns.append(Column("G J", [beam.torsion for beam in beams], ".4g", "MN m²"))
+    notes = (
+        "What makes a shear-flexible beam give way as the shell does, far from what presses it.",
+    )
+    title = f"The segments as beams, for {names}"
+    return Table(title, columns, notes, f"calibrated-segments-{count}")
+
+
+def _springs(card: CalibrationCard, names: str, count: int) -> Table:
+    columns = (
+        Column("station", [f"{spring.x:g}" for spring in card.springs], unit="m"),
+        Column("pressed wall of the outer segment", [spring.side for spring in card.springs]),
+        Column("spring", [spring.stiffness for spring in card.springs], ".4g", "MN/m"),
+    )
+    notes = (
+        "In another program put each between the beams in series with its gap: it is what both "
+        "walls give way there beyond the beams above.",
+    )
+    title = f"The springs of the stations, for {names}"
+    return Table(title, columns, notes, f"calibrated-springs-{count}")

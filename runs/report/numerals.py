@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, signed
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, signed
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -40,6 +40,11 @@ def amount(value: float, unit: str) -> str:
     """In the unit that is shown for one of the SI."""
     name, factor = SHOWN[unit]
     return f"{number(factor * value)} {name}".strip()
+
+
+def percent(part: float, digits: int = 3) -> str:
+    """Return a part in percent, with so many significant digits."""
+    return f"{number(TO_PERCENT * part, digits)} %"
 
 
 def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
-from runs.report.tables import TextTable
+from runs.report.tables import Table
 
 TEMPLATES = Path(__file__).parent / "templates"
 # A picture in a page is a third as large as on the disk, and looks the same; it has at most twice
@@ -38,7 +38,7 @@ class Addition:
 
     template: Path = TEMPLATES / "report.html"
     content: Mapping[str, Any] = field(default_factory=dict)
-    tables: Sequence[TextTable] = ()
+    tables: Sequence[Table] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 

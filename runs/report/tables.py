@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of text, for the terminal, for the report and as Markdown."""
+"""Tables, for the terminal, for the report, as Markdown and for programs."""
 
 from __future__ import annotations
 
@@ -9,46 +9,183 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table as Grid
 from rich.text import Text
 
+from geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
 from runs.folder.files import write_whole
 from runs.report.numerals import NONE, count, fixed, number, repeated
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # Letters that fit in a line of the report with its usual font, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
 
+# From SI units to those that headings name; others are SI units.
+_FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}
+_FACTORS |= dict.fromkeys(("kN", "kW", "kJ"), TO_KILO)
+_FACTORS |= dict.fromkeys(("MPa", "MN", "MN/m"), TO_MEGA)
+
+# Text, a number, repetitions of one, or none.
+Cell = str | float | list[float] | None
+# The same as JSON says it, which knows no number that is not finite.
+Plain = str | float | list[float | None] | None
+
 
 def wide_console() -> Console:
-    """Where to print tables: as wide as they are where nobody watches."""
+    """Return where to print tables: as wide as they are where nobody watches."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDE)
 
 
 @dataclass(frozen=True, slots=True)
-class TextTable:
-    """A table whose cells are text already.
+class Column:
+    """Numbers or text under a heading.
+
+    Args:
+        title: the heading.
+        cells: one for each row, numbers in SI units; None for none, a text for what is no number;
+            repetitions are shown with the digits that they have in common, whatever the form.
+        form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
+        unit: in which the numbers are shown, "kN m" or "% of the range" say; empty where they stay
+            as they are.
+    """
+
+    title: str
+    cells: Sequence[Cell]
+    form: str = ""
+    unit: str = ""
+
+    @property
+    def heading(self) -> str:
+        """The title, and in its second line the unit."""
+        if not self.unit or not self.title:
+            return self.title or self.unit
+        between = ", " if "\n" in self.title else "\n"
+        return f"{self.title}{between}{self.unit}"
+
+    @property
+    def factor(self) -> float:
+        """From SI units to the unit of the heading."""
+        return _FACTORS.get(self.unit.partition(" ")[0], 1.0)
+
+    @property
+    def text(self) -> list[str]:
+        """The cells as they are shown."""
+        return [self._shown(cell) for cell in self.cells]
+
+    @property
+    def plain(self) -> list[Plain]:
+        """The cells in the unit of the heading."""
+        return [self._plain(cell) for cell in self.cells]
+
+    def _shown(self, cell: Cell) -> str:
+        if isinstance(cell, str):
+            return cell
+        if cell is None:
+            return NONE
+        if isinstance(cell, list):
+            return repeated([self.factor * one for one in cell])
+        if not self.form:
+            return count(cell)
+        digits = int(self.form[1:-1])
+        if self.form.endswith("f"):
+            return fixed(cell, digits, self.factor)
+        return number(self.factor * cell, digits)
+
+    def _plain(self, cell: Cell) -> Plain:
+        if isinstance(cell, list):
+            return [self._number(one) for one in cell]
+        return cell if isinstance(cell, str) or cell is None else self._number(cell)
+
+    def _number(self, value: float) -> float | None:
+        """Whole numbers stay so where the unit is their own."""
+        if isinstance(value, int) and self.factor == 1.0:
+            return value
+        return float(self.factor * value) if math.isfinite(value) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table for people and for programs.
 
     Args:
         title: above it.
-        headings: of the columns; the first column is flush left, the others are right.
-        rows: as long as the headings each; a cell may have several lines.
+        columns: the first is flush left, the others are right; one that ends before the others has
+            none of its cells then. A cell may have several lines.
         notes: sentences below it.
         name: of its place in the report.
         strong: texts of cells that stand out.
     """
 
     title: str
-    headings: Sequence[str]
-    rows: Sequence[Sequence[str]]
+    columns: Sequence[Column]
     notes: Sequence[str] = ()
     name: str = ""
     strong: Sequence[str] = ()
+
+    @classmethod
+    def of_rows(
+        cls,
+        name: str,
+        title: str,
+        columns: Mapping[str, str] | Sequence[str],
+        rows: Sequence[Sequence[Cell]],
+        notes: Sequence[str] = (),
+    ) -> Table:
+        """Return the table of rows whose numbers are in the units of the headings.
+
+        Args:
+            name, title, notes: of the table.
+            columns: heading → form of its numbers; headings alone where all cells are text.
+            rows: a cell for each heading.
+        """
+        forms = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
+        parts = [
+            Column(heading, [row[i] for row in rows], form)
+            for i, (heading, form) in enumerate(forms.items())
+        ]
+        return cls(title, parts, notes, name)
+
+    @property
+    def headings(self) -> tuple[str, ...]:
+        """Of the columns, with the unit in the second line."""
+        return tuple(column.heading for column in self.columns)
+
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """The cells as they are shown, row by row."""
+        return list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """The cells by their headings, numbers in their units; None for none.
+
+        Raises:
+            ValueError: a heading is that of two columns.
+        """
+        import pandas as pd
+
+        headings = [*self.headings]
+        if len({*headings}) < len(headings):
+            raise ValueError(f"{self.title}: two columns have the same heading, of {headings}")
+        cells = [pd.Series(column.plain, dtype=object) for column in self.columns]
+        frame = pd.concat(cells, axis=1, keys=headings)
+        return frame.where(frame.notna(), None)
+
+    @property
+    def data(self) -> list[dict[str, Plain]]:
+        """The rows of :attr:`frame`, as JSON can say them."""
+        return [
+            {str(heading): cell for heading, cell in row.items()}
+            for row in self.frame.to_dict("records")
+        ]
 
     @property
     def anchor(self) -> str:
@@ -69,24 +206,24 @@ class TextTable:
     def _letters(self) -> int:
         """In a line; headings are broken between words, cells where they say so."""
         letters = [
-            max(len(part) for part in ("", *heading.split(), *"\n".join(column).split("\n")))
-            for heading, *column in zip(self.headings, *self.rows, strict=True)
+            max(len(part) for part in ("", *of.heading.split(), *"\n".join(of.text).split("\n")))
+            for of in self.columns
         ]
         return sum(letters, start=2 * len(letters))
 
     def show(self, console: Console) -> None:
         """Print it."""
-        table = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD)
+        grid = Grid(title=Text(self.title), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
         for i, heading in enumerate(self.headings):
-            table.add_column(heading, justify="right" if i else "left")
+            grid.add_column(heading, justify="right" if i else "left", no_wrap=i == 0)
         for row in self.rows:
-            table.add_row(*map(Text, row))
-        console.print(table)
+            grid.add_row(*map(Text, row))
+        console.print(grid)
         for note in self.notes:
             console.print(Text(note))
 
     def markdown(self) -> str:
-        """A heading, the table, the notes."""
+        """Return a heading, the table, the notes."""
         ruler = [":--", *["--:"] * (len(self.headings) - 1)]
         lines = [f"| {' | '.join(row)} |" for row in (self.headings, ruler, *self.rows)]
         lines = [line.replace("\n", " ") for line in lines]
@@ -95,127 +232,13 @@ class TextTable:
         )
 
 
-# Text, a number, repetitions of one, or none.
-Cell = str | float | list[float] | None
-# The same as JSON says it, which knows no number that is not finite.
-Plain = str | float | list[float | None] | None
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """Numbers under a heading.
-
-    Args:
-        heading: with the unit in its second line.
-        cells: one for each row; None for none, a text for what is no number; repetitions are shown
-            with the digits that they have in common, whatever the form.
-        form: ".2f" with two decimals, ".3g" with three significant digits, else a count.
-        factor: from the unit of the numbers to that of the heading.
-    """
-
-    heading: str
-    cells: Sequence[Cell]
-    form: str = ""
-    factor: float = 1.0
-
-    @property
-    def text(self) -> list[str]:
-        """The cells as they are shown."""
-        return [self._shown(cell) for cell in self.cells]
-
-    def _shown(self, cell: Cell) -> str:
-        if isinstance(cell, str):
-            return cell
-        if cell is None:
-            return NONE
-        if isinstance(cell, list):
-            return repeated([self.factor * one for one in cell])
-        if not self.form:
-            return count(cell)
-        digits = int(self.form[1:-1])
-        if self.form.endswith("f"):
-            return fixed(cell, digits, self.factor)
-        return number(self.factor * cell, digits)
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Numbers for people and for programs; as :class:`TextTable`, but for the columns.
-
-    A column may end before the others: there are none of its numbers then.
-    """
-
-    title: str
-    columns: Sequence[Column]
-    notes: Sequence[str] = ()
-    name: str = ""
-    strong: Sequence[str] = ()
-
-    @classmethod
-    def of_rows(
-        cls,
-        name: str,
-        title: str,
-        columns: Mapping[str, str],
-        rows: Sequence[Sequence[Cell]],
-        notes: Sequence[str] = (),
-    ) -> Table:
-        """From rows whose numbers are in the units of the headings.
-
-        Args:
-            name, title, notes: of the table.
-            columns: heading → form of its numbers.
-            rows: a cell for each heading.
-        """
-        parts = [
-            Column(heading, [row[i] for row in rows], form)
-            for i, (heading, form) in enumerate(columns.items())
-        ]
-        return cls(title, parts, notes, name)
-
-    @property
-    def data(self) -> list[dict[str, Plain]]:
-        """Each row by its headings, in their units, as JSON can say it.
-
-        Raises:
-            ValueError: a heading is that of two columns.
-        """
-        columns = [[_plain(cell, of.factor) for cell in of.cells] for of in self.columns]
-        headings = [of.heading for of in self.columns]
-        if len({*headings}) < len(headings):
-            raise ValueError(f"{self.title}: two columns have the same heading, of {headings}")
-        return [dict(zip(headings, row, strict=True)) for row in zip_longest(*columns)]
-
-    @property
-    def text(self) -> TextTable:
-        """As it is shown."""
-        rows = list(zip_longest(*(column.text for column in self.columns), fillvalue=NONE))
-        headings = tuple(column.heading for column in self.columns)
-        return TextTable(self.title, headings, rows, self.notes, self.name, self.strong)
-
-
-def _plain(cell: Cell, factor: float) -> Plain:
-    """A cell in the unit of its heading; whole numbers stay so where that is their own."""
-    if isinstance(cell, str) or cell is None:
-        return cell
-    if isinstance(cell, list):
-        return [_number(one, factor) for one in cell]
-    return _number(cell, factor)
-
-
-def _number(value: float, factor: float) -> float | None:
-    if isinstance(value, int) and factor == 1.0:
-        return value
-    return float(factor * value) if math.isfinite(value) else None
-
-
 def as_json(data: Any) -> str:
     """Return data as the text of a JSON file."""
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def write(
-    folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[TextTable]
+    folder: Path, name: str, title: str, data: Mapping[str, Any], tables: Sequence[Table]
 ) -> None:
     """Write NAME.json and NAME.md, each whole or not at all.
 

@@ -17,7 +17,7 @@ from geometry.arrays import Array
 from runs.folder.files import alone, changed_folder, whole
 from runs.pipeline.results import CONVENTIONS
 from runs.report.numerals import NONE, number
-from runs.report.tables import TextTable
+from runs.report.tables import Table
 from runs.sweep.distance_figures import draw_distances
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
@@ -110,7 +110,8 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
         residual.title,
         "farthest at",
     ]
-    TextTable(
+    Table.of_rows(
+        "sweep",
         f"Sweep over {', '.join(keys)}: {data['failed'].size // data['model'].size} points",
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
@@ -127,8 +128,9 @@ def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
         (name, *(_range(data[one.name].sel(model=name).round(DIGITS), one) for one in DISTANCES))
         for name in others
     ]
-    headings = (f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES)
-    TextTable(f"Distances from {reference}", ("model", *headings), rows).show(console)
+    headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
+    title = f"Distances from {reference}"
+    Table.of_rows("distances", title, ("model", *headings), rows).show(console)
     for line in (_until_when(data[UNTIL]), _by_steps(data, reference)):
         if line:
             console.print(line, markup=False, highlight=False)

@@ -111,4 +111,4 @@ def _cost(case: Case, name: str) -> Cost:
 
 if __name__ == "__main__":
     show_notices()
-    drawing(sys.argv[1:] or MODELS).text.show(wide_console())
+    drawing(sys.argv[1:] or MODELS).show(wide_console())

@@ -67,7 +67,7 @@ def leave(
     """
     shown = []
     for table in tables:
-        table.text.show(console)
+        table.show(console)
         shown.append(table)
     everything = {**data, **{table.name: table.data for table in shown}}
-    write(folder, name, title, everything, [table.text for table in shown])
+    write(folder, name, title, everything, [table for table in shown])

@@ -43,7 +43,7 @@ def results() -> Results:
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
     """Each row by its first cell."""
     assert table is not None
-    return {row[0]: dict(zip(table.text.headings, row, strict=True)) for row in table.text.rows}
+    return {row[0]: dict(zip(table.headings, row, strict=True)) for row in table.rows}
 
 
 def test_the_first_look_says_what_the_answers_do(results: Results) -> None:
@@ -103,7 +103,7 @@ def test_every_table_of_a_rest_says_under_which_loads(results: Results) -> None:
         "At rest under the largest loads",
         "At rest at t = 0",
     ]
-    moments = [row[2] for row in tables[-1].text.rows]
+    moments = [row[2] for row in tables[-1].rows]
     assert moments == ["5", "0"]
 
 
@@ -130,13 +130,13 @@ def test_what_nears_the_yield_strength_stands_out(results: Results) -> None:
     assert found[wall][PLAYED] == "330, 93 %\nouter, 10.0 m"
     assert found[wall][TIED] == "–"
     assert near is not None
-    assert list(near.text.strong) == [found[wall][PLAYED]]
+    assert list(near.strong) == [found[wall][PLAYED]]
     beyond = first_table(with_stress(results, 340e6))
     found = cells(beyond)
     assert found[fibre][PLAYED] == "340, 95.8 %\nouter, 2.0 m"
     assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, 10.0 m"
     assert beyond is not None
-    assert set(beyond.text.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
+    assert set(beyond.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
 
 
 def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
@@ -182,7 +182,7 @@ def test_a_life_that_is_used_up_is_not_strong_enough(results: Results) -> None:
     )
     table = first_table(told)
     assert table is not None
-    assert list(table.text.strong) == ["3.2"]
+    assert list(table.strong) == ["3.2"]
     assert cells(table)["Damage of its life"][PLAYED] == "3.2"
 
 
@@ -219,7 +219,7 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     assert trust_line(both) == f"{line}kantorovich-4 −10 %."
     table = first_table(both)
     assert table is not None
-    assert list(table.text.headings) == ["", PLAYED, "kantorovich-4", TIED]
+    assert list(table.headings) == ["", PLAYED, "kantorovich-4", TIED]
 
 
 def test_every_answer_has_its_table(results: Results) -> None:
@@ -235,7 +235,7 @@ def test_every_answer_has_its_table(results: Results) -> None:
     assert float(modes[f"{first.way} 1"][f"{TIED}\nHz"]) == pytest.approx(first.frequency, rel=1e-3)
     table = stress_table(results)
     assert table is not None
-    assert not any("wall" in heading for heading in table.text.headings)
+    assert not any("wall" in heading for heading in table.headings)
 
 
 def test_a_folder_without_answers_has_no_tables(results: Results) -> None:

@@ -135,7 +135,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     assert ["mast", "40", f"{0.04 / MAST.area:.4g}"] in words
     assert f"{factor:.4g}" in shown.getvalue()
     assert f"{100.0 / factor:.3g} %" in shown.getvalue()
-    assert table.text.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")
+    assert table.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")
     plain = case_file.load(str(written(tmp_path, TIED)))
     assert buckling_table(run_case(plain)) is None
 

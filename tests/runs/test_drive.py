@@ -27,10 +27,9 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.report import theme
-from runs.report.answer_tables import rest_tables
+from runs.report.answer_tables import drive_table, rest_tables, swing_table
 from runs.report.boom_drawing import boom_sheet
 from runs.report.drawn_axis import of_rests
-from runs.report.drive_tables import drive_table, swing_table
 from runs.report.figure_context import Figure
 from runs.report.figures import draw
 from runs.report.first_look import first_table
@@ -267,7 +266,7 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
     """Reference: analytic, means and sums of what trajectories hold."""
     table = drive_table(results)
     assert table is not None
-    cells = {column.heading: column.cells for column in table.columns}
+    cells = {column.heading: [*column.cells] for column in table.columns}
     force, power = data["drive_friction"].values, data["drive_power"].values
     assert cells["model"] == ["kantorovich-5"]
     assert cells["drive of"] == ["inner"]

@@ -271,8 +271,8 @@ def test_what_is_pressed_from_the_start_has_no_first_contact(
     (figure,) = draw_some(first_contacts, still, tmp_path)
     assert "impacts" not in figure.caption
     assert "impacts" in draw_some(first_contacts, results, tmp_path)[0].caption
-    assert "first contact\ns" not in model_table(still).text.headings
-    assert "first contact\ns" in model_table(results).text.headings
+    assert "first contact\ns" not in model_table(still).headings
+    assert "first contact\ns" in model_table(results).headings
 
 
 def test_without_a_peak_there_is_no_close_up(results: Results, tmp_path: Path) -> None:

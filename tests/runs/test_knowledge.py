@@ -79,12 +79,12 @@ MEASURED = {
 def test_nothing_is_known_of_a_run_without_ensembles() -> None:
     assert known_tables(results()) == []
     assert compared_tables(results()) == []
-    assert not any("horizon" in heading for heading in model_table(results()).text.headings)
+    assert not any("horizon" in heading for heading in model_table(results()).headings)
 
 
 def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
     found = results(ensemble=ENSEMBLE)
-    horizons, peaks = (table.text for table in known_tables(found))
+    horizons, peaks = known_tables(found)
     assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "2", "1.044 ± 0.021")]
     assert "32 members, loads changed by up to 1 × 10⁻⁹" in horizons.notes[0]
     assert peaks.headings == ("peak", "kantorovich-4")
@@ -92,14 +92,14 @@ def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
         ("1", "0.547 ± 0.001 s\n152.20 ± 0.19 mm"),
         ("2", "1.591 ± 0.022 s\n146.91 ± 6.80 mm"),
     ]
-    table = model_table(found).text
+    table = model_table(found)
     at = table.headings.index("horizon 1 %\ns")
     assert [row[at : at + 2] for row in table.rows] == [("0.80", "> 10"), ("–", "–"), ("–", "–")]
 
 
 def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
     (horizons,) = known_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
-    assert horizons.text.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
 
 
 def test_peaks_that_no_model_has_make_no_table() -> None:
@@ -120,7 +120,6 @@ def test_peaks_that_no_model_has_make_no_table() -> None:
 
 def test_growth_says_what_limits() -> None:
     _, growth, _ = known_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
-    growth = growth.text
     assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
     assert growth.rows == [
         ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),
@@ -135,7 +134,7 @@ def test_each_level_says_what_it_decides() -> None:
     for table, level in zip(tables, (Pointwise, PeakDifferences, Distributions), strict=True):
         assert level.decides in table.notes
         assert "against shell" in table.title
-    pointwise, peaks, distributions = (table.text.rows for table in tables)
+    pointwise, peaks, distributions = (table.rows for table in tables)
     assert pointwise == [("kantorovich-4", "0.80", "18.29", "7.93")]
     assert peaks == [
         ("1", "−26 ± 1 ms\n−15.42 ± 0.23 mm *"),
@@ -149,7 +148,6 @@ def test_each_level_says_what_it_decides() -> None:
 def test_a_whole_run_is_compared_with_friction() -> None:
     whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
     (table,) = compared_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
-    table = table.text
     assert "above the step error, in the table of steps" in " ".join(table.notes)
     assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
     assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
@@ -160,9 +158,9 @@ def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
     steps, changes = (
         f"2{part}".replace(" ", "\N{NO-BREAK SPACE}") for part in (" 380 952", " 020")
     )
-    assert plain.text.rows[0] == ("kantorovich-4", "4.2", steps, changes)
+    assert plain.rows[0] == ("kantorovich-4", "4.2", steps, changes)
     more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123))
-    assert [row[-2:] for row in more.text.rows] == [
+    assert [row[-2:] for row in more.rows] == [
         ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
     ]  # fmt: skip
     assert "the first 3 of them within 1 %" in " ".join(more.notes)
@@ -171,7 +169,7 @@ def test_steps_are_counted_and_what_they_are_worth_is_said() -> None:
 def test_contact_laws_are_those_of_the_models() -> None:
     table = law_table(results())
     assert table is not None
-    assert table.text.rows == [
+    assert table.rows == [
         (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
     ]
     free = results()

@@ -23,9 +23,8 @@ from runs.pipeline.means import Means
 from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
-from runs.report.output import write, write_report
+from runs.report.output import write, write_csv, write_report
 from runs.report.pages import Addition
-from runs.report.trajectory_csv import write_csv
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 

@@ -112,7 +112,7 @@ def test_pressure_is_told_beside_what_pads_bear(tmp_path: Path) -> None:
     assert table is not None
     peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
     assert peaks.min() > 0.0
-    assert [row[0:4] for row in table.text.rows] == [
+    assert [row[0:4] for row in table.rows] == [
         ("beam", "inner in outer", "9", "below"), ("beam", "inner in outer", "10", "above"),
     ]  # fmt: skip
     told = {column.heading: column.cells for column in table.columns}
@@ -127,7 +127,7 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     found = results(tmp_path, PAD.replace("2e7", "1e3"))
     table = first_table(found)
     assert table is not None
-    told = {row[0]: row[1] for row in table.text.rows}
+    told = {row[0]: row[1] for row in table.rows}
     pads = pad_table(found)
     assert pads is not None
     columns = {column.heading: column for column in pads.columns}
@@ -139,7 +139,7 @@ def test_the_first_look_has_the_pad_that_presses_most(tmp_path: Path) -> None:
     where = columns["at\nm"].cells[most]
     face = {"above": "top", "below": "bottom"}[str(columns["side"].cells[most])]
     assert lines[2:] == ["beyond allowable", f"inner {face}, {where} m"]
-    assert told["Pad that presses most"] in table.text.strong
+    assert told["Pad that presses most"] in table.strong
     assert not any(asked.startswith("Station") for asked in told)
 
 

@@ -15,7 +15,7 @@ from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
 from runs.pipeline.answers import Answers, ModelAnswers, Swing
 from runs.pipeline.results import Results
-from runs.report.printed import print_models
+from runs.report.document import print_models
 from tests.runs.summaries import model_summary, summary_of
 
 

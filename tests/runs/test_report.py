@@ -27,11 +27,10 @@ from runs.paper.verdicts import Verdict, addition, print_verdicts
 from runs.pipeline.model_quality import cautions, stress_cautions
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Snapshots, Summary
-from runs.report.document import render
+from runs.report.document import print_models, render
 from runs.report.figure_context import Figure
 from runs.report.pages import Addition
-from runs.report.printed import print_models
-from runs.report.tables import TextTable
+from runs.report.tables import Table
 from tests.runs.summaries import changed, model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -77,7 +76,7 @@ def report(
     results: Results,
     figures: list[Figure],
     verdicts: list[Verdict] | None = None,
-    tables: Sequence[TextTable] = (),
+    tables: Sequence[Table] = (),
     snapshots: Sequence[Figure] = (),
 ) -> str:
     found = judge(results) if verdicts is None else verdicts
@@ -200,7 +199,7 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
 
 
 def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
-    table = TextTable("A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",), "readings")
+    table = Table.of_rows("readings", "A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",))
     page = Page(report(results, figures, tables=[table]))
     assert "A <survey>" in page.text
     assert {"data-name": "S1", "class": "no"} in page.all("td")

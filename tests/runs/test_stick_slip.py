@@ -26,9 +26,8 @@ from runs.pipeline.inferred import print_inferred
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
-from runs.report.answer_tables import answer_tables
+from runs.report.answer_tables import answer_tables, stick_slip_table
 from runs.report.drive_figures import drives
-from runs.report.drive_tables import stick_slip_table
 from runs.report.figure_context import Pen
 from runs.sweep.quantities import measure
 

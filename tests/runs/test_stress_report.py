@@ -17,8 +17,8 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Pen
+from runs.report.model_tables import wall_table
 from runs.report.stress_figures import stress_history
-from runs.report.stress_tables import wall_tables
 from tests.runs.summaries import model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"
@@ -73,13 +73,14 @@ def test_the_figure_says_how_large_and_what_to_trust(tmp_path: Path) -> None:
 
 
 def test_the_table_says_what_each_wall_carries() -> None:
-    (table,) = wall_tables(results(STRESS))
-    assert table.text.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
+    table = wall_table(results(STRESS))
+    assert table is not None
+    assert table.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
     assert "91.6 MPa at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
 
 
 def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
-    assert wall_tables(results(None)) == []
+    assert wall_table(results(None)) is None
     assert stress_history(Pen(results(None), tmp_path)) == []
 
 
@@ -90,6 +91,6 @@ def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known()
     assert material is not None
     steel = material.model_copy(update={"yield_strength": 355e6})
     known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
-    said = [table.notes[0] for found in (plain, known) for table in wall_tables(found)]
+    said = [table.notes[0] for found in (plain, known) if (table := wall_table(found))]
     assert "91.6 MPa at x" in said[0]
     assert "91.6 MPa (25.8 % of the yield strength) at x" in said[1]

@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from runs.report.tables import ROOMY, Column, Table, TextTable
+from runs.report.tables import ROOMY, Column, Table
 
-TABLE = TextTable(
-    "Peaks", ("model", "first\nmm"), [("beam", "1 s\n2 mm"), ("[b]", "–")], ("A note.",), "peaks"
-)
+ROWS = [("beam", "1 s\n2 mm"), ("[b]", "–")]
+TABLE = Table.of_rows("peaks", "Peaks", ("model", "first\nmm"), ROWS, ("A note.",))
 
 
 def test_markdown_has_one_line_a_row() -> None:
@@ -40,21 +39,21 @@ def test_a_table_that_needs_smaller_letters_is_known(letters: int, crowded: bool
     """Reference: two columns, the longest line of each and two letters between them."""
     first, second = letters // 2, letters - letters // 2
     row = ("x" * first, "\n".join(["y", "y" * second]))
-    assert TextTable("", ("a", "b"), [("x", "y"), row]).crowded is crowded
+    assert Table.of_rows("", "", ("a", "b"), [("x", "y"), row]).crowded is crowded
 
 
 def test_so_is_one_with_longer_words_above_its_columns() -> None:
     heading = f"{'x' * (ROOMY - 5)} {'y' * (ROOMY - 5)}"
-    assert not TextTable("", ("a", heading), [("x", "y")]).crowded
-    assert TextTable("", ("a", f"x{heading}"), [("x", "y")]).crowded
+    assert not Table.of_rows("", "", ("a", heading), [("x", "y")]).crowded
+    assert Table.of_rows("", "", ("a", f"x{heading}"), [("x", "y")]).crowded
 
 
 def test_rows_are_in_the_units_of_their_headings_as_json_says_them() -> None:
     columns = (
         Column("model", ["beam", "shell"]),
         Column("steps", [7, np.int64(8)]),
-        Column("wall\nms", [[0.5, math.inf], 0.25], ".1f", 1.0e3),
-        Column("peak\nmm", [2, math.nan], ".1f", 1.0e3),
+        Column("wall", [[0.5, math.inf], 0.25], ".1f", "ms"),
+        Column("peak", [2, math.nan], ".1f", "mm"),
         Column("shorter", [None]),
     )
     data = Table("Found", columns).data
@@ -67,12 +66,12 @@ def test_rows_are_in_the_units_of_their_headings_as_json_says_them() -> None:
 
 def test_repetitions_are_shown_in_the_unit_of_their_heading() -> None:
     """Reference: half the range, 10 ms, leaves two digits of the median."""
-    assert Column("wall\nms", [[0.41, 0.42, 0.43]], ".1f", 1.0e3).text == ["420"]
+    assert Column("wall", [[0.41, 0.42, 0.43]], ".1f", "ms").text == ["420"]
 
 
 def test_data_do_not_lose_a_column_to_one_of_the_same_heading() -> None:
     table = Table("Peaks", (Column("mm", [1.0]), Column("mm", [2.0])))
-    assert table.text.rows == [("1", "2")]
+    assert table.rows == [("1", "2")]
     message = re.escape("Peaks: two columns have the same heading, of ['mm', 'mm']")
     with pytest.raises(ValueError, match=f"^{message}$"):
         assert table.data

@@ -92,7 +92,7 @@ def test_the_solid_stands_by_itself() -> None:
 
 def test_tables_and_proofs_have_every_quantity() -> None:
     found = [comparison(0.005, 0.004), comparison(0.01, -0.02)]
-    errors = error_table(found).text
+    errors = error_table(found)
     assert [row[0] for row in errors.rows] == [one.what for one in EVERY]
     assert errors.rows[0][1:3] == ("0.40", "−2.00")
     assert len(refinements(found).data) == 4 * len(EVERY)

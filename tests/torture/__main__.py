@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from runs.report.tables import TextTable
+from runs.report.tables import Table
 from tests.torture import flipped_bits, full_disk, kills, shared_cache
 
 CAMPAIGNS = {
@@ -30,7 +30,7 @@ def main(names: Sequence[str]) -> None:
                 found.append((name, str(tries), str(breaches), what))
                 print(f"{name}: {breaches} of {tries}", file=sys.stderr)
     headings = "what was done", "tries", "breaches", "what was to be"
-    TextTable("Torture", headings, found).show(Console())
+    Table.of_rows("torture", "Torture", headings, found).show(Console())
     sys.exit(any(breaches != "0" for _, _, breaches, _ in found))
 
 
