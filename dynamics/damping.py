@@ -37,7 +37,7 @@ _ROUND_OFF = 1.0e-9
 
 
 def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes) with the joints pressed.
+    """Return ω (num_shapes,) in rad/s, rising, and shapes (num_modes, num_shapes), joints pressed.
 
     Rows that press at rest have the stiffness that they have there. Where none does at a station
     between segments, all of it are tied.
@@ -61,7 +61,7 @@ def pressed_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, 
 
 
 def _stiffness_at_rest(system: GapSystem, rest: Array | None) -> Array:
-    """(num_rows,) F'(y) of each row in N/m at rest; 0 where none is."""
+    """Return F'(y) (num_rows,) in N/m at rest; 0 without a rest position."""
     try:
         rest = equilibrium(system, system.load) if rest is None else rest
     except NumericsError:
@@ -88,7 +88,7 @@ def add_damping(
 
 
 def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
-    """The system with ζ = ``ratio`` in the first modes of the pressed boom, beside its own damping.
+    """Return the system with ζ = ``ratio`` added in the first modes of the pressed boom.
 
     These are ``DAMPED_MODES``, or as many as its segments can bend; pressed as at ``rest``, see
     :func:`pressed_modes`. Nothing damps rigid segments that no contact presses.
@@ -116,7 +116,7 @@ def with_ratio(system: GapSystem, ratio: float, rest: Array | None = None) -> Ga
 
 
 def pressed_ratios(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Frequencies in Hz and damping ratios Φ·CΦ/2ω of the pressed boom, (num_shapes,) each.
+    """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) of the pressed boom.
 
     It is pressed as at ``rest``, see :func:`pressed_modes`.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The energy ledger of a motion: what there was, what came in, what went out, what is left."""
+"""The energy balance of a motion: stored energies, work and losses."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dynamics.failure import NumericsError
 # step leaves round-off, below 1e-9 of the work.
 ENERGY_BOUND = 1.0e-6
 
-# What there is, what the loads put in, what is lost.
+# Stored energies, work of the loads, losses.
 ENERGIES = (
     "kinetic_energy",
     "strain_energy",
@@ -23,16 +23,16 @@ ENERGIES = (
     "contact_loss",
 )
 
-# Where a boom is drawn out, what its drive put in as well.
-DRAWN_ENERGIES = (*ENERGIES, "drive_work")
+# With a drive, its work as well.
+DRIVEN_ENERGIES = (*ENERGIES, "drive_work")
 
 
 def energy_residual(energies: Array, least: float = 0.0) -> Array:
-    """(num_times,) energy that is not accounted for, as a part of the energy put in.
+    """Return the unaccounted energy (num_times,) as a part of the energy put in.
 
     Args:
         energies: (num_times, 7) or (num_times, 8), the columns of ``ENERGIES`` or
-            ``DRAWN_ENERGIES`` in J.
+            ``DRIVEN_ENERGIES`` in J.
         least: an energy in J below which that put in is round-off, as where friction holds all.
     """
     work = energies[:, 3]
@@ -47,7 +47,7 @@ def energy_residual(energies: Array, least: float = 0.0) -> Array:
 
 
 def check_energy(energies: Array, bound: float = ENERGY_BOUND, least: float = 0.0) -> None:
-    """Raise where the numbers of a motion cannot be trusted.
+    """Check the energies of a motion.
 
     Args:
         energies: as in :func:`energy_residual`.

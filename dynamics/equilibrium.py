@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Where a gap system comes to rest under a constant load.
+"""The static equilibrium of a gap system under a constant load.
 
 Strain and contact energies are convex, so that the rest position is the minimum of the potential
 energy; under axial forces, which let a segment tip within its play, it is a near one. Dry friction
@@ -23,7 +23,7 @@ BALANCE = 1.0e-6
 
 
 def equilibrium(system: GapSystem, load: Array) -> Array:
-    """(num_modes,) rest position a in √kg·m.
+    """Return the rest position a (num_modes,) in √kg·m.
 
     >>> depth = equilibrium(ball, ball.load)[0]
     >>> print(f"{1e6 * depth:.2f} µm")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads that change with time: a modal load times a history.
 
-A history is data: all that a step has to know of it is required, so that no step can miss it.
+A history states its kinks, peak and fastest frequency, so that no time step misses them.
 """
 
 from __future__ import annotations
@@ -35,15 +35,14 @@ class History(Protocol):
         """Value at each time in s, any shape."""
 
 
-# Among so many even times, and so many in each swing of the fastest, no history does much; more
-# than the most are not kept.
+# Evenly spaced times at least, times in a period of the fastest history, and times at most.
 _TIMES, _OF_SWING, _MOST_TIMES = 2001, 100, 1_000_001
-# Part of the duration between two times from which no slope can be told.
+# Part of the duration below which two times are the same.
 _SAME_TIME = 1.0e-9
 
 
 def followed(histories: Sequence[History], duration: float) -> Array:
-    """(num_times,) times in s from 0 to ``duration``, rising, between which all do next to nothing.
+    """Return rising times (num_times,) in s from 0 to ``duration`` that resolve all histories.
 
     >>> from dynamics.excitation import followed
     >>> 0.01 in followed([pt.Ramp(0.01)], 1000.0)

@@ -7,7 +7,7 @@
 in mass-normalised modal coordinates a. Segments that only contact couples stand side by
 side in a; a contact row B_j reads the relative displacement u − w of one place, a friction row
 D_l a relative displacement along which two places slide, a dashpot G_d a speed that it resists.
-Where a boom is drawn out, its travels say how rows change from what they are at t = 0. One that
+Where a boom telescopes, its travels say how rows change from what they are at t = 0. One that
 stands on its way may have K = diag(ω²) − S in place of ω², until it is taken ``in_own_modes``.
 """
 
@@ -84,8 +84,8 @@ class GapSystem:
         thrown: (num_modes,) modal impulse in N·s/√kg that is given then, for whoever starts a
             motion; zero unless given.
         grounded: positions in ``stations`` of those where the ground is touched, and no segment.
-        travels: what draws segments out while they move, and the rows that this changes; all rows
-            stay what they are unless given.
+        travels: the extensions of segments over time, and the rows that they change; none unless
+            given.
         softening: (num_modes, num_modes) what axial forces take from the stiffness besides, of a
             boom that stands as it is drawn out; none unless given. Before such a system moves,
             :meth:`in_own_modes`.
@@ -209,7 +209,7 @@ class GapSystem:
         return sum(changing, self.load.copy())
 
     def gathered(self) -> GapSystem:
-        """The same motion, with all that stays constant from t = 0 on in ``load``."""
+        """Return the same system with all constant loads in ``load``."""
         constant = [x.load * x.history(np.zeros(())) for x in self.excitations if x.constant]
         changing = [x for x in self.excitations if not x.constant]
         load = np.sum([self.load, *constant], axis=0)
@@ -217,7 +217,7 @@ class GapSystem:
         return replace(self, load=load, excitations=changing, travels=moving)
 
     def standing(self, time: float) -> GapSystem:
-        """The system that stands still as it is drawn out at a time in s."""
+        """Return the system at rest with the extension of a time in s."""
         stands = {kind: getattr(self, kind).copy() for kind in KINDS}
         softening = self.softening if self.softening.size else np.zeros((self.num_modes,) * 2)
         for travel in self.travels:
@@ -269,7 +269,7 @@ class GapSystem:
         )
 
     def static_response(self, force: Array) -> Array:
-        """(num_modes,) rest position under a modal force, for a system without rigid modes.
+        """Return the rest position (num_modes,) under a modal force, without rigid modes.
 
         Args:
             force: (num_modes,) in N/√kg.

@@ -42,15 +42,15 @@ class Line:
     paired: bool
 
     def read(self, states: Array) -> dict[Quantity, Array]:
-        """(..., num_places) of modal coordinates (..., num_modes)."""
+        """Return each quantity (..., num_places) at modal coordinates (..., num_modes)."""
         return {name: states @ row.T for name, row in self.rows.items()}
 
     def on(self, basis: Array) -> Line:
-        """The same for other coordinates, of which (num_modes, num_others) gives these."""
+        """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
         return replace(self, rows={name: row @ basis for name, row in self.rows.items()})
 
     def beside(self, name: Quantity, x: float, side: int) -> Array:
-        """(num_modes,) row of a quantity at x in m as it goes on from one side; 0 off the segment.
+        """Return the row (num_modes,) of a quantity beside x in m; 0 off the segment.
 
         Args:
             name: of the quantity.

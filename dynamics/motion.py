@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is to be computed: a system, where it starts from, for how long."""
+"""Motions: a system, its initial state and the duration."""
 
 from __future__ import annotations
 

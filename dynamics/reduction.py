@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Gap systems made of others: in fewer coordinates, with residual springs, without play.
+"""Gap systems derived from others: in fewer coordinates, with residual springs, without play.
 
 **Condensed.** Some modes stay as they are: a few as the slowest, the others as those whose inertia
 answers most to what pushes. Under a push b a mode gives way by b²/ω², its inertia by b²/ω⁴. Of the
@@ -48,8 +48,10 @@ _RIGID = 1.0e-6
 
 
 def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
-    """The system in ``most`` coordinates at most, unless what is pushed alone takes more, and
-    (num_modes, num_coordinates) what these are in its own.
+    """Return the system in ``most`` coordinates at most, and their shapes.
+
+    The shapes are (num_modes, num_coordinates). More coordinates remain where loads and rows alone
+    need them.
 
     Args:
         system: without modal damping, which a case adds later.
@@ -75,13 +77,13 @@ def condensed(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 def fewer(
     omega2: Array, pushes: Array, kept: Indices, rest: Indices, moments: int
 ) -> tuple[Array, Array]:
-    """(num_shapes,) ω² and (num_modes, num_shapes) of modes kept, and of what else is pushed.
+    """Return ω² (num_shapes,) and shapes (num_modes, num_shapes) of a reduced system.
 
     Args:
         omega2: (num_modes,) in rad²/s², positive of the rest.
-        pushes: (num_pushes, num_modes) that the rest answers by few of its motions.
+        pushes: (num_pushes, num_modes) forces to whose motions the rest is reduced.
         kept, rest: positions of modes.
-        moments: of what the rest answers, in statics, that are taken along.
+        moments: derivatives at rest that are matched.
     """
     elastic = omega2[rest, None]
     blocks = [_independent(pushes[:, rest].T)]
@@ -96,7 +98,7 @@ def fewer(
 
 
 def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:
-    """(num_modes,) positions: so many of the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
+    """Return positions (num_modes,): the slowest, then by b²/ω⁴ over a push's whole b²/ω²."""
     elastic = omega2 > 0.0
     gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
     whole = gives.sum(axis=1, keepdims=True)
@@ -107,14 +109,14 @@ def _telling_first(omega2: Array, pushes: Array, slowest: int) -> Indices:
 
 
 def _pushes(system: GapSystem) -> Array:
-    """(num_pushes, num_modes) all that can act."""
+    """Return all forces (num_pushes, num_modes) that can act."""
     constant = [system.load, system.released, system.thrown]
     excited = [excitation.load for excitation in system.excitations]
     return np.vstack([system.rows, system.friction_rows, system.dashpots, *constant, *excited])
 
 
 def _independent(block: Array) -> Array:
-    """(num_modes, rank) an orthonormal basis of what the columns span, each of the same size."""
+    """Return an orthonormal basis (num_modes, rank) of the columns, scaled to the same size."""
     sizes = np.linalg.norm(block, axis=0)
     kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
     basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
@@ -122,17 +124,17 @@ def _independent(block: Array) -> Array:
 
 
 def elastic_compliance(system: GapSystem) -> Array:
-    """(num_resisting, num_resisting) B Ω⁻² Bᵀ in m/N of rows, friction rows, then dashpots."""
+    """Return B Ω⁻² Bᵀ (num_resisting, num_resisting) in m/N of contacts, friction, dashpots."""
     elastic = system.omega2 > 0.0
     rows = _resisting(system)[:, elastic]
     return np.asarray(rows / system.omega2[elastic] @ rows.T)
 
 
 def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """(num_resisting, num_resisting) D in m/N, not made positive.
+    """Return D (num_resisting, num_resisting) in m/N, which may be indefinite.
 
     Raises:
-        ValueError: they do not touch, rub and drag in as many places.
+        ValueError: the numbers of rows differ.
     """
     if _resisting(coarse).shape[0] != _resisting(fine).shape[0]:
         raise ValueError("both models must touch, rub and drag in the same places")
@@ -140,9 +142,9 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 
 
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """The system with the positive part of a (num_resisting, num_resisting) residual as springs.
+    """Return the system with springs: the positive part of a residual compliance.
 
-    That is in m/N.
+    The residual is (num_resisting, num_resisting) in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))
     sizes[sizes == 0.0] = 1.0
@@ -155,7 +157,7 @@ def with_springs(system: GapSystem, residual: Array) -> GapSystem:
 
 
 def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
-    """The system with coordinates that contacts, friction and dashpots alone move.
+    """Return the system with coordinates added that only contacts, friction and dashpots move.
 
     Args:
         system: none of its rows moves.
@@ -182,8 +184,9 @@ def _resisting(system: GapSystem) -> Array:
 
 
 def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """The tied system, whose stations are those of the ground, and (num_modes, num_tied_modes) what
-    its coordinates are in those of the other.
+    """Return the tied system and its shapes (num_modes, num_tied_modes).
+
+    Its stations are those of the ground.
 
     >>> from dynamics.reduction import tied_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
@@ -195,7 +198,7 @@ def tied_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, A
 
     Args:
         system: with its contacts.
-        rests: (num_modes,) where it rests under the loads that count.
+        rests: (num_modes,) rest positions under the loads that count.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
     pressing = np.zeros(len(system.laws), dtype=bool)

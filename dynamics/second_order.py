@@ -18,7 +18,7 @@ _ROUND_OFF = 1.0e-9
 
 
 def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
-    """ω² (num_modes,), rising, and combinations (num_modes, num_modes) of the modes as they were.
+    """Return ω² (num_modes,), rising, and the new modes (num_modes, num_modes) in the old ones.
 
     ``omega2`` is without axial forces, rigid motions exactly 0; ``geometric`` is G.
     """
@@ -33,9 +33,10 @@ def softened(omega2: Array, geometric: Array) -> tuple[Array, Array]:
 
 
 def buckling_factor(stiffness: Array, geometric: Array) -> float:
-    """The factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
+    """Return the factor λ of the axial forces at which a boom first buckles, det(K − λ K_G) = 0.
 
-    Infinite where no factor makes it. The boom is held; coordinates (num_dofs,) are any.
+    It is infinite where the boom does not buckle. The boom is supported; coordinates (num_dofs,)
+    are any.
     """
     last = len(stiffness) - 1
     if last < 0:

@@ -18,7 +18,7 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.drive.stick_slip import FOLLOWED, follow
 from dynamics.drive.travel import Travel
-from dynamics.energy import DRAWN_ENERGIES, ENERGIES, check_energy
+from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
 from dynamics.excitation import History
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
@@ -80,7 +80,7 @@ class Integration:
             a, v, rows, y, np.zeros(y.size), thrust, tally, np.zeros(driven), np.zeros(m),
             np.full(m, np.inf),
         )  # fmt: skip
-        kinds = DRAWN_ENERGIES if ways.size else ENERGIES
+        kinds = DRIVEN_ENERGIES if ways.size else ENERGIES
         columns = (n, n if system.observes_rates else 0, len(kinds), m, m, m, f, driven)
         output = Output(*(np.zeros((motion.outputs + 1, count)) for count in columns))
         output.states[0], output.gaps[0] = a, y[:m]
@@ -147,8 +147,8 @@ class Integration:
     ) -> Trajectory:
         """Return the motion.
 
-        With a drive, also the length drawn out in m, the force of the drive against friction in N
-        and its power in W of each travel that has a suffix; of an elastic drive what ``FOLLOWED``
+        With a drive, also the extension in m, the force of the drive against friction in N and its
+        power in W of each travel that has a suffix; of an elastic drive what ``FOLLOWED``
         lists, and its ``StickSlip`` by name in the attribute ``stick_slip``.
 
         Args:

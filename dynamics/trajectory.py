@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What leaves every model: deflections, contact forces and energies over time.
+"""Trajectories: deflections, contact forces and energies over time.
 
 A trajectory is labelled (xarray) and carries its energy residual: kinetic, strain and contact
 energy, less the work of the loads, plus what damping, friction and contact took, should add up to
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.energy import DRAWN_ENERGIES, ENERGIES, energy_residual
+from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
 from dynamics.gap_system import GapSystem, Observer
 
 # Imported where data are made or read: what only plans a motion spares a second of imports.
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Dims = str | tuple[str, str]
 
-# What is known of each station.
+# Variables of each station.
 OF_STATIONS: Mapping[str, Mapping[str, str]] = {
     "contact_force": {
         "units": "N",
@@ -42,16 +42,16 @@ OF_STATIONS: Mapping[str, Mapping[str, str]] = {
     "gap": {"units": "m", "long_name": "deflection of the inner segment less that of the outer"},
 }
 
-# What is known of each drive, behind each name the suffix of its travel.
+# Variables of each drive; the suffix of its travel follows each name.
 OF_DRIVES: Mapping[str, Mapping[str, str]] = {
-    "drawn_out": {"units": "m", "long_name": "length drawn out since the start"},
+    "drawn_out": {"units": "m", "long_name": "extension since the start"},
     "drive_friction": {
         "units": "N",
         "long_name": "force of the drive against friction along the boom, output means",
     },
     "drive_power": {
         "units": "W",
-        "long_name": "power of the drive, with what presses along the boom",
+        "long_name": "power of the drive, axial loads included",
     },
 }
 
@@ -187,7 +187,7 @@ class Trajectory:
         }
         variables |= {
             name: ("time", column, {"units": "J", "long_name": name.replace("_", " ")})
-            for name, column in zip(DRAWN_ENERGIES, output.energies.T, strict=False)
+            for name, column in zip(DRIVEN_ENERGIES, output.energies.T, strict=False)
         }
         import xarray as xr
 
@@ -218,9 +218,9 @@ class Trajectory:
     def of_states(
         cls, system: GapSystem, time: Array, states: Array, velocities: Array
     ) -> Trajectory:
-        """What an integrator of one's own has found, of a system without losses.
+        """Return the trajectory of a user's own integrator, of a system without losses.
 
-        Forces are those at the output times, and first contact is told to an output step.
+        Forces are those at the output times; first contact is exact to an output step.
 
         Args:
             system: under constant loads, all of them in ``load``.
@@ -270,7 +270,7 @@ class Trajectory:
         return float(self.data.attrs["first_contact"])
 
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:
-        """Time in s and height in m of the first peak of the slow motion.
+        """Return time in s and height in m of the first peak of the slow motion.
 
         Peaks lie on the side to which the motion sets out, and their height has its sign. One
         counts when it stands out by a fifth of the whole range, so that the ripple of
@@ -311,5 +311,5 @@ class Trajectory:
 
 
 def _mean_rate(time: Array, values: Array) -> Array:
-    """(num_times,) of the interval that ends at each time, 0 at the start."""
+    """Return the mean rate (num_times,) of the interval that ends at each time, 0 at the start."""
     return np.concatenate([[0.0], np.diff(values) / np.diff(time)])

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What draws a boom out, rows and thrusts that go along, and drives that stick and slip."""
+"""Drives that telescope a boom: extension over time, rows that move with it, stick-slip."""

@@ -78,7 +78,7 @@ class RowTable:
         breaks: Sequence[float],
         tolerance: float = TOLERANCE,
     ) -> RowTable:
-        """Rows (num_rows, num_modes) at each s in m, smooth between rising breaks in m."""
+        """Return the table of rows (num_rows, num_modes), smooth between rising breaks in m."""
         # Pieces end where others begin, and halves meet rows where the whole did.
         rows = cache(rows)
         scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
@@ -92,9 +92,9 @@ class RowTable:
 
     @classmethod
     def through(cls, knots: Array, rows: Array) -> RowTable:
-        """The spline through rows (num_knots, num_rows, num_modes), twice smooth.
+        """Return the cubic spline through rows (num_knots, num_rows, num_modes).
 
-        Its third derivative does not jump at the first knot inside nor at the last one.
+        Its third derivative does not jump at the first inner knot nor at the last one.
         """
         from scipy.interpolate import CubicSpline
 
@@ -104,18 +104,18 @@ class RowTable:
         return cls(knots, np.ascontiguousarray(np.stack(pieces, axis=1)))
 
     def __call__(self, s: float) -> Array:
-        """(num_rows, num_modes) at s in m."""
+        """Return the rows (num_rows, num_modes) at s in m."""
         piece, part, _ = self.place(s)
         return _combined(part ** np.arange(4), self.coefficients[piece])
 
     def slope(self, s: float) -> Array:
-        """(num_rows, num_modes) their change along s, per m."""
+        """Return the slopes (num_rows, num_modes) of the rows along s, per m."""
         piece, part, length = self.place(s)
         powers = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) / length
         return _combined(powers, self.coefficients[piece])
 
     def place(self, s: float) -> tuple[int, float, float]:
-        """The piece in which s in m is, the part of it that s has passed, and its length in m."""
+        """Return the piece at s in m, the part of it that s has passed, and its length in m."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
         length = float(self.knots[piece + 1] - self.knots[piece])
@@ -124,7 +124,7 @@ class RowTable:
 
 @dataclass(frozen=True)
 class MovingThrust:
-    """A force that moves along with a travel, and softens what it has passed.
+    """An axial force that moves with a travel and softens the segment behind it.
 
     >>> thrust = MovingThrust(2.0, RowTable.of(lambda s: np.array([[3.0 * s]]), [0.0, 1.0]))
     >>> thrust.softening(0.5)
@@ -140,7 +140,7 @@ class MovingThrust:
 
     @property
     def planes(self) -> int:
-        """In how many it moves."""
+        """Number of planes of bending."""
         return self.table.coefficients.shape[2]
 
     @cached_property
@@ -151,7 +151,7 @@ class MovingThrust:
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
 
     def passed(self, plane: int) -> Array:
-        """(num_pieces, num_modes, num_modes) ∫ w′ᵀ w′ ds from s = 0 to where each piece begins."""
+        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from s = 0 to each piece."""
         slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
         within = np.einsum("p,ij,pik,pjl->pkl", lengths, 1 / _POWERS, slopes, slopes, optimize=True)
         upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
@@ -160,7 +160,7 @@ class MovingThrust:
         return np.asarray(upto[:-1] - upto[piece] - slopes[piece].T @ products @ slopes[piece])
 
     def softening(self, s: float) -> Array:
-        """(num_modes, num_modes) K_G at s in m, less that at 0, where it is exactly 0."""
+        """Return K_G (num_modes, num_modes) at s in m, less that at 0."""
         (first, start, _), (last, end, _) = (self.table.place(x) for x in sorted((0.0, s)))
         slopes, lengths = self.slopes[first : last + 1], np.diff(self.table.knots)[first : last + 1]
         begins, ends = np.zeros((lengths.size, 1, 1)), np.ones((lengths.size, 1, 1))
@@ -173,14 +173,14 @@ class MovingThrust:
 
 
 def _combined(weights: Array, arrays: Array) -> Array:
-    """Their weighted sum; no product of BLAS, whose last bits depend on places in memory."""
+    """Return a weighted sum; no BLAS product, whose last bits depend on addresses in memory."""
     return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
 
 
 def _pieces(
     rows: Callable[[float], Array], a: float, b: float, bound: float, halvings: int
 ) -> Iterator[tuple[float, Array]]:
-    """Where each piece between two s in m starts, and its coefficients (4, num_rows, num_modes)."""
+    """Yield the start in m and the coefficients (4, num_rows, num_modes) of each piece."""
     met = np.array([rows(a + part * (b - a)) for part in _MET])
     cubic = np.array([_combined(weights, met) for weights in _COEFFICIENTS])
     missed = [

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A segment that a drive of a given stiffness draws along, which sticks and slips.
+"""Stick-slip of a segment that an elastic drive extends.
 
-What it is drawn out by, s(t), lags behind what the drive asks, s_c(t):
+The extension s(t) lags behind the command s_c(t) of the drive:
 
     m s̈ + c (ṡ − ṡ_c) + k (s − s_c) = p − R sign(ṡ),   |k (s_c − s) + c ṡ_c + p| ≤ R_s where ṡ = 0
 
-with R = μ Σ|N| of the pads as the boom moves that is drawn out as far as asked, R_s that of static
-friction, and p what other drives do as they speed up. The boom does not feel how far it lags. R is
-that of the mean N of each output interval: where pads chatter faster, fewer sticks are told.
+with R = μ Σ|N| of the pads of the boom that follows the command, R_s that of static friction, and
+p the force of other drives that accelerate. The boom does not feel the lag. R is that of the mean N
+of each output interval: where pads chatter faster, fewer sticks are counted.
 """
 
 from __future__ import annotations
@@ -19,43 +19,43 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.excitation import History
 
-# Of the angle in rad by which the mass swings on the spring, or of a decay: a step at most.
+# Largest step as an angle in rad of the mass on its spring, or as a part of its decay time.
 _PART = 0.1
 
-# Beyond it a swing between two sticks grows past all numbers.
+# Bound of (R_s − R)/(v √(k m)) in the search for the critical speed.
 _FARTHEST = 1.0e6
 
 
-# What a trajectory holds of it, behind each name the suffix of its travel.
+# Variables of a trajectory; the suffix of the travel follows each name.
 FOLLOWED = {
     "drive_force": {
         "units": "N",
         "long_name": "force of the drive as it gives way, mean of the output interval",
     },
-    "drive_lag": {"units": "m", "long_name": "what is drawn lags behind its drive"},
-    "drawn_speed": {"units": "m/s", "long_name": "speed of what is drawn in the outer segment"},
-    "drawn_acceleration": {"units": "m/s2", "long_name": "acceleration of what is drawn"},
+    "drive_lag": {"units": "m", "long_name": "lag of the segment behind its drive"},
+    "drawn_speed": {"units": "m/s", "long_name": "speed of the segment in the outer one"},
+    "drawn_acceleration": {"units": "m/s2", "long_name": "acceleration of the segment"},
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Pulled:
-    """What a drive of a given stiffness draws along.
+    """An elastic drive, and the mass that it moves.
 
     >>> rope = Pulled(mass=500.0, stiffness=1e5, dashpot=1e3, sticking=1.5)
     >>> print(f"{rope.frequency:.2f} Hz, smooth from {rope.critical_speed(1000.0):.3f} m/s on")
     2.25 Hz, smooth from 0.062 m/s on
 
     Args:
-        mass: of all that goes along, in kg.
+        mass: of all moved segments in kg.
         stiffness: k of rope, chain or cylinder in N/m.
-        dashpot: c beside it in N·s/m.
-        sticking: static friction over that of sliding, 1 or more.
-        thrust: what presses it along the boom towards the base in N, its weight say.
-        beside: the part of the mass in kg that another drive moves, too, and the history of each.
+        dashpot: c in parallel in N·s/m.
+        sticking: static over sliding friction, at least 1.
+        thrust: axial load towards the base in N, as by the weight.
+        beside: the mass in kg that each other drive moves, too, and the history of that drive.
 
     Raises:
-        ValueError: a number out of range.
+        ValueError: a number is out of range.
     """
 
     mass: float
@@ -75,7 +75,7 @@ class Pulled:
 
     @property
     def frequency(self) -> float:
-        """Of the mass on the spring in Hz, without damping."""
+        """Undamped natural frequency in Hz."""
         return float(np.sqrt(self.stiffness / self.mass) / (2.0 * np.pi))
 
     @property
@@ -84,9 +84,9 @@ class Pulled:
         return 0.5 * self.dashpot / float(np.sqrt(self.stiffness * self.mass))
 
     def critical_speed(self, friction: float) -> float:
-        """From which constant speed in m/s on it does not stick again, once it has slipped.
+        """Return the constant speed in m/s above which it slips without sticking again.
 
-        Infinite without damping.
+        It is infinite without damping.
 
         Args:
             friction: R of sliding in N.
@@ -100,10 +100,10 @@ class Pulled:
         return drop / (_critical_drop(self.damping_ratio) * impedance)
 
     def pushed(self, time: Array, step: float) -> Array:
-        """(num_times,) p in N, by second differences over a step in s.
+        """Return p (num_times,) in N, by second differences over a step in s.
 
-        Mirrored at t = 0, where a way that begins with a jump of its speed gives all of its impulse
-        within the first step.
+        The histories are mirrored at t = 0, so that one that begins with a jump of its speed gives
+        its whole impulse within the first step.
         """
         return -sum(
             (
@@ -116,16 +116,16 @@ class Pulled:
 
 @dataclass(frozen=True, slots=True)
 class StickSlip:
-    """What a drive of a given stiffness does.
+    """Results of an elastic drive.
 
     Args:
-        mean: of |its force| in N while it moves.
-        peak: the largest |force| in N.
-        sticks: how often what it draws comes to stick while it moves.
-        slip: the longest way in m by which that catches up with it in one slip.
-        speed, acceleration: the largest of what it draws, in m/s and m/s².
-        behind: how far that lags behind at the end of the run in m, negative where it is ahead.
-        energy_residual: what of its work is not accounted for, as a part of all energy put in.
+        mean: of |drive force| in N while the drive moves.
+        peak: largest |drive force| in N.
+        sticks: number of times that the segment sticks while the drive moves.
+        slip: longest distance in m caught up in one slip.
+        speed, acceleration: largest of the segment in m/s and m/s².
+        behind: lag at the end of the run in m, negative where the segment is ahead.
+        energy_residual: unaccounted energy as a part of the energy put in.
     """
 
     mean: float
@@ -140,13 +140,13 @@ class StickSlip:
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """How what is pulled follows, (num_times,) each.
+    """Motion of the segment that an elastic drive moves, (num_times,) each.
 
     Args:
         drive_force: in N, the mean of the output interval that ends then.
-        drive_lag: by what it is behind the drive in m.
-        drawn_speed, drawn_acceleration: its own in m/s and m/s².
-        told: what is to be known of all that.
+        drive_lag: in m.
+        drawn_speed, drawn_acceleration: of the segment in m/s and m/s².
+        told: the results.
     """
 
     drive_force: Array
@@ -157,13 +157,13 @@ class Followed:
 
 
 def follow(pulled: Pulled, way: History, time: Array, friction: Array) -> Followed:
-    """How what is pulled follows its drive, from rest with the thrust held.
+    """Return the motion of the segment, from rest with the axial load held.
 
-    Between steps, of which a swing takes 63 at least, s_c and p go straight, and all else is exact.
+    s_c and p are linear within steps, of which a period takes 63 at least; all else is exact.
 
     Args:
-        pulled: by the drive.
-        way: how far that draws out, in m.
+        pulled: the drive.
+        way: its command s_c in m.
         time: (num_times,) in s, evenly spaced from 0 on.
         friction: (num_times,) R in N, the mean of the interval that ends then.
     """
@@ -196,7 +196,7 @@ def follow(pulled: Pulled, way: History, time: Array, friction: Array) -> Follow
 
 
 def _unaccounted(pulled: Pulled, lag: Array, speed: Array, sums: Array) -> float:
-    """What was put in less what there is and what was lost, as a part of the most put in."""
+    """Return the unaccounted energy as a part of the largest energy put in."""
     work, pushed, damped, rubbed, _ = sums.T
     there = 0.5 * pulled.mass * speed**2 + 0.5 * pulled.stiffness * lag**2
     most = float((np.abs(work) + np.abs(pushed)).max())
@@ -205,7 +205,7 @@ def _unaccounted(pulled: Pulled, lag: Array, speed: Array, sums: Array) -> float
 
 
 def _critical_drop(ratio: float) -> float:
-    """(R_s − R)/(v √(k m)) at which what slips at ζ comes to stick just no more.
+    """Return (R_s − R)/(v √(k m)) up to which a slip at the damping ratio ζ does not end.
 
     ż/v begins a slip with 1 and the slope −D, in units of 1/ω, swings freely, and is largest again,
     for all ζ below 1, where it is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)},

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far a segment is drawn out over time, and the rows that this changes.
+"""The extension of a segment over time, and the rows that it changes.
 
-In the coordinates of the material nothing else changes: a segment that is moved along its own axis
-has the inertia m̄ ü at each of its points, small slopes provided. Modes, loads and observers that
-sit on a segment stay what they were; what reads two segments at one place reads one of them at
-another place as it is drawn.
+In material coordinates nothing else changes: a segment that moves along its own axis has the
+inertia m̄ ü at each of its points, provided that slopes are small. Modes, loads and observers of one
+segment stay the same; a row that reads two segments at one place reads one of them at another place
+as the segment extends.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 @dataclass(frozen=True, slots=True)
 class SCurve:
-    """From 0 to ``travel`` in m within ``duration`` in s, s = travel (τ − sin 2πτ/2π).
+    """Extension from 0 to ``travel`` within ``duration``, s = travel (τ − sin 2πτ/2π).
 
     Speed and acceleration begin and end with 0 (cycloidal motion; Norton 2009).
 
@@ -35,9 +35,9 @@ class SCurve:
     array([0., 2., 4.])
 
     Args:
-        travel: m; negative where it is drawn in.
-        duration: s.
-        start: when it begins, in s.
+        travel: in m; negative where the segment retracts.
+        duration: in s.
+        start: in s.
     """
 
     travel: float
@@ -49,17 +49,17 @@ class SCurve:
 
     @property
     def kinks(self) -> tuple[float, float]:
-        """Where it begins and ends."""
+        """Start and end in s."""
         return self.start, self.start + self.duration
 
     @property
     def peak(self) -> float:
-        """In m."""
+        """Largest extension in m."""
         return abs(self.travel)
 
     @property
     def fastest(self) -> float:
-        """2π over its duration."""
+        """2π over the duration, in rad/s."""
         return 2.0 * np.pi / self.duration
 
     def __call__(self, time: Array) -> Array:
@@ -69,19 +69,19 @@ class SCurve:
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """From 0 to ``travel`` at a constant speed, to and from which the speed goes straight.
+    """Extension from 0 to ``travel`` at a constant speed, with linear ramps of the speed.
 
     >>> pt.Stroke(travel=4.0, speed=1.0, ramp=1.0)(np.array([1.0, 2.0, 5.0]))
     array([0.5, 1.5, 4. ])
 
     Args:
-        travel: m; negative where it is drawn in.
-        speed: m/s, positive.
-        ramp: how long in s it takes to come to that speed, and to a stop again.
-        start: when it begins, in s.
+        travel: in m; negative where the segment retracts.
+        speed: in m/s, positive.
+        ramp: duration in s of the acceleration, and of the deceleration.
+        start: in s.
 
     Raises:
-        ValueError: a number out of range, or a speed that the travel is too short to come to.
+        ValueError: a number is out of range, or the travel is too short to reach the speed.
     """
 
     travel: float
@@ -107,19 +107,19 @@ class Stroke:
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Where speed or acceleration jump."""
+        """Times in s at which speed or acceleration jump."""
         end = self.start + self.duration
         times = (self.start, self.start + self.ramp, end - self.ramp, end)
         return tuple(sorted(set(times)))
 
     @property
     def peak(self) -> float:
-        """In m."""
+        """Largest extension in m."""
         return abs(self.travel)
 
     @property
     def fastest(self) -> float:
-        """Of a swing with the acceleration of the ramps and their speed."""
+        """Acceleration of the ramps over the speed, in rad/s."""
         return 1.0 / self.ramp if self.ramp else 0.0
 
     def __call__(self, time: Array) -> Array:
@@ -128,7 +128,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * way)
 
     def _begun(self, after: Array) -> Array:
-        """∫ of the speed as a part of the whole one, which comes within a ramp and stays."""
+        """Return ∫ v dt in s, v being a ramp from 0 to 1 that then stays."""
         if self.ramp == 0.0:
             return np.maximum(after, 0.0)
         part = np.clip(after / self.ramp, 0.0, 1.0)
@@ -137,7 +137,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Together:
-    """The sum of several, of joints between a segment and the ground."""
+    """The sum of several histories: of all joints between a segment and the ground."""
 
     parts: tuple[History, ...]
 
@@ -159,9 +159,9 @@ class Together:
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """Rows that follow a history of how far something is drawn out, from 0 at t = 0.
+    """Rows that follow the history of an extension, from 0 at t = 0.
 
-    A row that reads less of the ball the farther something is drawn:
+    A row that reads less of the ball as a segment extends:
 
     >>> table = RowTable.of(lambda s: np.array([[1.0 - s]]), [0.0, 0.5])
     >>> lift = Travel(pt.SCurve(travel=0.5, duration=1.0), table, (("rows", 0),))
@@ -170,15 +170,15 @@ class Travel:
 
     Args:
         history: in m.
-        table: (num_moving, num_modes) rows at each m of it.
-        moving: kind and position of each of them in the gap system.
-        suffix: behind the names of what results tell of it; nothing where it is None.
-        thrusts: axial forces that go along.
-        borne: what presses all that is drawn along the boom in N, against which the drive works.
-        pulled: what a drive of a given stiffness draws, in place of a stiff one.
+        table: (num_moving, num_modes) rows over the extension.
+        moving: kind and position of each row in the gap system.
+        suffix: of the names of its results; there are none where it is None.
+        thrusts: axial forces that move along.
+        borne: axial load of all moved segments in N, against which the drive works.
+        pulled: the elastic drive; a rigid one where it is None.
 
     Raises:
-        ValueError: the table has not as many rows as move, or the history does not begin with 0.
+        ValueError: the number of rows of the table differs, or the history does not begin with 0.
     """
 
     history: History
@@ -207,13 +207,13 @@ class Travel:
         thrusts: Sequence[MovingThrust] = (),
         borne: float = 0.0,
     ) -> Travel:
-        """What several histories move together, or one."""
+        """Return the travel of the sum of several histories."""
         history = histories[0] if len(histories) == 1 else Together(tuple(histories))
         return cls(history, table, tuple(moving), suffix, tuple(thrusts), borne)
 
     @property
     def moves(self) -> bool:
-        """Whether it is more than rest, from t = 0 on."""
+        """Whether the extension changes after t = 0."""
         later = [time for time in self.history.kinks if time > 0.0]
         if self.history.peak == 0.0:
             return False

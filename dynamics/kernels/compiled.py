@@ -31,7 +31,7 @@ SUMS: Mapping[str, Any] = MappingProxyType(
 
 
 def find_folder() -> TemporaryDirectory[str] | None:
-    """A folder until the process ends, where neither sources nor the user's caches can be written.
+    """Return a cache folder for this process where no other can be written, else None.
 
     numba refuses to compile what it cannot keep. Processes started from this one share the folder.
     """
@@ -46,7 +46,7 @@ def find_folder() -> TemporaryDirectory[str] | None:
 
 @intrinsic
 def borrowed(typing_context: Any, arrays: Any) -> Any:
-    """The same tuple of arrays, whose owner keeps them alive: numba counts no references to them.
+    """Return the tuple of arrays without reference counts; its owner keeps the arrays alive.
 
     Counting is atomic, and costs a step of friction as much as its arithmetic.
     """

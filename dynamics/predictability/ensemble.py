@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Many runs of one system, each with data changed a little.
+"""Ensembles: runs of one system with slightly changed data.
 
-Where impacts make a motion chaotic, one run is a sample. What all members of an ensemble
-share is what the system says; what they do not share, no run can know.
+Where impacts make a motion chaotic, one run is a sample. Only what all members of an ensemble share
+is a property of the system.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from dynamics.trajectory import Trajectory
 
 Vary = Literal["load", "clearance", "velocity"]
 
-# What is kept of each member; whole trajectories would fill the memory.
+# Variables that are kept of each member; whole trajectories would fill the memory.
 KEPT = ("tip", "head", "contact_force")
 
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """One run, as it is sent to where it is made.
+    """One run of an ensemble, as sent to a worker.
 
     Args:
-        motion: unchanged.
-        vary: what is changed.
+        motion: without changes.
+        vary: the data that change.
         change: relative change.
-        integrator: how it moves.
-        kept: outputs that come back.
+        integrator: of the motion.
+        kept: variables that come back.
     """
 
     motion: Motion
@@ -47,7 +47,7 @@ class Member:
     kept: Sequence[str] = KEPT
 
     def within(self, part: float) -> Member:
-        """The beginning of the run, in whole output steps."""
+        """Return the first part of the run, in whole output steps."""
         outputs = max(1, round(part * self.motion.outputs))
         return replace(
             self, motion=replace(self.motion, duration=outputs * self.motion.output_step)
@@ -55,14 +55,14 @@ class Member:
 
 
 def perturbations(members: int, relative: float, seed: int) -> Array:
-    """(members,) relative changes: none for member 0, the others uniform within ±relative."""
+    """Return relative changes (members,): 0 of member 0, the others uniform within ±relative."""
     changes = np.random.default_rng(seed).uniform(-relative, relative, members)
     changes[0] = 0.0
     return changes
 
 
 def changed(motion: Motion, vary: Vary, factor: float) -> Motion:
-    """The motion with all of what is varied times ``factor``."""
+    """Return the motion with the varied data times ``factor``."""
     system = motion.system
     if vary == "load":
         excitations = [replace(x, load=factor * x.load) for x in system.excitations]
@@ -75,10 +75,10 @@ def changed(motion: Motion, vary: Vary, factor: float) -> Motion:
 
 
 def check_varied(motion: Motion, vary: Vary) -> None:
-    """Stop where no relative change moves anything.
+    """Check that the varied data are not all zero.
 
     Raises:
-        ValueError: what is to vary is zero.
+        ValueError: they are.
     """
     system = motion.system
     sides = [law.one_sided(side) for law in system.laws for side in (1, -1)]
@@ -97,14 +97,13 @@ def run_members(
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[xr.Dataset]:
-    """What is kept of each member and its ``energy_residual``, in their order.
+    """Run the members; return the kept variables and ``energy_residual`` of each, in their order.
 
-    The result does not depend on who makes the runs.
+    The result does not depend on the executor.
 
     Args:
-        members: to be run.
-        executor: makes them, in other processes if it likes; as many threads as there are cores
-            unless given.
+        members: to run.
+        executor: of threads or processes; one thread per core unless given.
         progress: called with the part done, 0 to 1.
 
     Raises:
@@ -146,7 +145,7 @@ def integrate_ensemble(
     progress: Callable[[float], None] | None = None,
     unchanged: Trajectory | None = None,
 ) -> xr.Dataset:
-    """Move all members of an ensemble, as many at a time as there are cores.
+    """Return the motions of an ensemble, computed on all cores.
 
     >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
     >>> ensemble = integrate_ensemble(thrown, members=3, relative=1e-3, seed=1, vary="velocity")
@@ -154,16 +153,16 @@ def integrate_ensemble(
     {'member': 3, 'time': 1001, 'station': 1}
 
     Args:
-        motion: of member 0, which is not changed.
-        members: how many, at least two.
+        motion: of member 0, without changes.
+        members: their number, at least two.
         relative: largest relative change, positive.
-        seed: of the changes; the same one gives the same members wherever they are run.
-        vary: what is changed, all of it by one factor: the loads, all clearances, or the initial
+        seed: of the changes; the same seed gives the same members on every machine.
+        vary: the data that change, all by one factor: the loads, all clearances, or the initial
             velocity.
         integrator: of member 0, :class:`AdaptiveStep` unless given; the others make its steps.
         executor: see :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
         progress: called with the part done, 0 to 1.
-        unchanged: member 0, where it has moved already.
+        unchanged: trajectory of member 0, if it is known.
 
     Returns:
         Dims ``member``, ``time``, ``station``: of ``KEPT`` what the system observes, and
@@ -171,7 +170,7 @@ def integrate_ensemble(
         ``vary``, ``relative``, ``seed``, ``integrator``, and ``step`` in s of member 0.
 
     Raises:
-        ValueError: an argument is out of its range, or what is to vary is zero.
+        ValueError: an argument is out of its range, or the varied data are zero.
         NumericsError: a member cannot be computed.
     """
     if members < 2:

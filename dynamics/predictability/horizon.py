@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How long a motion can be predicted, and what limits it.
+"""Predictability horizons: how long a motion can be predicted, and what limits it.
 
-A small relative change ε of the data parts two runs in proportion to ε exp(λ t), so that they are
-a given distance apart at
+A small relative change ε of the data makes two runs diverge as ε exp(λ t), so that they reach a
+given distance at
 
     T(ε) = T(1) − ln(ε)/λ
 
-and a thousand times better data buy only ln(1000)/λ more (Lorenz 1963, *Deterministic
+and data a thousand times better extend the horizon by ln(1000)/λ only (Lorenz 1963, *Deterministic
 nonperiodic flow*). That holds while the distance is small: λ is read at a small part of the range,
-and larger parts may be reached at about the same time from whatever ε. A linear system has no such
-time: there the distance stays in proportion to ε.
+and larger parts may be reached at about the same time from any ε. A linear system has no such time:
+there the distance stays in proportion to ε.
 """
 
 from __future__ import annotations
@@ -29,29 +29,30 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import Member, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
 
-# Parts of the range at which two curves can be told apart, and at which one is no longer the other.
+# Parts of the range at which two curves are distinguishable, and at which they are unrelated.
 SHARES = (0.01, 0.20)
-# A part at which curves that started close still part in proportion to how close.
+# Part of the range up to which the distance is still in proportion to ε.
 EARLY = 1.0e-4
 
-# Of the duration, in which runs part most often, and else all of it.
+# Parts of the duration that are run in turn; most runs diverge within the first.
 _PARTS = 0.25, 1.0
-# Of the progress, what each of these is for the large changes, and again for the small ones.
+# Part of the progress of each of these, for the large changes and again for the small ones.
 _STAGE = 0.5 / len(_PARTS)
 
 
 def spread(members: Array) -> Array:
-    """(num_times,) half the distance between the largest and the smallest member (…, num_times).
+    """Return half the distance (num_times,) of the largest and smallest member (…, num_times).
 
-    That is the largest error of the best single prediction. A standard deviation would be
-    smaller the more members are still together, and would name a horizon after some have left.
+    That is the largest error of the best single prediction. A standard deviation would be smaller
+    while most members are still together, and would give a horizon after some have diverged.
     """
     return np.asarray(0.5 * np.ptp(members, axis=0))
 
 
 def horizon(members: Array, time: Array, share: float) -> float:
-    """When the spread of members (num_members, num_times) first passes a share of the range of
-    member 0, in s; NaN if never.
+    """Return the time in s at which members (num_members, num_times) first diverge; NaN if never.
+
+    Their spread then exceeds a share of the range of member 0.
     """
     passed = np.flatnonzero(spread(members) > share * np.ptp(members[0]))
     return float(time[passed[0]]) if passed.size else float("nan")
@@ -87,7 +88,7 @@ class Growth:
         return cls(float(-1.0 / slope), float(start), scatter)
 
     def change(self, time: float) -> float:
-        """The ε of which ``time`` in s is the horizon."""
+        """Return the ε whose horizon is ``time`` in s."""
         return float(np.exp(self.rate * (self.start - time)))
 
 
@@ -99,11 +100,11 @@ class Horizons:
         relatives: (num_relatives,) ε, rising.
         shares: (num_shares,) parts of the range, rising.
         times: (num_relatives, num_shares) in s, NaN where the spread stays below.
-        of_step: (num_shares,) when a run with a finer step, or tolerance, is as far from the one
-            with the whole step, in s.
+        of_step: (num_shares,) time in s at which a run with a finer step, or tolerance, has
+            diverged as far.
         growth: (num_shares) the lines through ``times``.
-        step_change: the ε that parts two runs to the first share as the finer step does, by the
-            first line; 0 where that does not part them, NaN without a line.
+        step_change: the ε whose horizon at the first share is that of the finer step, by the first
+            line; 0 where the finer step has none, NaN without a line.
     """
 
     relatives: Array
@@ -115,14 +116,14 @@ class Horizons:
 
     @property
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
-        """(num_shares) what ends the predictability of a run.
+        """The limit of predictability at each share (num_shares).
 
-        ``step`` where a finer step changes it more than the largest of the changes does: a finer
-        step would help. ``physics`` where it does not: data are not known as well as that.
-        ``nothing`` where neither parts two runs so far within the duration.
+        ``step``: a finer step changes the run more than the largest change of the data, so that it
+        would help. ``physics``: it does not; data are not known that well. ``nothing``: neither
+        makes two runs diverge so far within the duration.
 
-        Where growth is known, its line decides for all shares: which of two runs passes a large
-        one first is chance.
+        Where growth is known, its line decides for all shares, since the order in which two runs
+        reach a large share is chance.
         """
         largest = self.relatives[-1]
         found: list[Literal["step", "physics", "nothing"]] = []
@@ -150,13 +151,13 @@ def measure_horizons(
     progress: Callable[[float], None] = lambda part: None,
     unchanged: Trajectory | None = None,
 ) -> Horizons:
-    """Run the motion as it is, with a finer step, and changed by each size.
+    """Return the horizons of a motion: with a finer step, and with changes of each size.
 
-    Where the largest change parts no two runs to the first share, smaller ones do not either, and
-    are not run; nor is the rest of those that have parted early to all shares.
+    Where the runs of the largest change do not diverge to the first share, smaller changes are not
+    run; nor is the rest of runs that diverge early to all shares.
 
-    Few partners are enough for the growth at a small share; its scatter tells how well it is known.
-    Horizons at large shares are chance, and come sooner the more partners there are.
+    Few partners suffice for the growth at a small share; its scatter is a measure of its error.
+    Horizons at large shares are chance, and are the earlier the more partners there are.
 
     >>> thrown = Motion(ball, duration=1.0, velocity=[3.0])
     >>> found = measure_horizons(thrown, [1e-9, 1e-6], "velocity", observer="height")
@@ -164,20 +165,20 @@ def measure_horizons(
     (2, 2)
 
     Args:
-        motion: unchanged.
+        motion: without changes.
         relatives: ε, each between 0 and 1.
-        vary: what is changed, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        vary: the data that change, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
         partners: runs for each size, with changes from ε/2 to ε of either sign, the first ε.
         integrator: of the unchanged run, :class:`AdaptiveStep` unless given; the others make its
             steps, and one of them half of each.
         executor: see :func:`dynamics.predictability.ensemble.run_members`.
         shares: parts of the observer's range, rising.
-        observer: which output is watched.
+        observer: the output that is compared.
         progress: called with the part done, 0 to 1.
-        unchanged: the motion as it is, where it has moved already.
+        unchanged: trajectory of the motion, if it is known.
 
     Raises:
-        ValueError: what is to vary is zero.
+        ValueError: the varied data are zero.
         NumericsError: a run cannot be computed.
     """
     check_varied(motion, vary)
@@ -197,7 +198,7 @@ def measure_horizons(
         progress(before + _STAGE * part)
 
     def parted(groups: Sequence[Sequence[Member]], done: float) -> Array:
-        """(num_groups, num_shares) in s, where ``done`` is the part done before."""
+        """Return horizons (num_groups, num_shares) in s; ``done`` is the part done before."""
         found = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(found[g]).any()]
@@ -230,6 +231,6 @@ def measure_horizons(
 def horizons_of(
     ensemble: xr.Dataset, shares: Sequence[float] = SHARES, observer: str = "tip"
 ) -> list[float]:
-    """(num_shares) horizons of one ensemble in s, NaN where its spread stays below."""
+    """Return the horizons (num_shares) of an ensemble in s, NaN where its spread stays below."""
     members, time = ensemble[observer].values, ensemble["time"].values
     return [horizon(members, time, share) for share in shares]

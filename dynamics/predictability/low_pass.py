@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The slow motion under the ripple of impacts: its peaks, its period, and how sure they are."""
+"""The motion below a cut-off frequency: its peaks, its period, and their spread."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from scipy.signal import butter, find_peaks, sosfiltfilt
 
 from dynamics.arrays import Array
 
-# Part of the lowest elastic frequency of the closed system below which a motion is slow: with
-# play the boom swings more slowly than its own closed structure could, and the ripple is above.
+# Cut-off as a part of the lowest elastic frequency of the closed system: with play the boom swings
+# more slowly than the closed structure, and the ripple of impacts is faster.
 CUTOFF_SHARE = 0.8
 # Order of the filter, which is passed twice, forwards and backwards.
 ORDER = 4
-# A peak stands out by this part of the range, so that a shoulder is none.
+# Prominence of a peak as a part of the range, which excludes shoulders.
 PROMINENCE = 0.2
 
 
 def slow(signal: Array, output_step: float, cutoff: float) -> Array:
-    """The part of a signal below a cut-off, without a shift in time.
+    """Return the part of a signal below a cut-off, without phase shift.
 
-    The Butterworth filter is passed forwards and backwards; the gain at the cut-off is ½.
-    Within half a period of the cut-off of either end the result leans on the mirrored signal.
+    A Butterworth filter is applied forwards and backwards; its gain at the cut-off is ½. Within
+    half a period of the cut-off of either end the result depends on the mirrored signal.
 
     Args:
         signal: (..., num_times).
@@ -49,9 +49,9 @@ def slow(signal: Array, output_step: float, cutoff: float) -> Array:
 
 
 def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Times in s and heights of the peaks of the slow motion, (num_peaks,) each.
+    """Return times in s and heights (num_peaks,) of the peaks below a cut-off in Hz.
 
-    Of a signal (num_times,) at times of equal steps; the cut-off in Hz.
+    The signal (num_times,) is at evenly spaced times.
     """
     filtered = slow(signal, float(time[1] - time[0]), cutoff)
     at, _ = find_peaks(filtered, prominence=PROMINENCE * np.ptp(filtered))
@@ -83,10 +83,10 @@ class SlowPeaks:
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
-        """Peaks of an ensemble, in order, up to the first that a member does not have.
+        """Return the peaks of an ensemble, in order, up to the first that a member lacks.
 
         A member (num_times,) has a peak of member 0 if one of its own is nearer than half a period
-        of the cut-off in Hz: two peaks of the slow motion are not that close to one another.
+        of the cut-off in Hz; two peaks of one filtered motion are farther apart.
         """
         found = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from dynamics.contact import ContactLaw
 from dynamics.drive.stick_slip import FOLLOWED
-from dynamics.energy import DRAWN_ENERGIES
+from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import Released, Thrown
 from dynamics.trajectory import OF_DRIVES, OF_STATIONS
 from geometry.axial import with_compression
@@ -42,7 +42,7 @@ from runs.case.segment import SegmentTable, SupportTable
 # What trajectories hold of every boom.
 _TAKEN = {
     *OF_STATIONS,
-    *DRAWN_ENERGIES,
+    *DRIVEN_ENERGIES,
     "time",
     "station",
     "direction",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.energy import DRAWN_ENERGIES, energy_residual
+from dynamics.energy import DRIVEN_ENERGIES, energy_residual
 from geometry.arrays import Array
 from runs.report import theme
 from runs.report.drawn_axis import drawn_axis
@@ -22,7 +22,7 @@ LOST = (0.75, 0.45, 0.2)
 def energies(pen: Pen) -> list[Figure]:
     """Where the energy of one model is: the last with play, the most complicated."""
     name = (pen.with_play or pen.models)[-1]
-    columns = dict(zip(DRAWN_ENERGIES, _energies(pen, name).T, strict=False))
+    columns = dict(zip(DRIVEN_ENERGIES, _energies(pen, name).T, strict=False))
     drawn = columns.pop("drive_work", None)
     work = columns.pop("work") + (0.0 if drawn is None else drawn)
     of = "work of the load" if drawn is None else "work of load and drive"
@@ -79,7 +79,7 @@ def residuals(pen: Pen) -> list[Figure]:
 
 def _energies(pen: Pen, name: str) -> Array:
     """(num_times, num_energies) in J, as in :func:`dynamics.energy.energy_residual`."""
-    known = [energy for energy in DRAWN_ENERGIES if energy in pen.data]
+    known = [energy for energy in DRIVEN_ENERGIES if energy in pen.data]
     return np.array([pen.of(name, energy) for energy in known]).T
 
 
