@@ -171,8 +171,12 @@ def hardly(one: Added) -> bool:
 def _peak_cell(peak: Peak | None) -> str:
     if peak is None:
         return NONE
-    factor = "" if peak.factor is None else f" (× {number(peak.factor)})"
-    return f"{amount(peak.largest, peak.unit)}{factor}"
+    return f"{amount(peak.largest, peak.unit)}{times(peak)}"
+
+
+def times(peak: Peak) -> str:
+    """Return how many times what is at rest a peak is; empty where nothing is."""
+    return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
 def _named(what: str, where: str) -> str:

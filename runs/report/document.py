@@ -17,7 +17,7 @@ from runs.report import theme
 from runs.report.answer_tables import answer_tables
 from runs.report.charts import packed_charts, packed_plotly
 from runs.report.figure_context import Figure
-from runs.report.first_look import first_look
+from runs.report.first_look import first_table, play_sentence, strength_sentence, trust_line
 from runs.report.knowledge import compared_tables, known_tables
 from runs.report.model_tables import model_table, model_tables
 from runs.report.numerals import number, percent
@@ -57,9 +57,9 @@ def render(
 
     Where plotly is not installed the pictures of curves stand alone.
     """
-    look = first_look(results)
+    first = first_table(results)
     tables: dict[str, list[Table]] = {
-        "first": [look.answers] if look.answers else [],
+        "first": [first] if first else [],
         "answers": answer_tables(results),
         "known": known_tables(results),
         "compared": compared_tables(results),
@@ -86,7 +86,10 @@ def render(
         remarks=addition.remarks,
         labels={thing.anchor: label for thing, label in shown},
         colors={name: strokes[name].color for name in names},
-        look=look,
+        adds=play_sentence(results),
+        of=results.play.model if results.play else "",
+        strength=strength_sentence(results),
+        nearness=trust_line(results),
         trust=[known.line for known in results.summary.answers.trust],
         viewer=viewer,
         charts=packed_charts(charts) if charts else "",

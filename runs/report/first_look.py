@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
-from runs.case.schema import Case, Model
+from runs.case.schema import Model
 from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
 from runs.pipeline.model_quality import off_at_rest
 from runs.pipeline.results import Results
 from runs.pipeline.summary import PressedPad
-from runs.report.answer_tables import hardly
+from runs.report.answer_tables import hardly, times
 from runs.report.figure_context import farthest
 from runs.report.numerals import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.tables import Column, Table
@@ -25,76 +25,55 @@ TENTH = 0.1
 NEAR = 0.9
 
 
-class FirstLook(NamedTuple):
-    """What stands on the first screen: the table of the answers, what play adds and of which model
-    that is, what steel and pads bear, how far other models are off; empty sentences say nothing.
-    """
-
-    answers: Table | None
-    adds: str
-    of: str
-    strength: str
-    nearness: str
-
-
-def first_look(results: Results) -> FirstLook:
-    """Of one run."""
-    return FirstLook(
-        first_table(results),
-        play_sentence(results),
-        play_note(results),
-        strength_sentence(results),
-        trust_line(results),
-    )
-
-
 def first_table(results: Results) -> Table | None:
-    """The answers of the models that are read first, the reference's before the others'."""
+    """Return the answers of the models that are read first, the reference's before the others'."""
     names, answers = results.read_first, results.summary.answers.models
     if not answers:
         return None
     own = [answers[name] for name in names]
     tips = [results.trajectories["tip"].sel(model=name).values for name in names]
+    hertz = [one.modes[0].frequency if one.modes else None for one in own]
+    # By its modal damping, of an oscillation that nothing else takes energy from.
+    decay = 2.0 * pi * results.case.damping.modal / log(1.0 / TENTH)
+    fading = [1.0 / (decay * f) if f and decay else None for f in hertz]
     walls, fibres = [_walls(one) for one in own], [_fibres(one) for one in own]
     hardest = _hardest_pads(results)
     pads = {name: _pad(pad) for name, pad in hardest.items()}
+    stations = [None if hardest else _largest(one, "contact force", at="\nat {} m") for one in own]
     damages = [_life_damage(one) for one in own]
     drawn = [_at_rest(one.drawn) for one in own]
-    fading = [_fading(results.case, one) for one in own]
-    stations = [None if hardest else _station(one) for one in own]
-    pins = _largest_of(own, "reaction, across and along")
     asked = (
         Column("Tip at rest, t = 0", [_at_rest(one.rests[:1]) for one in own], ".1f", "mm"),
         Column("Tip at rest, largest loads", [_at_rest(one.rests[1:]) for one in own], ".1f", "mm"),
         Column("Tip at rest where it is drawn to", drawn, ".1f", "mm"),
         Column("Tip in motion, farthest", [*map(_farthest, own, tips)], unit="mm"),
-        Column("Tip travels", [*map(_travels, tips)], ".1f", "mm"),
+        # What starts in the straight line has no need of it.
+        Column("Tip travels", [farthest(x - x[0]) if x[0] else None for x in tips], ".1f", "mm"),
         Column("Tip swings while it is drawn", [_swings(one) for one in own], unit="mm"),
-        Column("Tip to the sides, farthest", _largest_of(own, "lateral deflection"), unit="mm"),
-        Column("First frequency", [_frequency(one) for one in own], ".3g", "Hz"),
-        Column("One swing takes", [_period(one) for one in own], ".3g", "s"),
+        Column("Tip to the sides, farthest", _each(own, "lateral deflection"), unit="mm"),
+        Column("First frequency", hertz, ".3g", "Hz"),
+        Column("One swing takes", [f and 1.0 / f for f in hertz], ".3g", "s"),
         Column("Swings fade to a tenth in", fading, ".2g", "s"),
         Column("Pad that presses most", [pads.get(name) for name in names]),
         Column("Station pressed most", stations, unit="kN"),
-        Column("Cylinder, at most", _largest_of(own, "cylinder force"), unit="kN"),
-        Column("Pin of the foot, at most", pins, unit="kN"),
+        Column("Cylinder, at most", _each(own, "cylinder force"), unit="kN"),
+        Column("Pin of the foot, at most", _each(own, "reaction, across and along"), unit="kN"),
         Column("Outer fibre", [one and _stress(one) for one in fibres], unit="MPa"),
         Column("Walls over a patch", [one and _stress(one) for one in walls], unit="MPa"),
         Column("Damage of its life", damages, ".3g"),
     )
     rows = {column.heading.replace("\n", ", "): column.text for column in asked}
-    told = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
-    columns = [Column("", list(told))]
-    columns += [Column(name, [cells[i] for cells in told.values()]) for i, name in enumerate(names)]
+    rows = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
+    columns = [Column("", list(rows))]
+    columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
     strong = [_stress(one) for one in (*walls, *fibres) if one and (one.part or 0.0) >= NEAR]
     strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
     strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
-    notes = " ".join(_notes(results, told))
-    return Table("The answers", columns, [notes], "answers", strong=strong)
+    return Table("The answers", columns, [" ".join(_notes(results, rows))], "answers", strong)
 
 
 def trust_line(results: Results) -> str:
-    """How far the other models with play are off the one they are held against; else empty."""
+    """Return how far the other models with play are off the one they are held against; else empty."""
     answers, reference = results.summary.answers.models, results.reference
     if not answers or reference is None:
         return ""
@@ -116,7 +95,7 @@ def trust_line(results: Results) -> str:
 
 
 def play_sentence(results: Results) -> str:
-    """What play adds, of the model that the others are held against; else empty."""
+    """Return what play adds, of the model that the others are held against; else empty."""
     found = results.play
     if found is None:
         return ""
@@ -137,7 +116,7 @@ def play_sentence(results: Results) -> str:
 
 
 def strength_sentence(results: Results) -> str:
-    """What part of what they bear steel and pads reach, in the model that is read first; or empty.
+    """Return the utilisation of steel and pads in the model that is read first, or an empty text.
 
     Where neither strengths, allowable pressures nor a life are known there is nothing to be said.
     """
@@ -182,14 +161,6 @@ _SAID = {
 }
 
 
-def play_note(results: Results) -> str:
-    """Whose numbers the sentences have."""
-    found = results.play
-    if found is None:
-        return ""
-    return f"Of the model {found.model}, beside the same without play."
-
-
 def _more(one: Added) -> str:
     share = "" if one.share is None else f" ({signed(f'{TO_PERCENT * one.share:+.0f}')} %)"
     return f"{amount(one.added, one.unit)}{share}"
@@ -205,33 +176,27 @@ class _Largest(NamedTuple):
 
 
 def _walls(own: ModelAnswers) -> _Largest | None:
-    found = own.moved.walls if own.moved else []
-    return _hardest([_Largest(one.patch, one.segment, one.x, one.utilisation) for one in found])
+    walls = own.moved.walls if own.moved else []
+    return _hardest(_Largest(one.patch, one.segment, one.x, one.utilisation) for one in walls)
 
 
 def _fibres(own: ModelAnswers) -> _Largest | None:
-    found = own.moved.fibres if own.moved else []
+    fibres = own.moved.fibres if own.moved else []
     return _hardest(
-        [_Largest(abs(one.stress), one.segment, one.x, one.utilisation) for one in found]
+        _Largest(abs(one.stress), one.segment, one.x, one.utilisation) for one in fibres
     )
 
 
-def _hardest(found: Sequence[_Largest]) -> _Largest | None:
-    """Nearest to what its steel bears, else the largest."""
+def _hardest(found: Iterable[_Largest]) -> _Largest | None:
+    """Return the one nearest to what its steel bears, else the largest."""
     return max(found, key=lambda one: (one.part or 0.0, one.stress), default=None)
 
 
 def _hardest_pads(results: Results) -> dict[str, PressedPad]:
-    """Of each model, nearest to what it may bear, else of the largest pressure."""
-    found: dict[str, PressedPad] = {}
-    for pad in results.summary.pads:
-        if pad.model not in found or _pressure(pad) > _pressure(found[pad.model]):
-            found[pad.model] = pad
-    return found
-
-
-def _pressure(pad: PressedPad) -> tuple[float, float]:
-    return pad.utilisation or 0.0, pad.pressure
+    """Return each model's pad nearest to what it may bear, else of the largest pressure."""
+    pads = results.summary.pads[::-1]
+    pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
+    return {pad.model: pad for pad in pads}
 
 
 def _pad(pad: PressedPad) -> str:
@@ -259,7 +224,7 @@ def _place(largest: _Largest) -> str:
     return f"{largest.segment}, {largest.x:.1f} m"
 
 
-def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]:
+def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]:
     """What the table's numbers are."""
     models = sorted(
         (model for model in results.ran if model.name in results.read_first),
@@ -267,17 +232,17 @@ def _notes(results: Results, told: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(map(_model, models))}."
     yield "Tip: across the boom, from the straight line of the unloaded one."
-    if "Tip travels, mm" in told:
+    if "Tip travels, mm" in rows:
         yield "It travels: the farthest from where it is at t = 0."
-    if any("×" in cell for cells in told.values() for cell in cells):
+    if any("×" in cell for cells in rows.values() for cell in cells):
         drawn = ", wherever it is drawn to" if results.case.driven else ""
         yield f"×: so many times what is at rest under the largest loads{drawn}."
-    if "Tip swings while it is drawn, mm" in told:
+    if "Tip swings while it is drawn, mm" in rows:
         yield "It swings: about where it would rest; standing, where drives begin and end."
-    if "Swings fade to a tenth in, s" in told:
+    if "Swings fade to a tenth in, s" in rows:
         ratio = percent(results.case.damping.modal)
         yield f"Swings fade: their amplitude, by the case's damping ratio of {ratio} alone."
-    if "Pad that presses most" in told:
+    if "Pad that presses most" in rows:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
         yield f"Pad: one of a pair, at its peak{bears and f'; %: of the allowable {bears}'}."
@@ -310,18 +275,13 @@ def _at_rest(rests: Sequence[AtRest]) -> float | None:
 
 
 def _farthest(own: ModelAnswers, tip: Array) -> str:
-    """With its sign, and how many times the rest that is."""
-    peaks = [peak for peak in own.moved.peaks if peak.what == "deflection"] if own.moved else []
-    return _milli(farthest(tip)) + (_times(peaks[0]) if peaks else "")
-
-
-def _travels(tip: Array) -> float | None:
-    """From where it starts; what starts in the straight line has no need of it."""
-    return farthest(tip - tip[0]) if tip[0] else None
+    """Return the tip's farthest with its sign, and how many times the rest that is."""
+    peak = _peak(own, "deflection")
+    return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
 def _swings(own: ModelAnswers) -> str | None:
-    """About where it would rest, and the same boom where drives begin and end."""
+    """Return a swing about where the tip would rest, and those of the boom where drives end."""
     if (swing := own.swing) is None:
         return None
     begun, ended = _milli(swing.where_begun), _milli(swing.where_ended)
@@ -332,45 +292,20 @@ def _milli(deflection: float | None) -> str:
     return fixed(deflection, 1, TO_MILLI)
 
 
-def _largest_of(own: Sequence[ModelAnswers], what: str) -> list[str | None]:
-    """Of each model, in kN or mm."""
-    peaks = [_peak_of(one, what) for one in own]
-    return [None if peak is None else _largest(peak) for peak in peaks]
+def _each(own: Sequence[ModelAnswers], what: str) -> list[str | None]:
+    return [_largest(one, what) for one in own]
 
 
-def _station(own: ModelAnswers) -> str | None:
-    peak = _peak_of(own, "contact force")
-    return None if peak is None else f"{_largest(peak)}\nat {peak.where} m"
+def _largest(own: ModelAnswers, what: str, at: str = "") -> str | None:
+    """Return the largest of its kind in kN or mm, and where it is."""
+    if (peak := _peak(own, what)) is None:
+        return None
+    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
 
 
-def _peak_of(own: ModelAnswers, what: str) -> Peak | None:
-    """The largest of its kind."""
+def _peak(own: ModelAnswers, what: str) -> Peak | None:
     peaks = [peak for peak in own.moved.peaks if peak.what == what] if own.moved else []
     return max(peaks, key=lambda one: one.largest, default=None)
-
-
-def _largest(peak: Peak) -> str:
-    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{_times(peak)}"
-
-
-def _times(peak: Peak) -> str:
-    return "" if peak.factor is None else f" (× {number(peak.factor)})"
-
-
-def _frequency(own: ModelAnswers) -> float | None:
-    return own.modes[0].frequency if own.modes else None
-
-
-def _period(own: ModelAnswers) -> float | None:
-    return 1.0 / own.modes[0].frequency if own.modes else None
-
-
-def _fading(case: Case, own: ModelAnswers) -> float | None:
-    """By its modal damping, of an oscillation that nothing else takes energy from."""
-    ratio = case.damping.modal
-    if not own.modes or ratio == 0.0:
-        return None
-    return log(1.0 / TENTH) / (2.0 * pi * ratio * own.modes[0].frequency)
 
 
 def _life_damage(own: ModelAnswers) -> float | None:

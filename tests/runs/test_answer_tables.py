@@ -24,7 +24,6 @@ from runs.report.answer_tables import (
 )
 from runs.report.first_look import (
     first_table,
-    play_note,
     play_sentence,
     strength_sentence,
     trust_line,
@@ -81,7 +80,6 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
         "Play adds 50 mm (+50 %) to the tip at rest under the largest loads and 20 MPa (+20 %) "
         "to the largest stress of an outer fibre. The first frequency is 1.5 Hz in place of 2 Hz."
     )
-    assert play_note(told) == "Of the model kantorovich-5, beside the same without play."
     rows = cells(play_table(told))
     assert rows["stress, inner"]["play adds"] == "−10 MPa"
     assert rows["stress, inner"]["%"] == "−10"
@@ -243,4 +241,4 @@ def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     without = replace(results, summary=results.summary.model_copy(update={"answers": Answers({})}))
     assert first_table(without) is None
     assert answer_tables(without) == []
-    assert play_sentence(without) == play_note(without) == ""
+    assert play_sentence(without) == ""
