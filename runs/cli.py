@@ -187,7 +187,7 @@ def snapshot(
     from runs.folder.files import alone, changed_folder
     from runs.pipeline.results import TRAJECTORIES, Results
     from runs.report import output, snapshots
-    from shell_model.pictures.opengl import RenderingUnavailable
+    from runs.report.opengl import RenderingUnavailable
 
     with alone(Path(folder)):
         results = Results.load(Path(folder))

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells as gap systems: FEniCSx forms, contact rows, reduction, pictures."""
+"""Shells as gap systems: FEniCSx forms, contact rows, reduction, stresses."""

@@ -8,7 +8,7 @@ from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from typing import Any
 
-from shell_model.pictures.opengl import first_picture
+from runs.report.opengl import first_picture
 
 
 class AtOnce(Executor):

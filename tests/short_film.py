@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from shell_model.pictures import rendering
+from runs.report import snapshots
 
 
 def render_short_film(*given: Any) -> list[Path]:
-    """As :func:`shell_model.pictures.rendering.render_film`."""
-    with patch.object(rendering, "FRAMES", 3):
-        return rendering.render_film(*given)
+    """As :func:`runs.report.snapshots.render_film`."""
+    with patch.object(snapshots, "FRAMES", 3):
+        return snapshots.render_film(*given)
 
 
-RENDERED = rendering.render_stills, render_short_film
+RENDERED = snapshots.render_stills, render_short_film

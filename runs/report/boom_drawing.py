@@ -14,28 +14,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from matplotlib.path import Path as Shape
+from matplotlib.path import Path as Sign
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, Transform
 from matplotlib.typing import HashableList
 
 from geometry.arrays import Array
-from geometry.boom import Boom, Cylinder, Joint, Segment, Stop, Support
+from geometry.boom import Boom, Cylinder, Joint
 from geometry.drawing import farthest
+from geometry.section import Plate, Section
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.files import whole
-from runs.report import numerals, symbols, theme
-from runs.report.acting import Acting, acting, amount
+from runs.report import numerals, theme
 from runs.report.figure_context import Figure, Pen
-from runs.report.sections_drawing import draw_sections, shown_sections
+from runs.report.marks import PINNED, Mark, amount, edges, look, marks
 
 # Of the panels' height the outermost section takes this part, in the one that draws heights larger.
 SECTION_SHARE = 0.2
-# A segment whose plates are unknown is drawn as high as this part of the boom's length.
-UNKNOWN = 0.015
 # Size of the signs in pt, and of those of which there are many.
 SIGN, SMALL = 15.0, 9.0
 # Heights in inches: of the panel along the boom, of the one to scale at most and at least, of the
@@ -47,6 +45,9 @@ LETTERS = 30
 STEEP, BESIDE = 25.0, 3
 # What is left free beside the boom, as a part of its length.
 MARGIN = 0.06
+# So many sections can be seen beside one another, m between two as a part of the largest one's
+# width.
+MOST, GAP = 8, 0.35
 
 CAPTION = (
     "The boom before anything moves: as it stands, along itself with its joints, and its sections. "
@@ -55,42 +56,48 @@ CAPTION = (
 
 
 @dataclass(slots=True)
-class Drawing:
-    """A panel, and what its signs mean.
+class Panel:
+    """A drawing of the boom, and what its signs mean.
 
     Args:
-        axes: of the panel.
-        turn: from places along the boom to the panel's.
+        axes: where it is.
+        boom: of which.
+        angle: at which it stands, in degrees.
         larger: by how much heights are drawn larger.
         whole: whether it shows all of the boom and no details.
         meanings: text of the legend → its sign.
     """
 
     axes: Axes
-    turn: Transform
+    boom: Boom
+    angle: float
     larger: float
     whole: bool
     meanings: dict[str, Line2D] = field(default_factory=dict)
 
-    def outline(self, corners: Sequence[tuple[float, float]] | Array, **look: Any) -> None:
+    @property
+    def turn(self) -> Transform:
+        """From x and z in m to the panel's places."""
+        return Affine2D().scale(1.0, self.larger).rotate_deg(self.angle)
+
+    def outline(self, corners: Sequence[tuple[float, float]] | Array, **given: Any) -> None:
         """A filled polygon, x and z of its corners in m."""
-        places = np.asarray(corners) * [1.0, self.larger]
-        self.axes.add_patch(Polygon(self.turn.transform(places), closed=True, **look))
+        self.axes.add_patch(Polygon(self.turn.transform(np.array(corners)), closed=True, **given))
 
-    def line(self, places: Sequence[Sequence[float] | Array] | Array, **look: Any) -> None:
+    def line(self, places: Sequence[Sequence[float] | Array] | Array, **given: Any) -> None:
         """Through x and z in m."""
-        x, z = self.turn.transform(np.asarray(places) * [1.0, self.larger]).T
-        self.axes.plot(x, z, **look)
+        self.axes.plot(*self.turn.transform(np.array(places)).T, **given)
 
-    def sign(self, shape: Shape, places: Array, meaning: str, color: str = theme.INK) -> None:
-        """One of :mod:`runs.report.symbols` at x and z in m, (num_places, 2)."""
-        x, z = self.turn.transform(places * [1.0, self.larger]).T
-        mark = _mark(shape, color, SIGN if len(places) == 1 else SMALL)
-        self.axes.plot(x, z, clip_on=False, zorder=5, **mark)
-        if meaning:
-            self.meanings.setdefault(
-                meaning, Line2D([], [], **_mark(_centred(shape), color, SMALL))
-            )
+    def sign(self, mark: Mark) -> None:
+        """One of the boom's marks."""
+        places = [(x, mark.z(self.boom, x)) for x in mark.places]
+        size = SIGN if len(places) == 1 else SMALL
+        shown = look(mark.turned(self.angle), mark.color, size)
+        self.line(places, clip_on=False, zorder=5, **shown)
+        corners = np.asarray(mark.sign.vertices)
+        centred = corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+        in_legend = look(Sign(centred, mark.sign.codes), mark.color, SMALL)
+        self.meanings.setdefault(mark.meaning, Line2D([], [], **in_legend))
 
 
 def boom(pen: Pen) -> list[Figure]:
@@ -108,9 +115,8 @@ def draw_boom_of(case: Case, path: Path) -> None:
         case: whose boom it is.
         path: of the PNG file.
     """
-    boom = build_boom(case)
     with rc_context(theme.RC):
-        boom_sheet(case, boom).savefig(path, format="png")
+        boom_sheet(case, build_boom(case)).savefig(path, format="png")
 
 
 def save_drawing(case: Case, file: str, picture: str) -> None:
@@ -134,7 +140,11 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     """The drawing, before it is on the disk."""
     angle = 0.0 if case.gravity is None else case.gravity.angle
     low, high = _extent(boom, angle)
-    sections = shown_sections(boom)
+    sections = [
+        (theme.segment_color(number), segment.section)
+        for number, segment in enumerate(boom.segments)
+        if segment.section is not None
+    ][:MOST]
     beside = abs(angle) > STEEP and 0 < len(sections) <= BESIDE
     room = (0.45 if beside else 1.0) * theme.WIDTH
     standing = min(max(LEAST, room * (high - low)[1] / (high - low)[0]), HIGHEST)
@@ -149,24 +159,19 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
     theme.Canvas(sheet)
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
-    acts = list(acting(case, boom))
-    _draw_whole(
-        Drawing(panels["whole"], Affine2D().rotate_deg(angle), 1.0, True), boom, acts, angle
-    )
-    lying = Drawing(panels["along"], Affine2D(), _larger(boom), False)
-    _draw_along(lying, boom, acts)
+    signs = list(marks(case, boom))
+    _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), signs)
+    lying = Panel(panels["along"], boom, 0.0, _larger(boom), whole=False)
+    _draw_along(lying, signs)
     if sections:
-        draw_sections(panels["sections"], sections)
-    handles = [*lying.meanings.values()]
-    said = list(_said(case, boom))
-    handles += [Line2D([], [], linestyle="") for _ in said]
-    labels = [*lying.meanings, *said]
-    columns = 2 if max(map(len, labels)) <= LETTERS else 1
-    lines = -(-len(handles) // columns)
+        _draw_sections(panels["sections"], sections)
+    entries = lying.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
+    columns = 2 if max(map(len, entries)) <= LETTERS else 1
+    lines = -(-len(entries) // columns)
     sheet.set_size_inches(theme.WIDTH, sum(heights) + 0.4 + LEGEND_LINE * (lines + 1))
     sheet.legend(
-        handles,
-        labels,
+        [*entries.values()],
+        [*entries],
         loc="outside lower left",
         ncols=columns,
         fontsize=9.5,
@@ -177,11 +182,12 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     return sheet
 
 
-def _draw_whole(drawing: Drawing, boom: Boom, acts: Sequence[Acting], angle: float) -> None:
+def _draw_whole(panel: Panel, signs: Sequence[Mark]) -> None:
     """To scale, at its angle, between what it stands on and what it carries."""
-    _draw(drawing, boom, [act for act in acts if len(act.places) == 1], angle)
+    _draw(panel, [mark for mark in signs if len(mark.places) == 1])
+    boom, axes, angle = panel.boom, panel.axes, panel.angle
     low, high = _extent(boom, angle)
-    axes, margin = drawing.axes, MARGIN * boom.length
+    margin = MARGIN * boom.length
     axes.set_xlim(low[0] - margin, high[0] + margin)
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
@@ -189,25 +195,36 @@ def _draw_whole(drawing: Drawing, boom: Boom, acts: Sequence[Acting], angle: flo
     degrees = signed(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
     if angle:
-        reach = 0.18 * boom.length
-        turns = np.radians(np.linspace(0.0, angle, 30))
+        radius = 0.18 * boom.length
+        arc = np.radians(np.linspace(0.0, angle, 30))
         grey: dict[str, Any] = {"color": theme.PLAY_FREE, "linewidth": 0.9}
-        axes.plot(reach * np.cos(turns), reach * np.sin(turns), **grey)
-        axes.plot([0.0, 1.25 * reach], [0.0, 0.0], **grey)
-        x, z = 1.15 * reach * np.cos(turns[15]), 1.15 * reach * np.sin(turns[15])
+        axes.plot(radius * np.cos(arc), radius * np.sin(arc), **grey)
+        axes.plot([0.0, 1.25 * radius], [0.0, 0.0], **grey)
+        x, z = 1.15 * radius * np.cos(arc[15]), 1.15 * radius * np.sin(arc[15])
         axes.text(x, z, degrees, color=theme.PLAY_FREE, va="center", fontsize=10.0)
 
 
-def _draw_along(drawing: Drawing, boom: Boom, acts: Sequence[Acting]) -> None:
+def _draw_along(panel: Panel, signs: Sequence[Mark]) -> None:
     """Lying, with heights larger, names and x."""
-    _draw(drawing, boom, acts, 0.0)
-    _name_segments(drawing, boom)
-    axes, larger = drawing.axes, drawing.larger
+    _draw(panel, signs)
+    boom, axes, larger = panel.boom, panel.axes, panel.larger
+    for number, segment in enumerate(boom.segments):
+        # Above the part that is seen, the names of many on two lines.
+        hidden = boom.segments[number - 1].end if number else segment.start
+        middle = 0.5 * (max(hidden, segment.start) + segment.end)
+        axes.annotate(
+            segment.name,
+            (middle, larger * edges(boom, segment, middle)[1]),
+            (0, 18 + 12 * (number % 2 if len(boom.segments) > 4 else 0)),
+            textcoords="offset points",
+            ha="center",
+            color=theme.segment_color(number),
+            fontweight="bold",
+            annotation_clip=False,
+        )
     margin = MARGIN * boom.length
     axes.set_xlim(boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin)
-    tallest = larger * max(
-        abs(z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)
-    )
+    tallest = larger * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
     axes.set_ylim(-2.9 * tallest, 2.6 * tallest)
     axes.grid(False)
     axes.set_yticks([])
@@ -218,118 +235,72 @@ def _draw_along(drawing: Drawing, boom: Boom, acts: Sequence[Acting]) -> None:
     axes.set_title(f"along the boom{drawn}", fontsize=10.0)
 
 
-def _draw(drawing: Drawing, boom: Boom, acts: Sequence[Acting], angle: float) -> None:
+def _draw(panel: Panel, signs: Sequence[Mark]) -> None:
     """The boom with everything that holds and loads it."""
-    for number in reversed(range(len(boom.segments))):
-        _segment(drawing, boom, number)
-    if not drawing.whole:
-        for joint in boom.joints:
-            _stations(drawing, boom, joint)
-    for segment in boom.segments:
-        for support in segment.supports:
-            _support(drawing, boom, segment, support)
-    for cylinder in boom.cylinders:
-        _cylinder(drawing, cylinder)
-    for stop in boom.stops:
-        _stop(drawing, boom, stop)
-    for act in acts:
-        places = np.array(
-            [(x, _edge(act.edge, boom.segments[act.segment], boom, x)) for x in act.places]
-        )
-        drawing.sign(act.turned(angle), places, act.meaning, act.color)
+    for number in reversed(range(len(panel.boom.segments))):
+        _draw_segment(panel, number)
+    for joint in () if panel.whole else panel.boom.joints:
+        _draw_stations(panel, joint)
+    for mark in (mark for mark in signs if mark.stands):
+        panel.sign(mark)
+    for cylinder in panel.boom.cylinders:
+        _draw_cylinder(panel, cylinder)
+    for mark in (mark for mark in signs if not mark.stands):
+        panel.sign(mark)
 
 
-def _segment(drawing: Drawing, boom: Boom, number: int) -> None:
+def _draw_segment(panel: Panel, number: int) -> None:
+    boom, color = panel.boom, theme.segment_color(number)
     segment = boom.segments[number]
-    color = _color(number)
-    (bottom, top), (last_bottom, last_top) = (_reach(segment, boom, x) for x in segment.ends)
+    (bottom, top), (last_bottom, last_top) = (edges(boom, segment, x) for x in segment.ends)
     tail, head = segment.ends
     box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
-    drawing.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
-    if way := farthest(boom, number):
-        look: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
-        drawing.outline(
-            np.array(box) + np.array([way, 0.0]), facecolor="none", edgecolor=color, **look
-        )
-        drawing.meanings["drawn to"] = Line2D([], [], color=theme.PLAY_FREE, **look)
-    if drawing.whole:
+    panel.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
+    if travel := farthest(boom, number):
+        dashed: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
+        panel.outline(np.add(box, [travel, 0.0]), facecolor="none", edgecolor=color, **dashed)
+        panel.meanings["drawn to"] = Line2D([], [], color=theme.PLAY_FREE, **dashed)
+    if panel.whole:
         return
     for collar in segment.collars:
-        places = collar.start, collar.end
-        for edge in zip(*(_reach(segment, boom, x) for x in places), strict=True):
-            drawing.line([*zip(places, edge, strict=True)], color=color, linewidth=2.6)
+        ends = collar.start, collar.end
+        for edge in zip(*(edges(boom, segment, x) for x in ends), strict=True):
+            panel.line([*zip(ends, edge, strict=True)], color=color, linewidth=2.6)
     for plate in segment.diaphragms:
-        upright = [(plate.x, z) for z in _reach(segment, boom, plate.x)]
-        drawing.line(upright, color=color, linewidth=1.6)
+        upright = [(plate.x, z) for z in edges(boom, segment, plate.x)]
+        panel.line(upright, color=color, linewidth=1.6)
 
 
-def _stations(drawing: Drawing, boom: Boom, joint: Joint) -> None:
+def _draw_stations(panel: Panel, joint: Joint) -> None:
     """Bars across what the two segments leave between them, above and below."""
-    outer, inner = (boom.segments[number] for number in (joint.outer, joint.inner))
+    outer, inner = (panel.boom.segments[number] for number in (joint.outer, joint.inner))
     color = theme.PLAY_FREE if joint.tied else theme.INK
-    look: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
+    bar: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
     for x in joint.stations:
-        for ends in zip(_reach(inner, boom, x), _reach(outer, boom, x), strict=True):
-            drawing.line([(x, z) for z in ends], **look)
-    what = "slide pads" if joint.padded else "where segments touch"
-    drawing.meanings["tied" if joint.tied else what] = Line2D([], [], **look)
+        both = edges(panel.boom, inner, x), edges(panel.boom, outer, x)
+        for ends in zip(*both, strict=True):
+            panel.line([(x, z) for z in ends], **bar)
+    touching = "slide pads" if joint.padded else "where segments touch"
+    panel.meanings["tied" if joint.tied else touching] = Line2D([], [], **bar)
 
 
-def _support(drawing: Drawing, boom: Boom, segment: Segment, support: Support) -> None:
-    bottom, _ = _reach(segment, boom, support.x)
-    place = np.array([(support.x, -support.depth or bottom)])
-    if support.kind == "clamped":
-        drawing.sign(symbols.CLAMPED, place * [1.0, 0.0], "clamped")
-    elif support.stiffness is None:
-        drawing.sign(symbols.PINNED, place, "support")
-    else:
-        drawing.sign(symbols.ELASTIC, place, f"elastic support, {amount(support.stiffness, 'N/m')}")
-
-
-def _cylinder(drawing: Drawing, cylinder: Cylinder) -> None:
+def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     """From lug to ground; without its lower part where not all is shown."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
-    if not drawing.whole:
-        ground = lug + (ground - lug) * min(1.0, 0.6 / drawing.larger)
-    middle = 0.5 * (lug + ground)
-    drawing.line([lug * [1.0, 0.0], lug], color=theme.INK, linewidth=1.0)
-    drawing.line([lug, ground], color=theme.INK, linewidth=1.6)
-    drawing.line([middle, ground], color=theme.INK, linewidth=4.0)
-    if drawing.whole:
-        drawing.sign(symbols.PINNED, ground[None], "")
+    if not panel.whole:
+        ground = lug + (ground - lug) * min(1.0, 0.6 / panel.larger)
+    panel.line([lug * [1.0, 0.0], lug], color=theme.INK, linewidth=1.0)
+    panel.line([lug, ground], color=theme.INK, linewidth=1.6)
+    panel.line([0.5 * (lug + ground), ground], color=theme.INK, linewidth=4.0)
+    if panel.whole:
+        panel.line([ground], **look(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
-    drawing.meanings[f"cylinder, {amount(cylinder.stiffness, 'N/m')}"] = thick
-
-
-def _stop(drawing: Drawing, boom: Boom, stop: Stop) -> None:
-    play = f"rest, {2e3 * stop.clearance:g} mm of play"
-    reached = _reach(boom.segments[stop.segment], boom, stop.x)
-    sides = ((-1.0, stop.stiffness_below), (1.0, stop.stiffness))
-    for (side, stiffness), z in zip(sides, reached, strict=True):
-        if stiffness > 0.0:
-            drawing.sign(symbols.rest(side), np.array([(stop.x, z)]), play, theme.PLAY_FREE)
-
-
-def _color(number: int) -> str:
-    """Of a segment."""
-    return theme.PALETTE[number % len(theme.PALETTE)]
-
-
-def _reach(segment: Segment, boom: Boom, x: float) -> tuple[float, float]:
-    """z in m of the lower and the upper edge at x."""
-    half = 0.5 * UNKNOWN * boom.length
-    return (-half, half) if segment.section is None else segment.section_at(x).reach("z")
-
-
-def _edge(name: str, segment: Segment, boom: Boom, x: float) -> float:
-    """z in m of the edge at x on which a sign stands."""
-    bottom, top = _reach(segment, boom, x)
-    return {"top": top, "bottom": bottom, "axis": 0.0}[name]
+    panel.meanings[f"cylinder, {amount(cylinder.stiffness, 'N/m')}"] = thick
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
     """(2,) the lowest and the highest place of a boom at an angle in degrees, in m."""
-    ends = [(x, z) for s in boom.segments for x in s.ends for z in _reach(s, boom, x)]
+    ends = [(x, z) for s in boom.segments for x in s.ends for z in edges(boom, s, x)]
     ends.append((boom.tip + _farthest(boom), 0.0))
     places = np.array([*ends, *(one.ground for one in boom.cylinders)])
     turned = Affine2D().rotate_deg(angle).transform(places)
@@ -343,47 +314,12 @@ def _farthest(boom: Boom) -> float:
 
 def _larger(boom: Boom) -> float:
     """By how much heights are drawn larger."""
-    tallest = max(np.ptp(_reach(s, boom, x)) for s in boom.segments for x in s.ends)
+    tallest = max(np.ptp(edges(boom, s, x)) for s in boom.segments for x in s.ends)
     wanted = SECTION_SHARE * LYING * (1.0 + 2.0 * MARGIN) * boom.length / theme.WIDTH / tallest
     return max(1.0, float(f"{wanted:.1g}"))
 
 
-def _name_segments(drawing: Drawing, boom: Boom) -> None:
-    """Above the part of each that is seen, the names of many on two lines."""
-    for number, segment in enumerate(boom.segments):
-        hidden = boom.segments[number - 1].end if number else segment.start
-        middle = 0.5 * (max(hidden, segment.start) + segment.end)
-        drawing.axes.annotate(
-            segment.name,
-            (middle, drawing.larger * _reach(segment, boom, middle)[1]),
-            (0, 18 + 12 * (number % 2 if len(boom.segments) > 4 else 0)),
-            textcoords="offset points",
-            ha="center",
-            color=_color(number),
-            fontweight="bold",
-            annotation_clip=False,
-        )
-
-
-def _mark(shape: Shape, color: str, size: float) -> dict[str, Any]:
-    """How a sign is drawn; matplotlib scales a path by its farthest point."""
-    return {
-        "marker": shape,
-        "markersize": 2.0 * size * float(np.abs(shape.vertices).max()),
-        "linestyle": "",
-        "markeredgecolor": color,
-        "markerfacecolor": "none",
-        "markeredgewidth": 1.1,
-    }
-
-
-def _centred(shape: Shape) -> Shape:
-    """As a legend has it."""
-    corners = np.asarray(shape.vertices)
-    return Shape(corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0)), shape.codes)
-
-
-def _said(case: Case, boom: Boom) -> Iterator[str]:
+def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     """What has no sign."""
     loose = [joint for joint in boom.joints if not joint.tied]
     if loose:
@@ -401,3 +337,51 @@ def _said(case: Case, boom: Boom) -> Iterator[str]:
 
 def _several(values: Iterable[float]) -> str:
     return ", ".join(f"{value:g}" for value in sorted(set(values)))
+
+
+def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
+    """Sections beside one another to one scale, with their sizes in mm below."""
+    widest = max(section.size("y") for _, section in sections)
+    lowest = min(section.reach("z")[0] for _, section in sections)
+    highest = max(section.reach("z")[1] for _, section in sections)
+    pitch = (1.0 + GAP) * widest
+    for number, (color, section) in enumerate(sections):
+        for plate in section.plates:
+            corners = _thick(plate) + np.array([number * pitch, 0.0])
+            axes.add_patch(Polygon(corners, closed=True, facecolor=color, edgecolor=color, lw=0.3))
+        size = f"{1e3 * section.size('z'):.0f} × {1e3 * section.size('y'):.0f}"
+        axes.annotate(
+            f"{size}\n{_walls(section)}",
+            (number * pitch, 1.03 * lowest),
+            (0, -3),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=9.0 if len(sections) < 4 else 8.0,
+        )
+    axes.set_xlim(-0.6 * pitch, (len(sections) - 0.4) * pitch)
+    axes.set_ylim(1.6 * lowest, 1.05 * highest)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.set_title("sections to scale; mid-lines\nand walls in mm", fontsize=10.0)
+
+
+def _thick(plate: Plate) -> Array:
+    """(4, 2) corners of a plate as thick as it is, longer by half of that at both ends."""
+    half = 0.5 * plate.thickness * plate.tangent
+    start, end, across = plate.start - half, plate.end + half, np.array([-half[1], half[0]])
+    return np.array([start - across, end - across, end + across, start + across])
+
+
+def _walls(section: Section) -> str:
+    """How thick they are in mm, by name where webs, which carry what acts along z, differ."""
+    webs = {number for number, _ in section.carriers("z")}
+    thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
+    web, flange = (
+        ", ".join(f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == one}))
+        for one in (True, False)
+    )
+    if not flange or web == flange:
+        return web
+    both = "flanges\n" if "," in flange else "flange "
+    return f"web {web}\n{both}{flange}"

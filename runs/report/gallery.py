@@ -13,25 +13,34 @@ from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 from matplotlib import rc_context
+from matplotlib.patches import Patch
 from PIL import Image
 
+from geometry.arrays import Array
+from geometry.typography import TO_MILLI, digits
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
 from runs.folder.files import whole
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.process.terminal import show_notices
+from runs.report import theme
 from runs.report.boom_drawing import draw_boom_of
-from shell_model.pictures.boom import Instant
-from shell_model.pictures.deformation import MovingShell
-from shell_model.pictures.opengl import require_opengl
-from shell_model.pictures.rendering import TITLES, telling_instants
-from shell_model.pictures.still import draw_mesh, draw_sections
-from shell_model.pictures.theme import LETTERS
+from runs.report.opengl import require_opengl
+from runs.report.scene import SAME_PLACE, Instant, Overlap, Scene, rigid_motion, round_scale
+from runs.report.sheet import MATTE, MESHED, SHEET, Camera, Sheet, stage, surface
+from runs.report.snapshots import TITLES, telling_instants
 
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"
+
+# Of the mesh; degrees from which one looks down on it, and metres to each side of the overlap.
+PIXELS, ELEVATION, BESIDE = (SHEET[0], 660), 28.0, 0.9
+
+# Changes of shape are drawn up to this part of the outer section's height.
+CHANGE_DRAWN = 0.05
 
 # Picture of the gallery → the run that has it, and where.
 COPIED = {
@@ -74,14 +83,109 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
         yield "lift", Image.open(drawing).convert("RGB")
     results = Results.load(runs / "paper")
     motion = results.trajectories.sel(model=MODEL)
-    shell = MovingShell.views(read_fields(runs / "paper" / FIELDS), motion)[0]
-    (overlap,) = shell.overlaps
+    scene = Scene.views(read_fields(runs / "paper" / FIELDS), motion, results.case)[0]
+    (overlap,) = scene.overlaps
     require_opengl()
-    with rc_context(LETTERS):
-        yield "mesh", draw_mesh(shell, overlap)
+    with rc_context(theme.PAGE_RC):
+        yield "mesh", draw_mesh(scene, overlap)
         time = telling_instants(motion)["largest-force"]
         instant = Instant(time, TITLES["largest-force"])
-        yield "sections-largest-force", draw_sections(shell, instant, overlap)
+        yield "sections-largest-force", draw_sections(scene, instant, overlap)
+
+
+def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
+    """The triangles at an overlap; those walls of the outer segment that hide the inner one are
+    left out.
+    """
+    assert scene.stress is not None
+    corners = scene.points[scene.triangles]
+    inside = scene.points[scene.owner == overlap.inner, 0].min()
+    outside = scene.points[scene.owner == overlap.outer, 0].max()
+    middle, width = 0.5 * (inside + outside), outside - inside + 2.0 * BESIDE
+    shown = (np.abs(corners[..., 0] - middle) < 0.5 * width + 0.3).all(axis=1)
+    _, across, up = scene.stress.outward.T
+    hiding = (scene.segment == overlap.outer) & ((up > 0.5) | (across < -0.5))
+    shown &= ~(hiding & (corners[..., 0].mean(axis=1) > inside - 0.2))
+    sheet = Sheet(PIXELS, floor=90)
+    camera = Camera(np.array([middle, 0.0, 0.0]), width, PIXELS, ELEVATION)
+    legend = []
+    with stage(PIXELS) as plotter:
+        for number, color in ((overlap.outer, theme.OUTER), (overlap.inner, theme.INNER)):
+            mine = scene.segment == number
+            half = surface(scene.points, scene.triangles[mine & shown])
+            plotter.add_mesh(half, color=color, **(MATTE | MESHED))
+            label = f"{scene.boom.segments[number].name}: {mine.sum()} triangles"
+            legend.append(Patch(color=color, label=label))
+        sheet.show(camera.see(plotter))
+    sheet.figure.legend(
+        handles=legend, loc="upper center", bbox_to_anchor=(0.5, 0.87), ncols=2, frameon=False
+    )
+    sheet.mark_x(camera, middle - 0.45 * width, middle + 0.45 * width)
+    edges = np.linalg.norm(np.roll(corners, 1, axis=1) - corners, axis=2)
+    sheet.write(
+        "the mesh at the overlap, to scale",
+        f"edges of {np.median(edges.min(axis=1)):.2g} m; walls of the outer segment are taken away "
+        "to show the inner one\nmesh lines lie where the segments touch and where the outer "
+        "segment ends",
+    )
+    return sheet.image()
+
+
+def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Image:
+    """How the sections at the stations of an overlap change their shape."""
+    moved = scene.displacement(instant.time)
+    now = scene.motion.isel(station=overlap.stations).sel(time=instant.time, method="nearest")
+    stations = now["station"].values.tolist()
+    both = {overlap.outer: theme.OUTER, overlap.inner: theme.INNER}
+    outlines = {(n, x): change_of_shape(scene, moved, n, x) for x in stations for n in both}
+    height = 2.0 * scene.half_height(overlap.outer)
+    largest = max(float(np.abs(change).max()) for _, change in outlines.values())
+    scale = round_scale(CHANGE_DRAWN * height / max(largest, 1.0e-12))
+    sheet = Sheet(PIXELS, floor=90)
+    sheet.picture.remove()
+    panels = sheet.figure.subplots(1, len(stations), sharey=True, squeeze=False)[0]
+    forces = np.nan_to_num(now["contact_force"].values)
+    for panel, x, force in zip(panels, stations, forces, strict=True):
+        for number, color in both.items():
+            places, change = outlines[number, x]
+            at_rest = {"color": theme.FAINT, "linewidth": 1.5, "linestyle": "--"}
+            panel.plot(*(TO_MILLI * places).T, **at_rest)
+            drawn = TO_MILLI * (places + scale * change)
+            name = scene.boom.segments[number].name
+            panel.plot(*drawn.T, color=color, linewidth=4.0, label=name)
+        where = "above" if force > 0.0 else "below"
+        touch = f"contact {where} with {digits(1e-3 * abs(force))} kN" if force else "no contact"
+        panel.set_title(f"x = {x:g} m: {touch}")
+        panel.set(aspect="equal", xlabel="y (mm)")
+    panels[0].set_ylabel("z (mm)")
+    handles, labels = panels[0].get_legend_handles_labels()
+    sheet.figure.legend(handles, labels, loc="lower center", ncols=2, frameon=False)
+    sheet.figure.subplots_adjust(left=0.09, right=0.98, top=0.78, bottom=0.19, wspace=0.08)
+    sheet.write(
+        instant.heading(scene),
+        f"sections at the stations; drawn: changes of shape × {scale:g}, "
+        "without what moves and turns each section as a whole\n"
+        f"straight from node to node; dashed: at rest; largest change {TO_MILLI * largest:.2g} mm",
+    )
+    return sheet.image()
+
+
+def change_of_shape(scene: Scene, moved: Array, segment: int, x: float) -> tuple[Array, Array]:
+    """(num_points + 1, 2) y and z in m once around a section, and how they change.
+
+    What moves and turns the section as a whole is left out. ``moved`` (num_points, 3) is in m, x a
+    mesh line.
+    """
+    assert scene.stress is not None
+    walls = (scene.segment == segment) & (scene.stress.wall < len(scene.stress.plates[segment]))
+    mine = np.unique(scene.triangles[walls])
+    mine = mine[np.abs(scene.points[mine, 0] - x) < SAME_PLACE]
+    places, change = scene.points[mine, 1:], moved[mine, 1:]
+    across, up, turn = rigid_motion(places, change)
+    change = change - np.stack([across - turn * places[:, 1], up + turn * places[:, 0]], axis=1)
+    order = np.arctan2(places[:, 1], places[:, 0]).argsort()
+    around = np.append(order, order[0])
+    return places[around], change[around]
 
 
 def main() -> int:

@@ -21,10 +21,10 @@ from runs.report import snapshots
 from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.figures import draw_in
+from runs.report.opengl import RenderingUnavailable
 from runs.report.pages import Addition
 from runs.report.tables import as_json
 from runs.report.viewer import VIEWER, viewer
-from shell_model.pictures.opengl import RenderingUnavailable
 
 REPORT = "report.html"
 CALIBRATION = "calibration.json"

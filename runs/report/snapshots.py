@@ -1,41 +1,54 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Snapshots of a run: rendered, and what is to be seen in each."""
+"""Snapshots of a run's shells: at which instants, in which files, and with which captions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import xarray as xr
+from matplotlib import rc_context
+from PIL import Image
 
+from dynamics.trajectory import Trajectory
 from geometry.typography import TO_MILLI, signed
 from runs.case.kinds.model import of_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
+from runs.case.schema import Case
 from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
 from runs.process.workers import workers
+from runs.report import opengl, theme
+from runs.report.boom_pictures import BoomView, draw_boom
 from runs.report.figure_context import Figure
-from shell_model.pictures import opengl
-from shell_model.pictures.rendering import (
-    ANIMATED,
-    ANIMATION,
-    SHOWN,
-    TITLES,
-    render_files,
-    render_film,
-    render_stills,
-    telling_instants,
-)
+from runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
+from runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
-# What is drawn of each shell, at a time.
-RENDERED = render_stills, render_film
+
+# The animation: seconds of the run, number of pictures, seconds on the screen, part of a sheet.
+ANIMATION = "motion.gif"
+ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
+
+TITLES = {
+    "first-peak": "first peak of the tip",
+    "largest-deflection": "largest deflection of the tip",
+    "largest-force": "largest contact force",
+    "first-contact": "first contact",
+}
+
+# What happens at one station, of a joint or a stop.
+AT_A_STATION = ("largest-force", "first-contact")
+
+# Instants nearer to one another than this part of the run look the same.
+SAME = 0.02
 
 # What an arrow stands for where there is more than one point to a station.
 ON_SURFACES = (
@@ -48,6 +61,155 @@ _GIVEN = re.compile(r"[0-9.e+-]+s")
 _NAME = re.compile(
     r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
 )
+
+Times = Sequence[float] | None
+Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
+
+
+def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
+    """Draw a shell at some instants.
+
+    Args:
+        views: of its motion, see :meth:`Scene.views`.
+        folder: gets ``boom-WHEN.png``, ``overlap-WHEN.png`` and ``stress-WHEN.png`` of each
+            instant (from the second joint on ``overlap-2-WHEN.png``), those of a boom in space
+            seen from above too (``boom-above-WHEN.png``).
+        times: in s; those of :func:`telling_instants` unless given.
+
+    Returns:
+        The files.
+
+    Raises:
+        ValueError: a time lies outside the run.
+    """
+    begin, end = _ends(views[0])
+    when = _when(views[0].motion, times)
+    for t in when.values():
+        if not begin <= t <= end:
+            raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
+    drawn: list[Path] = []
+    with rc_context(theme.PAGE_RC):
+        assert views[0].stress is not None
+        scale = StressScale.of(views[0].stress, when.values())
+        for seen in views:
+            above = "-above" if seen.from_above else ""
+            when = _when(seen.motion, times)
+            instants = _instants(views, when)
+            view = BoomView.of(seen, [*instants, *_film(seen)])
+            pictures = {f"boom{above}": draw_boom(view, instants, end)}
+            for number, overlap in enumerate(seen.overlaps, start=1):
+                if seen.slides(overlap):
+                    # Its stations do not stay where these pictures look.
+                    continue
+                joint = above if number == 1 else f"{above}-{number}"
+                pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
+                pictures[f"stress{joint}"] = draw_stress(seen, instants, scale, overlap)
+            for kind, several in pictures.items():
+                for name, picture in zip(when, several, strict=True):
+                    drawn.append(folder / f"{kind}-{name}.png")
+                    picture.save(drawn[-1])
+    return drawn
+
+
+def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
+    """Draw the first motion of a shell, magnified as in :func:`render_stills`: ``motion.gif``."""
+    scene = views[0]
+    film, (begin, _) = _film(scene), _ends(scene)
+    with rc_context(theme.PAGE_RC):
+        view = BoomView.of(scene, [*_instants(views, _when(scene.motion, times)), *film])
+        last = film[-1].time
+        slow = SHOWN / (last - begin) if last > begin else 1.0
+        pace = f"; {slow:.3g} times slower than it is" if slow > 1.0 else ""
+        pictures = list(draw_boom(view, film, last, pace, SMALL))
+    # All have one palette, that of some one above another: colours would flicker otherwise.
+    some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
+    palette = Image.fromarray(some).quantize(256, Image.Quantize.FASTOCTREE)
+    first, *rest = (
+        picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures
+    )
+    first.save(
+        folder / ANIMATION,
+        save_all=True,
+        append_images=rest,
+        duration=round(1.0e3 * SHOWN / len(pictures)),
+        loop=0,
+    )
+    return [folder / ANIMATION]
+
+
+# What is drawn of each shell, at a time.
+RENDERED: Sequence[Render] = (render_stills, render_film)
+
+
+def render_files(
+    render: Render, fields: Path, trajectories: Path, case: Case, folder: Path, times: Times
+) -> list[Path]:
+    """What is drawn of netCDF files, ``model`` being the attribute of the fields."""
+    shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
+    views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
+    return render(views, folder, times)
+
+
+def _ends(scene: Scene) -> tuple[float, float]:
+    """Of its motion in s."""
+    begin, end = scene.motion["time"].values[[0, -1]]
+    return float(begin), float(end)
+
+
+def _film(scene: Scene) -> list[Instant]:
+    begin, end = _ends(scene)
+    return [Instant(float(t)) for t in np.linspace(begin, min(end, begin + ANIMATED), FRAMES)]
+
+
+def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
+    """Times in s by the names that their files have."""
+    return telling_instants(motion) if times is None else {f"{t:g}s": t for t in times}
+
+
+def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
+    return [
+        Instant(t, TITLES.get(name, "") + (where_pressed(views, t) if name in AT_A_STATION else ""))
+        for name, t in when.items()
+    ]
+
+
+def telling_instants(motion: xr.Dataset) -> dict[str, float]:
+    """Times in s of a model's trajectories that are worth a look, by what happens then.
+
+    ``first-peak`` of the tip, or ``largest-deflection`` where there is no peak; the
+    ``largest-force`` of the run, at any station, unless that is at nearly the same time; the
+    ``first-contact``, unless something is pressed from the start. Without contact there is the
+    first alone.
+    """
+    time = np.asarray(motion["time"].values)
+    peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
+    if np.isnan(peak):
+        instants = {"largest-deflection": float(time[np.abs(motion["tip"].values).argmax()])}
+    else:
+        instants = {"first-peak": peak}
+    force = np.abs(np.nan_to_num(motion["contact_force_peak"].values))
+    if force.any():
+        largest = float(time[force.max(axis=1).argmax()])
+        if all(abs(largest - seen) > SAME * time[-1] for seen in instants.values()):
+            instants["largest-force"] = largest
+        if not force[0].any():
+            instants["first-contact"] = float(time[force.any(axis=1).argmax()])
+    return instants
+
+
+def where_pressed(views: Sequence[Scene], time: float) -> str:
+    """Where the force is largest at a time (s); nothing where there is but one such place."""
+    scene = views[0]
+    places = [
+        (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
+        for seen in views
+        for number, overlap in enumerate(seen.overlaps, start=1)
+    ]
+    if len(places) + len(scene.boom.stops) < 2:
+        return ""
+    peaks = scene.motion["contact_force_peak"].sel(time=time, method="nearest").values
+    hardest = int(np.abs(np.nan_to_num(peaks)).argmax())
+    return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
 
 
 def shells_in(folder: Path) -> list[Path]:
@@ -70,7 +232,7 @@ def drawing(
     shells: Sequence[Path],
     trajectories: Path,
     folder: Path,
-    times: Sequence[float] | None = None,
+    times: Times = None,
 ) -> Iterator[Callable[[], list[str]]]:
     """Render the deformed shells of a run in processes beside this one.
 
@@ -94,7 +256,9 @@ def drawing(
             place = Path(easel) / str(number)
             place.mkdir()
             for render in RENDERED:
-                found = pool.submit(render_files, render, path, trajectories, place, times)
+                found = pool.submit(
+                    render_files, render, path, trajectories, results.case, place, times
+                )
                 drawn.append((path.name.removesuffix(FIELDS), found))
 
         def gather() -> list[str]:
@@ -146,61 +310,57 @@ def describe_one(results: Results, path: Path) -> Figure:
 
     Args:
         results: of the run whose shell it shows.
-        path: as :func:`shell_model.pictures.rendering.render_stills` names it, with the shell's
-            name before it where the case has several.
+        path: as :func:`render_stills` names it, with the shell's name before it where the case
+            has several.
     """
     lines = {m.name: m.contact_line for m in of_kind(Shell, results.case.models)}
     shells = list(lines)
     several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
     model = max(several, key=len) if len(shells) > 1 and several else shells[0]
-    forces = ON_SURFACES if lines[model] == "surface" else ""
     name = path.name.removeprefix(f"{model}-" if len(shells) > 1 else "")
     motion = results.trajectories.sel(model=model)
     if name == ANIMATION:
-        return _animation(path, model, motion)
+        last = min(ANIMATED, float(motion["time"].values[-1]))
+        caption = (
+            f"The first {last:g} s of {model!r} in slow motion, in {SHOWN:g} s. Colours and "
+            "magnification as in the pictures of the boom."
+        )
+        return Figure(path, f"Boom in motion, first {last:g} s", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
-    above = ", seen from above" if seen["above"] else ""
+    above, aside = (", seen from above", " sideways") if seen["above"] else ("", "")
     if above:
         motion = motion.assign(tip=motion["tip_lateral"])
     when, tip = _instant(seen["when"], motion)
-    state = f"{when}{tip}" + (" to the side" if above and tip else "")
-    if seen["view"] == "boom":
-        coloured = "amount of deflection" + (" sideways" if above else "")
-        supports = "" if above else "; black: supports"
-        caption = (
-            f"The boom of {model!r}{above}: {state}. Colour: {coloured}; grey: unloaded{supports}. "
-            "Displacements and play are magnified by the factor above the picture."
-        )
-        return Figure(path, f"Boom{above}: {when}", caption)
+    state = f"{model!r}{above}: {when}{tip}" + (" to the side" if above and tip else "")
     which = f" of joint {seen['joint']}" if seen["joint"] else ""
-    if seen["view"] == "stress":
-        caption = (
-            f"Von Mises stresses of {model!r}{above}: {state}. Above: the whole boom; below: the "
+    title, caption = {
+        "boom": (
+            "Boom",
+            f"The boom of {state}. Colour: amount of deflection{aside}; grey: unloaded; signs: "
+            "supports, cylinders, masses and loads. Displacements and play are magnified by the "
+            "factor above the picture.",
+        ),
+        "stress": (
+            f"Stress at the overlap{which}",
+            f"Von Mises stresses of {state}. Above: the whole boom; below: the "
             f"overlap{which}, cut open. The larger value of both faces, the mean of the triangles "
             "around a point of a wall; the few beyond the end of the scale have its darkest "
             "colour. Beside a line of contact all of these grow as the mesh refines; strength is "
             "judged by means over a patch of half a wall, which settle and stand in the tables. "
-            "Displacements and play are magnified by the factors above the picture."
-            f"{forces}"
-        )
-        return Figure(path, f"Stress at the overlap{which}{above}: {when}", caption)
-    caption = (
-        f"The overlap{which} of {model!r}{above}, cut open: {state}. Blue: outer segment; orange: "
-        "inner one; arrows: forces of the inner one on the outer one. Play, and what moves beside "
-        "the outer segment, are magnified by the factor above the picture; a peak is what a blow "
-        f"reaches, for microseconds.{forces}"
-    )
-    return Figure(path, f"Overlap{which}{above}: {when}", caption)
-
-
-def _animation(path: Path, model: str, motion: xr.Dataset) -> Figure:
-    last = min(ANIMATED, float(motion["time"].values[-1]))
-    caption = (
-        f"The first {last:g} s of {model!r} in slow motion, in {SHOWN:g} s. Colours and "
-        "magnification as in the pictures of the boom."
-    )
-    return Figure(path, f"Boom in motion, first {last:g} s", caption)
+            "Displacements and play are magnified by the factors above the picture.",
+        ),
+        "overlap": (
+            f"Overlap{which}",
+            f"The overlap{which} of {state}, cut open. Blue: outer segment; orange: inner one; "
+            "arrows: forces of the inner one on the outer one. Play, and what moves beside the "
+            "outer segment, are magnified by the factor above the picture; a peak is what a blow "
+            "reaches, for microseconds.",
+        ),
+    }[seen["view"]]
+    if lines[model] == "surface" and seen["view"] != "boom":
+        caption += ON_SURFACES
+    return Figure(path, f"{title}{above}: {when}", caption)
 
 
 def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:

@@ -17,12 +17,18 @@ DPI = 150
 INK = "#222222"
 RULE = "#d9d9d9"
 PLAY_FREE = "#6b6b6b"
+FAINT = "#a8a8a8"
 # What an energy was lost to, beside the colours of the models.
 LOSS = "#8c6d1f"
 
 # Okabe and Ito (2008), without what is too pale for a line on white; the purple a little darker,
 # and a violet and an ochre for the series of models that are longer.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
+
+# Of a pair of segments and of what presses them, which the colour-blind tell apart, too.
+OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
+# Colour maps of deflections and of stresses, light where there are none.
+DEFLECTION, STRESS = "viridis_r", "cividis_r"
 
 RC: dict[Any, Any] = {
     "figure.dpi": DPI,
@@ -55,6 +61,11 @@ RC: dict[Any, Any] = {
     "agg.path.chunksize": 1_000_000,
 }
 
+# Of pages around what VTK renders, which are shown as wide as a screen.
+PAGE_RC: dict[Any, Any] = {
+    name: value for name, value in RC.items() if name.endswith(("color", "top", "right"))
+} | {"font.size": 20.0}
+
 
 class Canvas(FigureCanvasAgg):
     """Saves a sheet by the one drawing that lays it out, where others draw it for that before."""
@@ -63,6 +74,11 @@ class Canvas(FigureCanvasAgg):
         """Write a PNG file, whatever its name ends with."""
         canvas: Any = self
         canvas.print_png(filename)
+
+
+def segment_color(number: int) -> str:
+    """Of a segment in the order of the boom, whatever shows it."""
+    return PALETTE[number % len(PALETTE)]
 
 
 def tint(color: str, strength: float) -> tuple[float, float, float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Displacement and stress of a reduced shell: what pictures and field files are made from."""
+"""Displacement and stress of a reduced shell: the data of pictures and field files."""
 
 from __future__ import annotations
 

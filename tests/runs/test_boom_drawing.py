@@ -12,9 +12,9 @@ from matplotlib.patches import Polygon
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
-from runs.report import symbols, theme
-from runs.report.acting import acting, amount
+from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
+from runs.report.marks import PAYLOAD, amount, marks
 
 
 def drawn(name: str) -> Figure:
@@ -89,14 +89,14 @@ def test_a_force_down_points_down() -> None:
     """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
     acts across it comes from the left, and a payload hangs all the same."""
     case = load(str(CASES / "crane.toml"))
-    acts = {act.meaning: act for act in acting(case, build_boom(case))}
+    acts = {mark.meaning: mark for mark in marks(case, build_boom(case))}
     load_across = acts["24.52 kN down across the boom within 0.5 s"]
     (_, tail), (_, head) = load_across.turned(0.0).vertices[:2]
     assert tail > head == 0.0
     (x, z), _ = load_across.turned(90.0).vertices[:2]
     assert (x, z) == pytest.approx((-1.0, 0.0), abs=1e-12)
     payload = acts["payload, 350 kg"]
-    assert payload.turned(60.0) is symbols.PAYLOAD
+    assert payload.turned(60.0) is PAYLOAD
 
 
 def test_amounts_are_read_at_a_glance() -> None:

@@ -18,9 +18,9 @@ import xarray as xr
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
+from runs.report import opengl
+from runs.report.opengl import RenderingUnavailable
 from runs.report.snapshots import describe_one, drawing
-from shell_model.pictures import opengl
-from shell_model.pictures.opengl import RenderingUnavailable
 
 COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000

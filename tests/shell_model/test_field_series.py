@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from shell_model.pictures.field_series import write_field_series
+from shell_model.stress.field_series import write_field_series
 from shell_model.stress.stresses import ShellStress
 
 

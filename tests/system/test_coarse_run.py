@@ -16,8 +16,8 @@ from PIL import Image
 
 from runs.case.build import build_boom
 from runs.pipeline.results import Results
-from shell_model.pictures.deformation import MovingShell
-from shell_model.pictures.opengl import RenderingUnavailable, require_opengl
+from runs.report.opengl import RenderingUnavailable, require_opengl
+from runs.report.scene import Scene
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests import at_once
 from tests.short_film import RENDERED
@@ -238,7 +238,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 ) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-    def draw(views: Sequence[MovingShell], folder: Path, times: None) -> list[Path]:
+    def draw(views: Sequence[Scene], folder: Path, times: None) -> list[Path]:
         path = folder / "boom-end.png"
         Image.new("RGB", (8, 8)).save(path)
         return [path]

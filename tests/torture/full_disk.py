@@ -22,7 +22,7 @@ from PIL import Image
 
 from runs import CASES, cli
 from runs.folder.cache import VARIABLE
-from shell_model.pictures.opengl import RenderingUnavailable
+from runs.report.opengl import RenderingUnavailable
 from tests import at_once
 
 Row = tuple[str, int, int, str]

@@ -8,10 +8,15 @@ import xarray as xr
 
 from geometry.arrays import Array
 from geometry.mesh import mesh_segment
-from geometry.section import BoxSection
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.reading import load
+from runs.case.schema import Case
+from runs.report.scene import Scene
 
-OUTER = BoxSection(height=0.4890, width=0.3259, flange=0.0065, web=0.0065)
-INNER = BoxSection(height=0.4636, width=0.2706, flange=0.0047, web=0.0047)
+CASE = load(str(CASES / "coarse.toml"))
+BOOM = build_boom(CASE)
+OUTER, INNER = (segment.section_at(10.0) for segment in BOOM.segments)
 CLEARANCE = 7.0e-3
 TIME = np.linspace(0.0, 2.0, 401)
 
@@ -48,11 +53,6 @@ def moving_fields() -> xr.Dataset:
             "coordinates_2": (("own_2", "mode"), np.eye(3)[1:]),
             "stress_1": (("own_1", "triangle_1", "stress"), bent),
             "stress_2": (("own_2", "triangle_2", "stress"), pressed),
-            "joint_outer": ("joint", np.int32([0])),
-            "joint_inner": ("joint", np.int32([1])),
-            "clearance": ("joint", [CLEARANCE]),
-            "lateral_clearance": ("joint", [np.nan]),
-            "station_joint": ("station", np.int32([0, 0])),
             "points": (("point", "component"), np.concatenate([outer.points, inner.points])),
             "triangles": (("triangle", "corner"), np.concatenate(triangles).astype(np.int32)),
             "segment": ("triangle", np.repeat(np.int32([0, 1]), [len(t) for t in triangles])),
@@ -86,3 +86,17 @@ def moving_trajectories() -> xr.Dataset:
             "direction": ("station", ["z", "z"]),
         },
     )
+
+
+def moving_scene(case: Case = CASE, state: float = 1.0, **motion: Array) -> Scene:
+    """Seen from the side.
+
+    Args:
+        case: of the same segments.
+        state: what multiplies the motion's coordinates.
+        motion: other results (time,).
+    """
+    fields = moving_fields()
+    given = moving_trajectories().sel(model="shell")
+    given = given.assign({name: ("time", values) for name, values in motion.items()})
+    return Scene.views(fields.assign(state=state * fields["state"]), given, case)[0]

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Pictures of a whole deformed boom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from PIL import Image
+
+from geometry.arrays import Array
+from geometry.typography import listed
+from runs.report import theme
+from runs.report.marks import look
+from runs.report.scene import (
+    DISPLACEMENT_DRAWN,
+    SAME_PLACE,
+    SECTION_DRAWN,
+    Instant,
+    Scene,
+)
+from runs.report.sheet import MATTE, SHEET, Camera, Sheet, sharp_edges, stage, surface
+
+PIXELS = (SHEET[0], 470)
+
+# Size of the signs in pt, and length of a cylinder in pixels.
+SIGN, CYLINDER = 30.0, 70.0
+
+
+@dataclass(frozen=True, slots=True)
+class BoomView:
+    """What the pictures of a boom share, so that they can be compared.
+
+    Args:
+        scene: in motion.
+        scale: of displacements and play.
+        largest: deflection, up or down, in mm.
+        camera: sees the boom at every instant.
+        span: the least and the largest x in m of the boom.
+        rest: pyvista surface of the boom at rest.
+        edges: the sharp edges of it.
+    """
+
+    scene: Scene
+    scale: float
+    largest: float
+    camera: Camera
+    span: tuple[float, float]
+    rest: Any
+    edges: Any
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        instants: Sequence[Instant],
+        pixels: tuple[int, int] = PIXELS,
+        displacement: float = DISPLACEMENT_DRAWN,
+    ) -> BoomView:
+        """The view for pictures of these instants, of so many pixels each way.
+
+        Displacements are drawn up to a part of the boom's length.
+        """
+        times = [instant.time for instant in instants]
+        heights = [moved[:, 2] for moved in scene.displacements(times)]
+        low, high = min(0.0, np.min(heights)), max(0.0, np.max(heights))
+        scale = scene.fitting_scale(times, displacement)
+        rest = surface(scene.drawn(np.zeros_like(scene.points), scale), scene.triangles)
+        begin, end = scene.reach(times)
+        half = SECTION_DRAWN * scene.points[:, 2].max()
+        off = max((mark.clearance for mark in scene.marks), default=0.0)
+        bottom, top = scale * min(low, -off) - 3.0 * half, scale * max(high, off) + 2.0 * half
+        width = max(1.1 * (end - begin), (top - bottom) * pixels[0] / pixels[1])
+        centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
+        return cls(
+            scene=scene,
+            scale=scale,
+            # A scale of colours has two ends, even at rest.
+            largest=1.0e3 * max(high, -low, SAME_PLACE),
+            camera=Camera(centre, width, pixels, elevation=10.0),
+            span=(begin, end),
+            rest=rest,
+            edges=sharp_edges(rest),
+        )
+
+    def places(self, moved: Array, time: float) -> Array:
+        """(num_points, 3) where the points are drawn, displaced by (num_points, 3) in m."""
+        places = self.scene.drawn(moved, self.scale)
+        places[:, 0] += self.scene.along(time)
+        return places
+
+    def edges_at(self, places: Array) -> Any:
+        """The sharp edges of the boom as a pyvista mesh, where its points are drawn."""
+        edges = self.edges.copy()
+        edges.points = places[edges["number"]]
+        return edges
+
+    def draw_marks(self, sheet: Sheet, places: Array) -> str:
+        """Put the signs of what holds and loads the boom on a sheet; what they are, in words."""
+        scene, axes = self.scene, sheet.picture
+        shown = [mark for mark in scene.marks if len(mark.places) == 1]
+        for mark in shown:
+            (x,) = mark.places
+            around = self.rest.points if mark.stands else places
+            place = _at(scene, around, mark.segment, x, mark.z(scene.boom, x))
+            place[2] += (1.0 if mark.edge == "top" else -1.0) * self.scale * mark.clearance
+            sign = look(mark.sign, mark.color, SIGN)
+            sheet.pass_by(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
+        cylinders = () if scene.from_above else scene.boom.cylinders
+        for cylinder in cylinders:
+            side = 0 if cylinder.direction[1] > 0.0 else 1
+            edge = scene.edges(cylinder.segment, cylinder.x)[side]
+            lug = _at(scene, places, cylinder.segment, cylinder.x, edge)
+            start = self.camera.project(lug)
+            rod = np.array([start, start - CYLINDER * np.array(cylinder.direction)])
+            black: dict[str, Any] = {"color": theme.INK, "clip_on": False}
+            sheet.pass_by(*axes.plot(*rod.T, linewidth=4.0, **black))
+            rod[0] = rod.mean(axis=0)
+            sheet.pass_by(*axes.plot(*rod.T, linewidth=9.0, **black))
+        kinds = [str(mark.kind) for mark in shown]
+        return listed(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
+
+
+def draw_boom(
+    view: BoomView, instants: Sequence[Instant], until: float, pace: str = "", part: float = 1.0
+) -> Iterator[Image.Image]:
+    """The deformed boom, above the deflection of its tip in time.
+
+    Args:
+        view: of a boom.
+        instants: of the pictures.
+        until: last time in s of the tip's curve.
+        pace: how fast a film shows it.
+        part: see :class:`runs.report.sheet.Sheet`.
+    """
+    scene, camera = view.scene, view.camera
+    time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
+    side = " sideways" if scene.from_above else ""
+    sheet = Sheet(camera.pixels, 325, part)
+    sheet.mark_x(camera, *view.span)
+    bar = sheet.figure.colorbar(
+        ScalarMappable(Normalize(0.0, view.largest), theme.DEFLECTION),
+        cax=sheet.axes(1110, 150, 420, 40),
+        orientation="horizontal",
+    )
+    bar.set_label(f"amount of deflection{side} (mm)")
+    curve = sheet.axes(150, 85, 820, 150)
+    curve.plot(time, tip, color=theme.FAINT, linewidth=2)
+    curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
+    with stage(camera.pixels, part) as plotter:
+        # A little behind the boom, or it would shine through where that hardly moves.
+        behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
+        plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, lighting=False)
+        boom = view.rest.copy()
+        boom["deflection"] = np.zeros(boom.n_points)
+        colours = {"cmap": theme.DEFLECTION, "clim": (0.0, view.largest)}
+        plotter.add_mesh(boom, scalars="deflection", **colours, **MATTE)
+        edges = view.edges_at(boom.points)
+        plotter.add_mesh(edges, color=theme.INK, line_width=2.4 * part, lighting=False)
+        all_moved = scene.displacements([instant.time for instant in instants])
+        for instant, moved in zip(instants, all_moved, strict=True):
+            places = view.places(moved, instant.time)
+            boom.points, edges.points = places, places[edges["number"]]
+            boom["deflection"] = 1.0e3 * np.abs(moved[:, 2])
+            sheet.show(camera.see(plotter))
+            signs = view.draw_marks(sheet, places)
+            last = int(np.abs(time - instant.time).argmin())
+            now: dict[str, Any] = {"color": theme.FORCE, "markersize": 13, "clip_on": False}
+            sheet.pass_by(
+                *curve.plot(time[: last + 1], tip[: last + 1], color=theme.INK, linewidth=3),
+                *curve.plot(time[last], tip[last], "o", **now),
+            )
+            sheet.write(
+                instant.heading(scene),
+                f"{'seen from above; ' if side else ''}drawn: displacements and play × "
+                f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: at rest"
+                f"{', as at t = 0' if scene.boom.driven else ''}"
+                f"{f'; signs: {signs}' if signs else ''}{pace}",
+            )
+            yield sheet.image()
+
+
+def _at(scene: Scene, places: Array, segment: int, x: float, z: float) -> Array:
+    """(3,) where a point of a section's plane of symmetry is drawn, from what is drawn of it."""
+    mine = (scene.owner == segment) & (np.abs(scene.points[:, 0] - x) < SAME_PLACE)
+    low, high = scene.edges(segment, x)
+    section = places[mine]
+    bottom, top = section[section[:, 2].argmin()], section[section[:, 2].argmax()]
+    place = bottom + (z - low) / (high - low) * (top - bottom)
+    return np.array([place[0], section[:, 1].mean(), place[2]])

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Marks of a picture: signs of what holds and loads a boom, at their places.
+
+A sign keeps its size and its upright stand, however the boom lies. It is a matplotlib path in units
+of its own size, about the place that it marks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
+
+from geometry.boom import Boom, Segment
+from geometry.section import Direction
+from runs.case import actions
+from runs.case.places import at
+from runs.case.schema import Case, HistoryTable, LoadTable
+from runs.report import theme
+from runs.report.numerals import number
+
+# A segment whose plates are unknown is drawn as high as this part of the boom's length.
+UNKNOWN = 0.015
+# Arrows of a load along a segment, m apart as a part of the boom's length.
+APART = 0.07
+# Strokes of a zigzag, and how far it swings.
+TURNS, SWING = 6, 0.18
+
+# Of a segment, where a sign is, or z in m.
+Edge = Literal["top", "bottom"] | float
+
+_KILO = {"N": "kN", "N/m": "kN/m", "N m": "kN m"}
+_MORE = {"N/m": (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3))}
+
+
+def _strokes(*lines: Sequence[tuple[float, float]]) -> Path:
+    """Lines that are not joined."""
+    return Path.make_compound_path(*map(Path, lines))
+
+
+def _ground(z: float) -> list[Sequence[tuple[float, float]]]:
+    """A hatched line."""
+    hatches = [((x, z), (x - 0.15, z - 0.15)) for x in np.linspace(-0.3, 0.45, 6).tolist()]
+    return [((-0.45, z), (0.45, z)), *hatches]
+
+
+def _circle(z: float, radius: float) -> Path:
+    return Path.unit_circle().transformed(Affine2D().scale(radius).translate(0.0, z))
+
+
+def _rotated(path: Path, degrees: float) -> Path:
+    """A sign that leans to the left by an angle."""
+    return path.transformed(Affine2D().rotate_deg(degrees))
+
+
+_ZIGZAG = [0.0, *(SWING * (-1) ** i for i in range(TURNS - 1)), 0.0]
+PINNED = _strokes([(0.0, 0.0), (-0.35, -0.7), (0.35, -0.7), (0.0, 0.0)], *_ground(-0.7))
+CLAMPED = _strokes(
+    [(0.0, -0.8), (0.0, 0.8)],
+    *([(0.0, z), (-0.25, z - 0.2)] for z in np.linspace(-0.6, 0.8, 8).tolist()),
+)
+ELASTIC = _strokes(
+    [*zip(_ZIGZAG, np.linspace(0.0, -0.7, TURNS + 1).tolist(), strict=True)], *_ground(-0.7)
+)
+REST_ABOVE = Path([[-0.4, 0.25], [0.4, 0.25], [0.4, 0.6], [-0.4, 0.6], [-0.4, 0.25]])
+REST_BELOW = _rotated(REST_ABOVE, 180.0)
+PAYLOAD = Path.make_compound_path(_strokes([(0.0, 0.0), (0.0, -0.45)]), _circle(-0.72, 0.27))
+FORCE_DOWN = _strokes([(0.0, 1.0), (0.0, 0.0)], [(-0.2, 0.35), (0.0, 0.0), (0.2, 0.35)])
+FORCE_UP = _rotated(FORCE_DOWN, 180.0)
+FORCE_BACK = _rotated(FORCE_DOWN, -90.0)
+FORCE_ON = _rotated(FORCE_DOWN, 90.0)
+AWAY = Path.make_compound_path(
+    _circle(0.0, 0.4), _strokes([(-0.28, -0.28), (0.28, 0.28)], [(-0.28, 0.28), (0.28, -0.28)])
+)
+TOWARDS = Path.make_compound_path(_circle(0.0, 0.4), _circle(0.0, 0.1))
+_ARC = [
+    (0.5 * float(np.cos(t)), 0.5 * float(np.sin(t))) for t in np.linspace(-0.3, 1.3, 17) * np.pi
+]
+CLOCKWISE = _strokes(_ARC, [(0.02, -0.24), _ARC[0], (0.42, -0.7)])
+MOMENT = CLOCKWISE.transformed(Affine2D().scale(-1.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """One thing that holds or loads a boom.
+
+    Args:
+        kind: the word for all of its kind.
+        segment: its number.
+        places: x in m of its signs.
+        edge: of the segment, where they are, or z in m.
+        sign: what is drawn.
+        meaning: in words.
+        color: of the sign.
+        turns: whether the sign turns with the boom.
+        clearance: in m between edge and sign.
+        stands: whether it stays where the boom rests when that moves.
+    """
+
+    kind: Literal["supports", "springs", "stops", "masses", "loads"]
+    segment: int
+    places: tuple[float, ...]
+    edge: Edge
+    sign: Path
+    meaning: str
+    color: str = theme.FORCE
+    turns: bool = True
+    clearance: float = 0.0
+    stands: bool = False
+
+    def turned(self, angle: float) -> Path:
+        """The sign on a boom at an angle in degrees."""
+        return _rotated(self.sign, angle) if self.turns else self.sign
+
+    def z(self, boom: Boom, x: float) -> float:
+        """Of the edge at x, in m."""
+        if not isinstance(self.edge, str):
+            return self.edge
+        return edges(boom, boom.segments[self.segment], x)[self.edge == "top"]
+
+
+def look(sign: Path, color: str, size: float) -> dict[str, Any]:
+    """How matplotlib draws a sign of a size in pt; it scales a path by its farthest point."""
+    return {
+        "marker": sign,
+        "markersize": 2.0 * size * float(np.abs(sign.vertices).max()),
+        "linestyle": "",
+        "markeredgecolor": color,
+        "markerfacecolor": "none",
+        "markeredgewidth": size / 14.0,
+    }
+
+
+def edges(
+    boom: Boom, segment: Segment, x: float, direction: Direction = "z"
+) -> tuple[float, float]:
+    """The lowest and the highest place in m of a section at x in m, of unknown plates a guess."""
+    half = 0.5 * UNKNOWN * boom.length
+    return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
+
+
+def amount(value: float, unit: str) -> str:
+    """A number with its unit, in thousands, millions where it is large."""
+    for larger, factor in _MORE.get(unit, ()):
+        if abs(value) >= factor:
+            return f"{number(value / factor, 4)} {larger}"
+    if abs(value) >= 1e3 and unit in _KILO:
+        return f"{number(value / 1e3, 4)} {_KILO[unit]}"
+    return f"{number(value, 4)} {unit}"
+
+
+def marks(case: Case, boom: Boom) -> Iterator[Mark]:
+    """Supports and stops, then masses, loads and axial forces, those of segments first."""
+    yield from _ground_marks(boom)
+    for index, segment in enumerate(boom.segments):
+        given = case.segments[index]
+        if given.load:
+            yield _spread(boom, index, segment.ends, given.load, "z", "")
+        if given.lateral_load:
+            yield _spread(boom, index, segment.ends, given.lateral_load, "y", "")
+        for one in given.masses:
+            yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
+    if case.payload is not None:
+        payload = f"payload, {number(case.payload.mass, 4)} kg"
+        yield _mass(len(boom.segments) - 1, boom.tip, payload)
+    names = [segment.name for segment in boom.segments]
+    for table in case.loads:
+        yield _load(table, boom, names.index(table.segment))
+    for thrust in actions.thrusts(case, boom.segments):
+        sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
+        along = f"{amount(abs(thrust.force), 'N')} along the boom"
+        yield Mark("loads", thrust.segment, (thrust.x,), 0.0, sign, along)
+
+
+def _ground_marks(boom: Boom) -> Iterator[Mark]:
+    """What holds the boom beside cylinders."""
+    upright: dict[str, Any] = {"color": theme.INK, "turns": False, "stands": True}
+    for index, segment in enumerate(boom.segments):
+        for support in segment.supports:
+            place = (support.x,)
+            edge: Edge = -support.depth if support.depth else "bottom"
+            if support.kind == "clamped":
+                yield Mark("supports", index, place, 0.0, CLAMPED, "clamped", **upright)
+            elif support.stiffness is None:
+                yield Mark("supports", index, place, edge, PINNED, "support", **upright)
+            else:
+                meaning = f"elastic support, {amount(support.stiffness, 'N/m')}"
+                yield Mark("springs", index, place, edge, ELASTIC, meaning, **upright)
+    for stop in boom.stops:
+        grey = {**upright, "color": theme.PLAY_FREE, "clearance": stop.clearance}
+        meaning = f"rest, {2e3 * stop.clearance:g} mm of play"
+        if stop.stiffness_below > 0.0:
+            yield Mark("stops", stop.segment, (stop.x,), "bottom", REST_BELOW, meaning, **grey)
+        if stop.stiffness > 0.0:
+            yield Mark("stops", stop.segment, (stop.x,), "top", REST_ABOVE, meaning, **grey)
+
+
+def _mass(index: int, x: float, meaning: str) -> Mark:
+    return Mark("masses", index, (x,), "bottom", PAYLOAD, meaning, theme.INK, turns=False)
+
+
+def _load(table: LoadTable, boom: Boom, index: int) -> Mark:
+    ends = boom.segments[index].ends
+    how = _history(table) + (", let go" if table.released else "")
+    largest = table.magnitude * max((abs(f) for _, f in table.table or ()), default=1.0)
+    if table.x is None:
+        start = ends[0] if table.start is None else at(table.start, *ends)
+        end = ends[1] if table.end is None else at(table.end, *ends)
+        return _spread(boom, index, (start, end), largest, table.direction, how)
+    place = (at(table.x, *ends),)
+    if table.moment:
+        sign = MOMENT if largest > 0.0 else CLOCKWISE
+        return Mark("loads", index, place, 0.0, sign, f"moment {amount(abs(largest), 'N m')}{how}")
+    return _force(index, place, largest, table.direction, "N", how)
+
+
+def _spread(
+    boom: Boom, index: int, span: tuple[float, float], load: float, direction: str, how: str
+) -> Mark:
+    """Arrows along a part of a segment."""
+    start, end = span
+    arrows = max(2, round((end - start) / (APART * boom.length)))
+    places = start + (np.arange(arrows) + 0.5) / arrows * (end - start)
+    on = f"{how}, {boom.segments[index].name}"
+    return _force(index, tuple(places.tolist()), load, direction, "N/m", on)
+
+
+def _force(
+    index: int, places: tuple[float, ...], value: float, direction: str, unit: str, how: str
+) -> Mark:
+    size = amount(abs(value), unit)
+    if direction == "y":
+        sign = AWAY if value > 0.0 else TOWARDS
+        return Mark("loads", index, places, 0.0, sign, f"{size} sideways{how}")
+    if value > 0.0:
+        return Mark("loads", index, places, "bottom", FORCE_UP, f"{size} up across the boom{how}")
+    return Mark("loads", index, places, "top", FORCE_DOWN, f"{size} down across the boom{how}")
+
+
+def _history(table: HistoryTable) -> str:
+    if table.ramp is not None:
+        return f" within {table.ramp:g} s"
+    if table.frequency is not None:
+        return f", {table.frequency:g} Hz"
+    return " at most" if table.table is not None else ""

@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A boom in motion as pictures show it: its surfaces, what holds and loads it, magnified.
+
+Displacements of millimetres are invisible on a boom of many metres, so pictures magnify them.
+They magnify the play alike, at the cost of the inner section's height: segments touch in the
+picture when they touch in the run. Shells and beams are scenes alike, which VTK renders
+(:mod:`runs.report.boom_pictures`) and a page shows in three dimensions (:mod:`runs.report.viewer`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from geometry.arrays import Array
+from geometry.boom import Boom, Segment
+from geometry.drawing import drives_below
+from geometry.section import Direction
+from geometry.typography import signed
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.pipeline.beam_output import BeamOutput, MovedSegment
+from runs.report.marks import Mark, edges, marks
+from shell_model.stress.stresses import ShellStress
+
+Numbers = npt.NDArray[np.int32]
+
+# Displacements are drawn up to this part of the boom's length, sections so many times larger, of
+# which the play takes up to this part.
+DISPLACEMENT_DRAWN, SECTION_DRAWN, PLAY_OF_SECTION = 0.2, 2.0, 0.5
+
+# Walls are drawn with this part of the outer section's height: true ones would be hair lines.
+WALL_DRAWN = 0.03
+
+# Lengths in m that are the same.
+SAME_PLACE = 1.0e-6
+
+# Times for which displacements are computed together.
+AT_ONCE = 10
+
+# x stays, y comes up, z comes towards the eye.
+_FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+class Overlap(NamedTuple):
+    """Two segments that slide in one another.
+
+    Args:
+        outer, inner: their numbers.
+        stations: where they touch, as positions in the trajectories.
+        clearance: Δ in m.
+    """
+
+    outer: int
+    inner: int
+    stations: list[int]
+    clearance: float
+
+
+class Instant(NamedTuple):
+    """A time in s, and what happens then."""
+
+    time: float
+    title: str = ""
+
+    def heading(self, scene: Scene) -> str:
+        """The line above a picture: the time, and the deflection of the tip."""
+        title = f"{self.title}:  " if self.title else ""
+        tip = float(scene.motion["tip"].sel(time=self.time, method="nearest"))
+        aside = " sideways" if scene.from_above else ""
+        return f"{title}t = {self.time:.3f} s,  tip {signed(f'{1.0e3 * tip:+.1f}')} mm{aside}"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A boom and its motion.
+
+    Args:
+        boom: what moves.
+        marks: what holds and loads it.
+        points: (num_points, 3) in m.
+        triangles: (num_triangles, 3) point numbers.
+        segment: (num_triangles,) of each triangle.
+        modes: (num_modes, num_points, 3) displacement of a unit of each coordinate.
+        state: (time, mode) coordinates.
+        motion: trajectories of this model alone, in which ``tip`` is along the third direction.
+        stress: of the triangles of a shell.
+        from_above: whether y has taken the place of z, see :meth:`views`.
+    """
+
+    boom: Boom
+    marks: Sequence[Mark]
+    points: Array
+    triangles: Numbers
+    segment: Numbers
+    modes: npt.NDArray[np.floating[Any]]
+    state: xr.DataArray
+    motion: xr.Dataset
+    stress: ShellStress | None = None
+    from_above: bool = False
+
+    @classmethod
+    def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
+        """A shell from the files of a run: seen from the side, and a boom in space from above too.
+
+        For the view from above the boom is turned about x, so that y points up.
+
+        Args:
+            fields: what ``shell_model.stress.fields`` gathers, and ``state`` (time, mode).
+            motion: dims ``time``, ``station``: ``tip``, in space ``tip_lateral``, in m,
+                ``contact_force`` and ``contact_force_peak`` in N, of drives ``drawn_out`` in m.
+            case: of the run.
+        """
+        boom = build_boom(case)
+        side = cls(
+            boom=boom,
+            marks=list(marks(case, boom)),
+            points=fields["points"].values,
+            triangles=fields["triangles"].values,
+            segment=fields["segment"].values,
+            modes=fields["modes"].values,
+            state=fields["state"].load(),
+            motion=motion,
+            stress=ShellStress.of(fields),
+        )
+        if not boom.spatial:
+            return [side]
+        above = replace(
+            side,
+            marks=[],
+            points=side.points @ _FROM_ABOVE,
+            modes=side.modes @ _FROM_ABOVE.astype(np.float32),
+            motion=motion.assign(tip=motion["tip_lateral"]),
+            from_above=True,
+        )
+        return [side, above]
+
+    @classmethod
+    def of_beam(cls, boom: Boom, output: BeamOutput, motion: xr.Dataset) -> tuple[Scene, Array]:
+        """A beam as tubes along its axis, and the bending stress (num_frames, num_points) in Pa.
+
+        Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
+        and with the section's twist. Stresses are those at the mid-lines of the plates.
+
+        Args:
+            boom: whose model has moved.
+            output: how it has.
+            motion: its trajectories.
+        """
+        tubes = [
+            _tube(boom, segment, moved)
+            for segment, moved in zip(boom.segments, output.segments, strict=True)
+        ]
+        first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
+        numbered = [tube.triangles + k for tube, k in zip(tubes, first, strict=False)]
+        # Each frame is a mode of its own.
+        frames = np.eye(output.time.size)
+        scene = cls(
+            boom=boom,
+            marks=[],
+            points=np.concatenate([tube.points for tube in tubes]),
+            triangles=np.concatenate(numbered).astype(np.int32),
+            segment=np.repeat(
+                np.arange(len(tubes)), [len(tube.triangles) for tube in tubes]
+            ).astype(np.int32),
+            modes=np.concatenate([tube.moved for tube in tubes], axis=1),
+            state=xr.DataArray(frames, {"time": output.time}, ("time", "mode")),
+            motion=motion,
+        )
+        return scene, np.concatenate([tube.stress for tube in tubes], axis=1)
+
+    @property
+    def direction(self) -> Direction:
+        """Along which a picture's third direction is."""
+        return "y" if self.from_above else "z"
+
+    @cached_property
+    def owner(self) -> Numbers:
+        """(num_points,) the segment of each point."""
+        owner = np.zeros(len(self.points), dtype=np.int32)
+        owner[self.triangles] = self.segment[:, None]
+        return owner
+
+    @cached_property
+    def overlaps(self) -> list[Overlap]:
+        """Of the joints with play along the third direction, from the base to the tip."""
+        found, begin = [], 0
+        for direction in self.boom.directions:
+            for joint in self.boom.joints:
+                if joint.tied:
+                    continue
+                stations = list(range(begin, begin + len(joint.stations)))
+                begin += len(stations)
+                clearance = joint.clearance if direction == "z" else joint.lateral_clearance
+                if direction == self.direction and clearance is not None:
+                    found.append(Overlap(joint.outer, joint.inner, stations, clearance))
+        return found
+
+    def displacement(self, t: float) -> Array:
+        """(num_points, 3) in m, at the output time next to ``t`` (s)."""
+        return next(self.displacements([t]))
+
+    def displacements(self, times: Sequence[float]) -> Iterator[Array]:
+        """(num_points, 3) each in m, at the output times next to ``times`` (s)."""
+        states = self.state.sel(time=list(times), method="nearest").values
+        # The modes, which do not fit into a processor's memory, are read once for several times.
+        for begin in range(0, len(states), AT_ONCE):
+            moved = np.tensordot(states[begin : begin + AT_ONCE], self.modes, axes=1)
+            yield from moved.astype(np.float64)
+
+    def travel(self, segment: int) -> Array:
+        """(num_times,) how far drives have moved a segment along x, in m, at the motion's times."""
+        names = [
+            f"drawn_out-{n + 1}" if n else "drawn_out"
+            for n in drives_below(self.boom.joints, segment)
+        ]
+        none = np.zeros(self.motion.sizes["time"])
+        return np.asarray(sum((self.motion[name].values for name in names), none))
+
+    def along(self, t: float) -> Array:
+        """(num_points,) how far drives have moved each along x in m, at a time in s."""
+        step = int(np.abs(self.motion["time"].values - t).argmin())
+        ways = [self.travel(number)[step] for number in range(len(self.boom.segments))]
+        return np.array(ways)[self.owner]
+
+    def slides(self, overlap: Overlap) -> bool:
+        """Whether a drive moves the inner segment of an overlap in the outer one."""
+        return bool((self.travel(overlap.outer) != self.travel(overlap.inner)).any())
+
+    def reach(self, times: Sequence[float]) -> tuple[float, float]:
+        """The least and the largest x in m at which the boom is, telescoped as it may be."""
+        x = self.points[:, 0]
+        places = [x, *(x + self.along(time) for time in times)]
+        return float(np.min(places)), float(np.max(places))
+
+    def beside(self, t: float, segment: int, between: tuple[float, float]) -> Array:
+        """(num_points, 3) displacement in m beside a part of a segment, which seems to rest.
+
+        The motion and the turn of that part, ``between`` two x in m, as a whole in the picture's
+        plane is taken from all points: magnified it would tilt a sloping boom, and tells nothing
+        of contacts.
+        """
+        moved = self.displacement(t)
+        x, _, z = self.points.T
+        mine = (self.owner == segment) & (
+            np.abs(x - np.mean(between)) <= np.ptp(between) / 2.0 + SAME_PLACE
+        )
+        along, up, turn = rigid_motion(self.points[mine][:, [0, 2]], moved[mine][:, [0, 2]])
+        return np.asarray(
+            moved - np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
+        )
+
+    def edges(self, segment: int, x: float) -> tuple[float, float]:
+        """The lowest and the highest place in m of a segment's section at x in m."""
+        return edges(self.boom, self.boom.segments[segment], x, self.direction)
+
+    def half_height(self, segment: int, x: float | None = None) -> float:
+        """Half of how tall a segment's section is at x in m, else at its tallest, in m."""
+        ends = self.boom.segments[segment].ends if x is None else (x,)
+        return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
+
+    def flange_in_plane(self, segment: int, side: int) -> Numbers:
+        """(num_points,) points of a flange in the plane of bending, from base to tip.
+
+        ``side`` is 1 for the top, -1 for the bottom.
+        """
+        mine = np.flatnonzero((self.owner == segment) & (np.abs(self.points[:, 1]) < SAME_PLACE))
+        x, _, z = self.points[mine].T
+        order = mine[np.lexsort([side * z, x.round(6)])]
+        outermost = np.diff(self.points[order, 0], append=np.inf) > SAME_PLACE
+        return np.asarray(order[outermost], dtype=np.int32)
+
+    def wall(self, overlap: Overlap) -> float:
+        """Thickness in m with which the walls of an overlap are drawn."""
+        return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
+
+    def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:
+        """A round magnification of displacements and play in pictures of the whole boom.
+
+        Displacements at these times (s) are drawn up to a part of the boom's length.
+        """
+        largest = max(float(np.abs(moved[:, 2]).max()) for moved in self.displacements(times))
+        tallest = max(self.half_height(number) for number in range(len(self.boom.segments)))
+        play = sum(overlap.clearance for overlap in self.overlaps)
+        return round_scale(
+            min(
+                part * float(np.subtract(*self.reach(times)[::-1])) / max(largest, SAME_PLACE),
+                PLAY_OF_SECTION * SECTION_DRAWN * tallest / max(play, SAME_PLACE),
+            )
+        )
+
+    def drawn(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
+        """(num_points, 3) places in m at which a picture shows the points.
+
+        A section that is drawn larger also turns with its larger height. What moves along the
+        line of sight stays, or it would come out of the picture.
+
+        Args:
+            moved: (num_points, 3) displacement in m.
+            scale: of displacement and play.
+            section: of the outermost section.
+        """
+        factor = self._section_factors(scale, section)[self.owner]
+        middles = [np.mean(self.edges(k, s.start)) for k, s in enumerate(self.boom.segments)]
+        x, y, z = self.points.T
+        ux, _, uz = scale * moved.T
+        return np.stack(
+            [x + factor * ux, factor * y, factor * (z - np.array(middles)[self.owner]) + uz], axis=1
+        )
+
+    def _section_factors(self, scale: float, section: float) -> Array:
+        """(num_segments,) of y and z; every inner segment makes room for the play around it."""
+        factors = np.full(len(self.boom.segments), section)
+        for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
+            x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))
+            outer, inner = (self.half_height(n, x) for n in (overlap.outer, overlap.inner))
+            room = scale * overlap.clearance + section * self.wall(overlap)
+            factors[overlap.inner] = (factors[overlap.outer] * outer - room) / inner
+        return factors
+
+
+class _Tube(NamedTuple):
+    """One segment: points (num_points, 3), triangles, how they move (num_frames, num_points, 3),
+    stress (num_frames, num_points) in Pa."""
+
+    points: Array
+    triangles: Array
+    moved: Array
+    stress: Array
+
+
+def _tube(boom: Boom, segment: Segment, output: MovedSegment) -> _Tube:
+    """Rings (place, corner) of a segment, joined by two triangles for each plate and stretch."""
+    x, read = output.x, output.read
+    corners = np.array([_corners(boom, segment, place) for place in x.tolist()])
+    none = np.zeros_like(read["deflection"])
+    w, v, twist = (read.get(name, none)[..., None] for name in ("deflection", "lateral", "twist"))
+    turn_z, turn_y = (np.gradient(line[..., 0], x, axis=1)[..., None] for line in (w, v))
+    y, z = np.moveaxis(corners, -1, 0)
+    moved = [-z * turn_z - y * turn_y, v - z * twist, w + y * twist]
+    rings = np.arange(y.size).reshape(y.shape)
+    quads = [(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairwise(rings)]
+    a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
+    there = [segment.local(place) for place in x.tolist()]
+    # Rigid segments know no moments.
+    stress = _bending(read.get("moment", none), there, "second_moment_of_area") * z
+    if "lateral_moment" in read:
+        stress += _bending(read["lateral_moment"], there, "lateral.second_moment_of_area") * y
+    shape = (len(w), -1)
+    return _Tube(
+        points=np.stack([np.repeat(x, y.shape[1]), y.ravel(), z.ravel()], axis=1),
+        triangles=np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]),
+        moved=np.stack([part.reshape(shape) for part in moved], axis=-1),
+        stress=np.abs(stress).reshape(shape),
+    )
+
+
+def _corners(boom: Boom, segment: Segment, x: float) -> Array:
+    """(num_corners, 2) y and z in m at x in m, once around; a square where plates are unknown."""
+    if segment.section is not None:
+        return np.array([plate.start for plate in segment.section_at(x).plates])
+    _, half = edges(boom, segment, x)
+    return half * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+
+
+def _bending(moments: Array, there: Sequence[Segment], number: str) -> Array:
+    """(num_frames, num_places, 1) curvature times Young's modulus, in Pa/m."""
+    return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]
+
+
+def rigid_motion(places: Array, moved: Array) -> Array:
+    """(3,) two shifts and a turn of places (num_places, 2) whose motion is fitted by least squares.
+
+    The first coordinate moves by shift − turn · second, the second by shift + turn · first.
+    """
+    first, second = places.T
+    none, unit = np.zeros_like(first), np.ones_like(first)
+    whole = np.concatenate(
+        [np.stack([unit, none, -second], axis=1), np.stack([none, unit, first], axis=1)]
+    )
+    return np.asarray(np.linalg.lstsq(whole, moved.T.ravel(), rcond=None)[0])
+
+
+def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
+    """(num_groups,) means of triangles' values around points, by their areas.
+
+    Args:
+        groups: (num_triangles, 3) of each corner, its point or the like.
+        areas: (num_triangles,).
+        values: (num_triangles,).
+    """
+    weights, around = np.repeat(areas, 3), groups.ravel()
+    total = np.bincount(around, weights * np.repeat(np.asarray(values, dtype=float), 3))
+    return np.asarray(total / np.maximum(np.bincount(around, weights), 1e-300))
+
+
+def round_scale(largest: float) -> float:
+    """The largest of …, 1, 2, 5, 10, 20, … that is not above ``largest``."""
+    decade = 10.0 ** np.floor(np.log10(largest))
+    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= largest))

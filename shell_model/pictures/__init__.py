@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of a shell in motion, and fields for ParaView."""

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A scene places points, shells' and beams' alike, where a picture is to show them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from dynamics.drive.travel import SCurve
+from dynamics.line import Line
+from dynamics.trajectory import Trajectory
+from geometry.boom import Boom, Material, Segment, Stop, Support
+from geometry.drive import Drive
+from geometry.section import BoxSection
+from runs import CASES
+from runs.case.build import build_boom
+from runs.case.reading import load
+from runs.pipeline.beam_output import BeamOutput, MovedSegment
+from runs.report.gallery import change_of_shape
+from runs.report.overlap_pictures import smoothed
+from runs.report.scene import Scene, round_scale
+from runs.report.snapshots import where_pressed
+from tests.runs.moving_segments import (
+    BOOM,
+    CLEARANCE,
+    INNER,
+    OUTER,
+    TIME,
+    moving_fields,
+    moving_scene,
+    moving_trajectories,
+)
+
+
+@pytest.fixture(scope="module")
+def shell() -> Scene:
+    return moving_scene()
+
+
+def test_displacement_is_the_sum_of_the_modes(shell: Scene) -> None:
+    """Reference: analytic. The shapes of the fixture, evaluated point by point."""
+    moved = shell.displacement(0.5)
+    x, _, z = shell.points.T
+    inner = shell.owner == 1
+    deflection = np.where(inner, 0.013 + 0.015 * (x - 9.0), 0.02 * x * (x - 2.0) / 80.0)
+    slope = np.where(inner, 0.015, 0.02 * (2.0 * x - 2.0) / 80.0)
+    np.testing.assert_allclose(moved[:, 2], deflection, atol=1e-7)
+    np.testing.assert_allclose(moved[:, 0], -z * slope, atol=1e-8)
+    assert not moved[:, 1].any()
+    assert not shell.displacement(0.0)[~inner].any()
+
+
+def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
+    """Reference (analytic): the inner segment is 1 m farther in at 0.5 s, the outer one stays."""
+    assert not shell.along(0.5).any()
+    assert not shell.slides(shell.overlaps[0])
+    out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
+    boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
+    extended = replace(shell, boom=boom, motion=moving_scene(drawn_out=-2.0 * TIME).motion)
+    assert extended.slides(extended.overlaps[0])
+    np.testing.assert_allclose(extended.along(0.5), np.where(shell.owner == 1, -1.0, 0.0))
+    assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
+
+
+def test_supports_and_forces_are_marked(shell: Scene) -> None:
+    """Reference: the case. Two supports that stand, and arrows along both segments."""
+    held = [mark for mark in shell.marks if mark.stands]
+    assert [(mark.kind, mark.segment, mark.places) for mark in held] == [
+        ("supports", 0, (0.0,)),
+        ("supports", 0, (2.0,)),
+    ]
+    assert held[0].z(BOOM, 0.0) == pytest.approx(-0.5 * OUTER.size("z"))
+    loads = [mark for mark in shell.marks if mark.kind == "loads"]
+    assert [mark.segment for mark in loads] == [0, 1]
+
+
+def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: Scene) -> None:
+    """Reference: analytic. A section that widens by c y while it moves and turns by φ."""
+    _, y, z = shell.points.T
+    moved = np.stack([0.0 * y, 0.03 - 0.02 * z + 0.01 * y, -0.05 + 0.02 * y], axis=1)
+    places, change = change_of_shape(shell, moved, 1, 10.0)
+    assert places[0] == pytest.approx(places[-1])
+    size = np.array([INNER.size("y"), INNER.size("z")])
+    assert np.ptp(places, axis=0) == pytest.approx(size)
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).sum() == pytest.approx(2.0 * size.sum())
+    assert change[:, 0] == pytest.approx(0.01 * places[:, 0], abs=1e-9)
+    assert np.abs(change[:, 1]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
+def test_contact_in_the_run_is_contact_in_the_picture(
+    shell: Scene, scale: float, section: float
+) -> None:
+    """Reference: analytic. A relative displacement by the clearance leaves one wall between the
+    middles of two walls, and one by its opposite leaves twice the clearance besides."""
+    (overlap,) = shell.overlaps
+    assert overlap == (0, 1, [0, 1], CLEARANCE)
+    moved = np.zeros_like(shell.points)
+    moved[shell.owner == 1, 2] = CLEARANCE
+    drawn = shell.drawn(moved, scale, section)
+    for side, gap in ((1, 0.0), (-1, 2.0 * scale * CLEARANCE)):
+        outer, inner = (drawn[shell.flange_in_plane(k, side), 2] for k in (0, 1))
+        between = side * (outer[0] - inner[0]) - section * shell.wall(overlap)
+        assert between == pytest.approx(gap, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def in_space(shell: Scene) -> list[Scene]:
+    """Two joints along z and y, and a stop, which is no contact of segments; side and above."""
+    boom = build_boom(load(str(CASES / "inspection-arm.toml")))
+    boom = replace(boom, stops=(Stop(1, boom.joints[0].stations[0], 0.02, 1e9, 0.0, 1.0),))
+    motion = shell.motion.isel(station=[0] * len(boom.stations))
+    motion = motion.assign_coords(station=[x for x, _ in boom.stations])
+    side = replace(shell, boom=boom, motion=motion)
+    return [side, replace(side, from_above=True)]
+
+
+def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
+    side, above = in_space
+    one, two = side.boom.joints
+    assert side.overlaps == [(0, 1, [0, 1], one.clearance), (1, 2, [2, 3], two.clearance)]
+    assert above.overlaps == [
+        (0, 1, [4, 5], one.lateral_clearance),
+        (1, 2, [6, 7], two.lateral_clearance),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("station", "place"),
+    [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1 sideways)"), (8, " (a stop)")],
+)
+def test_of_several_joints_the_pressed_one_is_named(
+    in_space: list[Scene], station: int, place: str
+) -> None:
+    """Reference: the fixture. One station with a force, up or down, the others with none."""
+    side, above = in_space
+    peak = xr.zeros_like(side.motion["contact_force_peak"])
+    peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
+    side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
+    assert where_pressed([side, above], float(TIME[200])) == place
+
+
+def test_the_only_joint_is_not_named(shell: Scene) -> None:
+    assert where_pressed([shell], 0.5) == ""
+
+
+def test_from_above_y_points_up(shell: Scene) -> None:
+    """Reference: analytic. A boom in space, turned so that its width is its height; what moves
+    up comes towards the eye.
+    """
+    motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
+    motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
+    side, above = Scene.views(moving_fields(), motion, load(str(CASES / "spatial.toml")))
+    assert (side.from_above, above.from_above, above.marks) == (False, True, [])
+    assert above.half_height(0) == pytest.approx(0.5 * OUTER.size("y"))
+    moved = side.displacement(0.5), above.displacement(0.5)
+    assert moved[1][:, 1] == pytest.approx(-moved[0][:, 2])
+    assert not moved[1][:, 2].any()
+    assert above.motion["tip"].values == pytest.approx(-2.0 * side.motion["tip"].values)
+
+
+@pytest.mark.parametrize(
+    ("largest", "scale"), [(0.7, 0.5), (1.0, 1.0), (19.9, 10.0), (20.0, 20.0), (0.031, 0.02)]
+)
+def test_scale_is_round_and_not_above_what_fits(largest: float, scale: float) -> None:
+    assert round_scale(largest) == pytest.approx(scale)
+
+
+def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
+    """Reference: analytic. Of a parabola w = c x² over 1 m a chord's turn is taken, at the chord's
+    middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it."""
+    whole, left = shell.displacement(0.5), shell.beside(0.5, 0, (9.0, 10.0))
+    x, _, z = shell.points.T
+    flange = shell.flange_in_plane(0, 1)
+    flange = flange[(x[flange] > 8.99) & (x[flange] < 10.01)]
+    slope = np.polyfit(x[flange], left[flange, 2], 1)[0]
+    assert abs(np.polyfit(x[flange], whole[flange, 2], 1)[0]) > 4e-3
+    assert abs(slope) < 1e-6
+    assert np.abs(left[flange, 2]).max() < 0.02 / 80.0 / 4.0
+    inner = shell.flange_in_plane(1, 1)
+    taken = (whole - left)[inner]
+    turn = np.polyfit(x[inner], taken[:, 2], 1)[0]
+    np.testing.assert_allclose(
+        taken[:, 0], taken[0, 0] - turn * (z[inner] - z[inner][0]), atol=1e-12
+    )
+
+
+def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
+    """Reference: analytic. What is the same all over a wall stays so up to its folds; a field that
+    is linear along x is met between the triangles around a point."""
+    stress = shell.stress
+    assert stress is not None
+    walls = stress.wall.astype(float) + 10.0 * shell.segment
+    smooth = smoothed(stress, shell.triangles, walls)
+    np.testing.assert_allclose(smooth, np.repeat(walls[:, None], 3, axis=1))
+    corners = smoothed(stress, shell.triangles, stress.centroids[:, 0])
+    places = shell.points[shell.triangles, 0]
+    inside = np.abs(places - 5.0) < 3.0
+    assert np.abs(corners - places)[inside].max() < 0.15  # half an edge
+
+
+def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
+    """A beam's scene, of which no trajectories are asked."""
+    return Scene.of_beam(boom, output, xr.Dataset(coords={"time": output.time}))
+
+
+def bent(boom: Boom) -> BeamOutput:
+    """Both segments along w = t x²/100, with the moment of that curvature in each."""
+    time = np.array([0.0, 0.5, 1.0])
+    segments = []
+    for segment in boom.segments:
+        x = np.linspace(segment.start, segment.end, 41)
+        moment = np.outer(time, segment.bending_stiffness * 0.02 * np.ones(x.size))
+        segments.append(
+            MovedSegment(x, {"deflection": np.outer(time, x**2 / 100.0), "moment": moment})
+        )
+    return BeamOutput(time, segments)
+
+
+def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
+    """Reference (analytic): at the end of the boom w = 3.61 m and w′ = 0.38, of which the points of
+    a section at z have z w′ along x."""
+    scene, _ = still(paper_boom, bent(paper_boom))
+    ends = scene.points[:, 0] == paper_boom.tip
+    moved = scene.displacement(1.0)[ends]
+    np.testing.assert_allclose(moved[:, 2], 3.61)
+    z = scene.points[ends, 2]
+    # One-sided differences of a parabola over 0.25 m are w″ times half of that off.
+    np.testing.assert_allclose(moved[:, 0], -z * 0.38, atol=0.0026 * np.abs(z).max())
+
+
+def test_bending_stress_is_that_of_the_curvature(paper_boom: Boom) -> None:
+    """Reference (analytic): σ = E κ z at the flanges of the outer box, κ = 0.02 1/m."""
+    scene, stress = still(paper_boom, bent(paper_boom))
+    highest = scene.half_height(0)
+    assert stress[0].max() == 0.0
+    assert stress[-1].max() == pytest.approx(2.1e11 * 0.02 * highest, rel=1e-9)
+
+
+def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
+    """Reference: by hand, M z/J of boxes of 0.4 and 0.2 m at tail and head, 1 kN m in both."""
+    tail, head = (BoxSection(height, 0.2, 0.01, 0.008) for height in (0.4, 0.2))
+    steel, clamp = Material(2.1e11, 0.3, 7850.0), Support(0.0, "clamped")
+    arm = Segment.of_section("arm", 0.0, 8.0, steel, tail, head_section=head, supports=(clamp,))
+    x, one = np.linspace(0.0, 8.0, 5), np.ones((1, 5))
+    moved = MovedSegment(x, {"deflection": 0.0 * one, "moment": 1e3 * one})
+    scene, stress = still(Boom((arm,), (), ()), BeamOutput(np.zeros(1), [moved]))
+    drawn = scene.drawn(np.zeros_like(scene.points), 1.0, 3.0)
+    for place, box in ((0.0, tail), (8.0, head)):
+        there = scene.points[:, 0] == place
+        assert np.ptp(drawn[there, 2]) == pytest.approx(3.0 * box.size("z"))
+        expected = 1e3 * 0.5 * box.size("z") / box.second_moment_of_area
+        assert stress[0, there].max() == pytest.approx(expected, rel=1e-9)
+
+
+def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
+    """Reference: the inner section is drawn lower than the outer one by more than both plays."""
+    scene, _ = still(paper_boom, bent(paper_boom))
+    drawn = scene.drawn(np.zeros_like(scene.points), 10.0)
+    outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
+    assert outer - inner > 10.0 * paper_boom.joints[0].clearance
+
+
+def test_what_jumps_is_read_beyond() -> None:
+    """Reference: by hand; a place that stands twice stays once."""
+    rows = np.array([[0.0], [1.0], [5.0], [0.0]])
+    line = Line(np.array([0.0, 1.0, 1.0, 2.0]), {"moment": rows}, {})
+    data = xr.Dataset(coords={"time": np.array([0.0, 1.0])})
+    output = BeamOutput.of([line], Trajectory(data, np.array([[0.0], [2.0]])))
+    (segment,) = output.segments
+    assert segment.x.tolist() == [0.0, 1.0, 2.0]
+    assert segment.read["moment"].tolist() == [[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]

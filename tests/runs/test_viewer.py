@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A page holds a boom in motion by few numbers of few bits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.drive.travel import SCurve
+from geometry.drive import Drive
+from runs.report.viewer import LEFT, Shown, few_shapes, of_shell, packed
+from tests.runs.moving_segments import BOOM, TIME, moving_scene
+
+FRAMES = TIME[::40]
+
+
+@pytest.fixture(scope="module")
+def shown() -> Shown:
+    return of_shell("shell", moving_scene(), FRAMES)
+
+
+def places(page: dict[str, Any]) -> np.ndarray:
+    """(num_frames, num_points, 3) as the page's script sums them."""
+    shapes = page["shapes"].astype(float)
+    return page["points"] + np.tensordot(np.array(page["parts"]), shapes, axes=1)
+
+
+def test_a_page_shows_the_drawn_places_and_stresses(shown: Shown) -> None:
+    """Reference: the scene's own places; 16 bits of each shape, 8 of the stress."""
+    page, scene = packed(shown, 0.0), shown.scene
+    expected = [scene.drawn(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
+    largest = float(np.abs(np.subtract(expected, expected[0])).max())
+    np.testing.assert_allclose(places(page), expected, atol=2.0 * LEFT * largest)
+    colours = page["colors"] / 255.0 * page["end"]
+    clipped = np.minimum(shown.stress, shown.end)
+    np.testing.assert_allclose(colours, clipped, atol=shown.end / 500.0)
+
+
+def test_segments_move_along_as_drives_extend_them(shown: Shown) -> None:
+    """Reference (analytic): the inner segment moves back along x by 2 m a second, the outer one
+    not; both bend as they do without a drive."""
+    out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
+    boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
+    motion = moving_scene(drawn_out=-2.0 * TIME).motion
+    driven = shown._replace(scene=replace(shown.scene, boom=boom, motion=motion))
+    page, before = packed(driven, 0.0), packed(shown, 0.0)
+    assert before["drawn"] == {}
+    assert page["drawn"] == {"inner": pytest.approx(-2.0 * FRAMES)}
+    if page["magnified"] != before["magnified"]:
+        pytest.fail("the reference is magnified otherwise")
+    shift = places(page) - places(before)
+    inner = shown.scene.owner == 1
+    expected = np.zeros_like(shift)
+    expected[:, inner, 0] = -2.0 * FRAMES[:, None]
+    np.testing.assert_allclose(shift, expected, atol=1e-4)
+
+
+def test_few_shapes_leave_little() -> None:
+    """Reference: the motion itself, of 3 shapes and a noise below what may be left."""
+    rng = np.random.default_rng(1)
+    moved = rng.standard_normal((40, 3)) @ rng.standard_normal((3, 300))
+    noise = 0.1 * LEFT * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
+    parts, shapes = few_shapes(moved + noise)
+    assert parts.shape == (40, 3)
+    assert np.abs(parts @ shapes - moved).max() < 2.0 * LEFT * np.abs(moved).max()
+
+
+def test_a_slope_raises_points_and_shapes_alike(shown: Shown) -> None:
+    """Reference (analytic): at 90 degrees x points up, and z backwards."""
+    flat, risen = (places(packed(shown, angle)) for angle in (0.0, 90.0))
+    expected = np.stack([-flat[..., 2], flat[..., 1], flat[..., 0]], axis=-1)
+    np.testing.assert_allclose(risen, expected, atol=1e-3)
