@@ -73,7 +73,7 @@ def first_table(results: Results) -> Table | None:
 
 
 def trust_line(results: Results) -> str:
-    """Return how far the other models with play are off the one they are held against; else empty."""
+    """Return how far the other models with play are off the reference; else empty."""
     answers, reference = results.summary.answers.models, results.reference
     if not answers or reference is None:
         return ""
