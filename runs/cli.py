@@ -156,20 +156,10 @@ def report(
     folders: Annotated[list[str], typer.Argument(metavar="DIR...", help="The folders of runs.")],
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
-    from runs.case.user_files import check_left
-    from runs.client import judge
-    from runs.folder.files import alone, changed_folder
-    from runs.pipeline.results import Results
-    from runs.report import output
-
     runs, judged = {}, {}
     for folder in folders:
-        with alone(Path(folder)):
-            runs[folder] = results = Results.load(Path(folder))
-            check_left(Path(folder), folder, "folder")
-            judged[folder] = judge(results, Path(folder))
-            with changed_folder(Path(folder)) as part:
-                output.write_report(results, judged[folder], part)
+        with _rendered_again(folder) as (results, addition, _):
+            runs[folder], judged[folder] = results, addition
     return _show(runs, judged)
 
 
@@ -182,31 +172,23 @@ def snapshot(
 ) -> int:
     """Render the deformed shells of a run, and its report again with the pictures."""
     from runs.case.messages import BadInput
-    from runs.case.user_files import check_left
-    from runs.client import judge
-    from runs.folder.files import alone, changed_folder
-    from runs.pipeline.results import TRAJECTORIES, Results
-    from runs.report import output, snapshots
+    from runs.pipeline.results import TRAJECTORIES
+    from runs.report import snapshots
     from runs.report.opengl import RenderingUnavailable
 
-    with alone(Path(folder)):
-        results = Results.load(Path(folder))
-        check_left(Path(folder), folder, "folder")
-        judged = judge(results, Path(folder))
+    with _rendered_again(folder) as (results, _, part):
         last = results.case.time.duration
         for t in time or []:
             if not 0.0 <= t <= last:
                 raise BadInput(folder, "--time", f"must be between 0 and {last:g} s, got {t:g}")
         shells = snapshots.shells_in(Path(folder))
-        with changed_folder(Path(folder)) as part:
-            try:
-                times = sorted(set(time)) if time else None
-                motion = Path(folder) / TRAJECTORIES
-                with snapshots.drawing(results, shells, motion, part, times) as gather:
-                    drawn = gather()
-            except RenderingUnavailable as reason:
-                raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
-            output.write_report(results, judged, part)
+        try:
+            times = sorted(set(time)) if time else None
+            motion = Path(folder) / TRAJECTORIES
+            with snapshots.drawing(results, shells, motion, part, times) as gather:
+                drawn = gather()
+        except RenderingUnavailable as reason:
+            raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None
     for name in drawn:
         print(printable(str(Path(folder) / snapshots.SNAPSHOTS / name)))
     return 0
@@ -233,7 +215,8 @@ def sweep(
     points, else the cores do. Ensembles are left out.
     """
     from runs.folder.cache import Cache
-    from runs.pipeline import estimates
+    from runs.pipeline import estimates, members
+    from runs.process import workers
     from runs.sweep import output as charts
     from runs.sweep import points
     from runs.sweep import run as sweep_runs
@@ -246,7 +229,8 @@ def sweep(
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
-        with sweep_runs.workers(comm) as pool:
+        several = comm is not None and comm.size > 1
+        with members.workers(comm) if several else workers.workers(None) as pool:
             if pool is None:
                 return 0
             with progress.told() as tell:
@@ -395,6 +379,28 @@ def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
             raise
         known = _explain(error)
         ending.fail(*(known or (traceback.format_exc(), 1)), comm)
+
+
+@contextmanager
+def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
+    """Give a run, what its client says of it, and a copy of its folder, which takes its place.
+
+    The copy's report is rendered in the end.
+    """
+    from runs.case.user_files import check_left
+    from runs.client import judge
+    from runs.folder.files import alone, changed_folder
+    from runs.pipeline.results import Results
+    from runs.report import output
+
+    path = Path(folder)
+    with alone(path):
+        results = Results.load(path)
+        check_left(path, folder, "folder")
+        judged = judge(results, path)
+        with changed_folder(path) as part:
+            yield results, judged, part
+            output.write_report(results, judged, part)
 
 
 def _names(models: str | None) -> list[str] | None:

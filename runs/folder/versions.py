@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What computed."""
+"""Versions of what computes: this program's sources, and the libraries."""
 
 from __future__ import annotations
 
 import hashlib
 import platform
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
@@ -16,7 +16,7 @@ _LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx",
 
 
 def installed_version(name: str) -> str | None:
-    """A distribution's; None where it is not installed."""
+    """Return that of a distribution; None where it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -24,7 +24,7 @@ def installed_version(name: str) -> str | None:
 
 
 def versions() -> dict[str, str | None]:
-    """By the module's name, which counts if it has been loaded: a beam's run spares FEniCSx."""
+    """Return versions by the module's name, if it has been loaded: a beam's run spares FEniCSx."""
     modules: Sequence[str] = (
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
@@ -37,7 +37,7 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Folders of this program's packages: all in the tree of its sources, or those installed."""
+    """Return this program's packages: all in the tree of its sources, or those installed."""
     top = Path(__file__).parents[2]
     if (top / "pyproject.toml").is_file():
         return [path.parent for path in sorted(top.glob("*/__init__.py"))]
@@ -46,25 +46,20 @@ def packages() -> list[Path]:
 
 
 def sources(folders: Iterable[Path]) -> str:
-    """SHA-256 of the Python files of packages and of the packages in them, with their places."""
+    """Return the SHA-256 of the Python files of packages, inner ones too, with their places."""
     digest = hashlib.sha256()
     for folder in folders:
-        for path in _modules(folder):
-            content = path.read_bytes()
-            place = path.relative_to(folder.parent).as_posix()
-            digest.update(f"{place}\0{len(content)}\0".encode() + content)
+        for path in sorted(folder.rglob("*.py")):
+            if (path.parent / "__init__.py").is_file():
+                content = path.read_bytes()
+                place = path.relative_to(folder.parent).as_posix()
+                digest.update(f"{place}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()
 
 
 @cache
 def program() -> dict[str, str | None]:
-    """What decides a result beside its data: the sources, and the libraries that compute."""
+    """Return what decides a result beside its data: the sources, and libraries that compute."""
     # As installed: what a process has loaded says nothing of what another one will compute.
     libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}
-
-
-def _modules(package: Path) -> Iterator[Path]:
-    yield from sorted(package.glob("*.py"))
-    for inner in sorted(package.glob("*/__init__.py")):
-        yield from _modules(inner.parent)

@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import math
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,6 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from geometry.arrays import Array
 from runs.folder.files import alone, changed_folder, whole
 from runs.pipeline.results import CONVENTIONS
 from runs.report.numerals import NONE, number
@@ -21,9 +19,9 @@ from runs.report.tables import Table
 from runs.sweep.distance_figures import draw_distances
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import DISTANCES, QUANTITIES, STEP_ERROR, UNTIL, Measured, Quantity
+from runs.sweep.quantities import DISTANCES, QUANTITIES, STEP_ERROR, UNTIL, Quantity
 from runs.sweep.run import Outcome
-from runs.sweep.swings import said, swings
+from runs.sweep.swings import describe, swings
 
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
@@ -44,23 +42,19 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
         ``failed``, 1 where the numerics did.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]
-
-    def over_points(values: Sequence[Sequence[float]]) -> Array:
-        return np.array(values).reshape(*plan.shape, len(models))
-
-    found: dict[str, Any] = {
-        quantity.name: (
-            dims,
-            over_points(
-                [[_number(table(one), name, quantity) for name in models] for one in outcomes]
-            ),
-            {"units": quantity.unit, "long_name": quantity.title},
-        )
-        for quantities, table in _TABLES[: 1 if plan.reference is None else 2]
-        for quantity in quantities
-    }
-    failed = over_points([[name in one.failures for name in models] for one in outcomes])
-    found["failed"] = dims, failed.astype(np.int8), {"long_name": "the numerics failed"}
+    quantities = QUANTITIES if plan.reference is None else (*QUANTITIES, *DISTANCES)
+    rows = [
+        one.models.get(name, {}) | one.off.get(name, {}) | {"failed": name in one.failures}
+        for one in outcomes
+        for name in models
+    ]
+    shape = *plan.shape, len(models)
+    found: dict[str, Any] = {}
+    for one in quantities:
+        values = np.array([row.get(one.name) for row in rows], dtype=float).reshape(shape)
+        found[one.name] = dims, values, {"units": one.unit, "long_name": one.title}
+    failed = np.array([row["failed"] for row in rows], dtype=np.int8).reshape(shape)
+    found["failed"] = dims, failed, {"long_name": "the numerics failed"}
     if plan.reference is not None:
         ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
         attributes = {"units": "s", "long_name": "tips compared until"}
@@ -116,7 +110,7 @@ def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
-    for line in (line for name, one in swings(data).items() for line in said(name, one)):
+    for line in (line for name, one in swings(data).items() for line in describe(name, one)):
         console.print(line, markup=False, highlight=False)
     if reference is not None:
         _show_distances(data, reference, console)
@@ -131,21 +125,14 @@ def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
     title = f"Distances from {reference}"
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
-    for line in (_until_when(data[UNTIL]), _by_steps(data, reference)):
-        if line:
-            console.print(line, markup=False, highlight=False)
-
-
-def _until_when(until: xr.DataArray) -> str:
-    ends = _range(until, Quantity(UNTIL, "s", "", 1.0, "s"))
-    return "" if ends == NONE else f"tips are compared until {ends} s"
-
-
-def _by_steps(data: xr.Dataset, reference: str) -> str:
-    changed = _range(data[STEP_ERROR.name].sel(model=reference).round(DIGITS), STEP_ERROR)
-    if changed == NONE:
-        return ""
-    return f"the time step changes the tip of {reference} by {changed} % of its range"
+    until = _range(data[UNTIL], Quantity(UNTIL, "s", "", 1.0, "s"))
+    step_error = data[STEP_ERROR.name].sel(model=reference).round(DIGITS)
+    changed = _range(step_error, STEP_ERROR)
+    if until != NONE:
+        console.print(f"tips are compared until {until} s", markup=False, highlight=False)
+    if changed != NONE:
+        line = f"the time step changes the tip of {reference} by {changed} % of its range"
+        console.print(line, markup=False, highlight=False)
 
 
 def _range(values: xr.DataArray, quantity: Quantity) -> str:
@@ -161,18 +148,6 @@ def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
         return NONE
     place = np.unravel_index(np.nanargmax(values.values), values.shape)
     return "\n".join(f"{values[key].values[i]:g}" for key, i in zip(keys, place, strict=True))
-
-
-def _number(table: Mapping[str, Measured], model: str, quantity: Quantity) -> float:
-    value = table.get(model, {}).get(quantity.name)
-    return math.nan if value is None else value
-
-
-# What is measured of each model, and what of each but the reference.
-_TABLES: Sequence[tuple[Sequence[Quantity], Callable[[Outcome], Mapping[str, Measured]]]] = (
-    (QUANTITIES, lambda outcome: outcome.models),
-    (DISTANCES, lambda outcome: outcome.off),
-)
 
 
 def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:

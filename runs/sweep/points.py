@@ -26,7 +26,6 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput, choices
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
-from runs.case.units import System
 from runs.sweep.variation import Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]
@@ -98,7 +97,16 @@ def plan(
     first = _written(file, tables, tuple((v, v.values[0]) for v in variations))
     system = whole.system
     units = [system.unit(unit_of(variation.places[0], first)) for variation in variations]
-    variations = [_in_units_of(system, variation, first) for variation in variations]
+    variations = [
+        replace(
+            one,
+            places=tuple(
+                replace(place, size=system.size(unit_of(place, first) or "1"))
+                for place in one.places
+            ),
+        )
+        for one in variations
+    ]
 
     def chosen(settings: Sequence[Setting]) -> Case:
         return case_file.select(_written(file, tables, settings), file, models)
@@ -116,30 +124,15 @@ def plan(
         points.append(Point(values, label, case_file.select(checked, file, None, mesh_size)))
     _check_influence(file, variations, points)
     run = points[0].case.models
-    _check_reference(file, reference, [model.name for model in run])
+    names = [model.name for model in run]
+    if reference is not None and reference not in names:
+        what = f"{reference!r} is not a model that is run; give {choices(names)}"
+        raise BadInput(file, "--against", what)
+    if names == [reference]:
+        what = f"nothing is run beside {reference!r}; run another model, too"
+        raise BadInput(file, "--against", what)
     play_free = [model.name for model in run if model.play_free]
     return Plan(file, whole.title, variations, units, play_free, points, reference)
-
-
-def _check_reference(file: str, reference: str | None, models: Sequence[str]) -> None:
-    if reference is None:
-        return
-    if reference not in models:
-        raise BadInput(
-            file, "--against", f"{reference!r} is not a model that is run; give {choices(models)}"
-        )
-    if len(models) == 1:
-        raise BadInput(
-            file, "--against", f"nothing is run beside {reference!r}; run another model, too"
-        )
-
-
-def _in_units_of(system: System, variation: Variation, case: Case) -> Variation:
-    """A variation whose values are in a system's units."""
-    places = (
-        replace(place, size=system.size(unit_of(place, case) or "1")) for place in variation.places
-    )
-    return replace(variation, places=tuple(places))
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:

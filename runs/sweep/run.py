@@ -8,10 +8,8 @@ sweep of the folder asks for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,12 +20,11 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.user_files import check_left
 from runs.folder.cache import Cache, key
-from runs.pipeline import members
 from runs.pipeline.means import Means, Progress
 from runs.pipeline.run import run_case
 from runs.process import ending
-from runs.process import workers as processes
 from runs.process.ending import undone
+from runs.process.workers import end
 from runs.sweep.points import Plan
 from runs.sweep.quantities import Features, Measured, comparable_until, measure
 
@@ -71,7 +68,7 @@ def prepare(folder: Path, file: str) -> None:
 
 
 def launched_world(file: str) -> MPI.Intracomm | None:
-    """All ranks if a launcher such as ``mpirun`` started several, else None.
+    """Return all ranks if a launcher such as ``mpirun`` started several, else None.
 
     Raises:
         BadInput: it did, and mpi4py is not installed.
@@ -87,22 +84,6 @@ def launched_world(file: str) -> MPI.Intracomm | None:
     return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
 
 
-@contextmanager
-def workers(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """What runs points at a time: the cores of this machine, or all ranks but the first.
-
-    Args:
-        comm: of several ranks, or None. On other ranks than the first this yields None, once they
-            have nothing to do any more.
-    """
-    if comm is not None and comm.size > 1:
-        with members.workers(comm) as others:
-            yield others
-        return
-    with processes.workers(None) as pool:
-        yield pool
-
-
 def run_points(
     plan: Plan,
     folder: Path,
@@ -115,7 +96,7 @@ def run_points(
     Args:
         plan: of the sweep.
         folder: made by :func:`prepare`.
-        pool: of :func:`workers`.
+        pool: runs points at a time.
         progress: told about every finished point.
         cache: of reduced shells.
 
@@ -136,7 +117,7 @@ def run_points(
     progress("sweep", stage, done / len(points))
     try:
         # Nobody waits for what they compute.
-        with undone(processes.end):
+        with undone(end):
             for future in as_completed(futures):
                 i = futures[future]
                 outcomes[i] = outcome = future.result()

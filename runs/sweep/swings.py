@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -34,13 +34,13 @@ class Swings(NamedTuple):
     levels: dict[str, Array]
 
     def where_known(self, end: str) -> Swings:
-        """At the speeds at which the level of an end is known."""
+        """Return those at the speeds at which the level of an end is known."""
         known = np.isfinite(self.levels[end])
         return Swings(self.speed[known], self.swing[known], {end: self.levels[end][known]})
 
 
 def swings(data: xr.Dataset) -> dict[str, Swings]:
-    """Of each model whose speed a sweep over one key varies.
+    """Return those of each model whose speed a sweep over one key varies.
 
     Args:
         data: of :func:`runs.sweep.output.gather`.
@@ -60,7 +60,10 @@ def swings(data: xr.Dataset) -> dict[str, Swings]:
 
 
 def fastest_within(swings: Swings, end: str) -> float | None:
-    """Up to which speed in m/s no swing exceeds its level, linear between speeds; None at none.
+    """Return the speed in m/s up to which no swing exceeds its level, None where all do.
+
+    It is linear between speeds.
+
 
     >>> speed, swing = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
     >>> one = Swings(speed, swing, {"begun": 4.0 + 0.0 * speed, "ended": np.array([1.0, 2.0, 3.0])})
@@ -79,8 +82,8 @@ def fastest_within(swings: Swings, end: str) -> float | None:
     return float(np.interp(0.0, beyond[near], speed[near]))
 
 
-def said(name: str, swings: Swings) -> Iterator[str]:
-    """What a designer asks, a sentence for each end of the way."""
+def describe(name: str, swings: Swings) -> Iterator[str]:
+    """Return how fast a boom may be drawn out, a sentence for each end of the way."""
     for end in swings.levels:
         speed, swing, levels = swings.where_known(end)
         level, fastest = levels[end], fastest_within(swings, end)
@@ -109,27 +112,17 @@ def draw_swings(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Pat
         return
     sheet, (axes,) = new_sheet(1, 4.6)
     for name, one in found.items():
-        color = strokes[name].color
-        label = f"{name}, drawn out"
-        axes.plot(
-            one.speed, TO_MILLI * one.swing, color=color, marker="o", markersize=4.0, label=label
-        )
+        line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, drawn out"}
+        axes.plot(one.speed, TO_MILLI * one.swing, marker="o", markersize=4.0, **line)
         for end, level in one.levels.items():
             where, dashes = _ENDS[end]
-            label = f"{name}, at rest {where}"
-            axes.plot(
-                one.speed,
-                TO_MILLI * level,
-                color=color,
-                linestyle=dashes,
-                linewidth=1.0,
-                label=label,
-            )
+            line["label"] = f"{name}, at rest {where}"
+            axes.plot(one.speed, TO_MILLI * level, linestyle=dashes, linewidth=1.0, **line)
     axes.set(xlabel="mean speed of the drive (m/s)", ylabel="swing of the tip (mm)")
     axes.set_ylim(bottom=0.0)
     handles, labels = axes.get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=1)
-    lines = [line for name, one in found.items() for line in said(name, one)]
+    lines = [line for name, one in found.items() for line in describe(name, one)]
     sheet.suptitle("How fast it may be drawn out", x=0.02, ha="left", fontsize=12.0,
                    fontweight="bold")  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=8.5, fontweight="normal", wrap=True)

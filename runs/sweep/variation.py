@@ -38,11 +38,16 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """One number of a case: the way to it through :data:`Tables`, and how messages call it."""
+    """One number of a case."""
 
-    steps: tuple[str | int, ...]
-    name: str
+    steps: tuple[str | int, ...]  #: the way to it through :data:`Tables`
     size: Fraction = Fraction(1)  #: how many of its SI unit are one of what it is set in
+
+    @property
+    def name(self) -> str:
+        """How messages call it, counted from 1."""
+        parts = (f".{step}" if isinstance(step, str) else f"[{step + 1}]" for step in self.steps)
+        return "".join(parts).removeprefix(".")
 
     def put(self, tables: Tables, value: Any) -> None:
         """Set it, tables that are not given made on the way."""
@@ -143,7 +148,7 @@ def find(key: str, tables: Tables) -> tuple[Place, ...]:
     path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
     if len(path) < len(steps):
         raise Unplaced("not understood; give a key such as joint[1].play")
-    return tuple(_places(tables, path, Place((), "")))
+    return tuple(_places(tables, path, Place(())))
 
 
 def _places(
@@ -157,12 +162,12 @@ def _places(
     if not isinstance(here, Mapping):
         raise Unplaced(f"{before.name} is not a table; end the key there")
     found = here.get(name)
-    place = Place((*before.steps, name), f"{before.name}.{name}" if before.name else name)
+    place = Place((*before.steps, name))
     if found is None:
         # The schema knows whether there is such a key.
         yield from _places({}, rest, place)
         return
-    tables = isinstance(found, list) and not _are_numbers(found)
+    tables = isinstance(found, list) and (not found or isinstance(found[0], Mapping))
     if tables and not found:
         raise Unplaced(f"the case has no {place.name}; there is nothing to vary")
     if isinstance(number, int):
@@ -180,11 +185,7 @@ def _places(
         yield from _places(found, rest, place)
         return
     for i in chosen:
-        yield from _places(found[i], rest, Place((*place.steps, i), f"{place.name}[{i + 1}]"))
-
-
-def _are_numbers(values: Sequence[Any]) -> bool:
-    return bool(values) and not isinstance(values[0], Mapping)
+        yield from _places(found[i], rest, Place((*place.steps, i)))
 
 
 def _values(text: str) -> tuple[float, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sweeps that are planned and not run."""
+"""Sweeps that are planned and not run, and the figures that are saved."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure as Sheet
 
 from runs.sweep.points import Plan, plan
 from tests.runs.sweeping import COARSE, FAST, Planned
@@ -23,3 +24,17 @@ def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
         return plan("case.toml", texts, models or FAST, None)
 
     return sweep_of
+
+
+@pytest.fixture
+def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
+    """The matplotlib figures behind the files that are saved."""
+    saved: list[Sheet] = []
+    save = Sheet.savefig
+
+    def keep(sheet: Sheet, path: Path) -> None:
+        saved.append(sheet)
+        save(sheet, path)
+
+    monkeypatch.setattr(Sheet, "savefig", keep)
+    return saved

@@ -65,6 +65,27 @@ def edit(old: str, new: str) -> None:
     Path("case.toml").write_text(COARSE.replace(old, new, 1), encoding="utf-8")
 
 
+def in_a_process(
+    folder: Path, *arguments: str, limit: int | None = None, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Python with such arguments in a folder that holds the coarse case, in so many bytes."""
+    (folder / "case.toml").write_text(COARSE.replace("duration = 0.6", "duration = 0.2"), "utf-8")
+
+    def keep_to_limit() -> None:
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=keep_to_limit,
+    )
+
+
 def test_check_prints_what_was_inferred(protractile: Protractile) -> None:
     """Reference: non-regression, the boxes that :mod:`geometry.section` infers."""
     answer = protractile("check", "case.toml")
@@ -252,32 +273,18 @@ def test_what_others_leave_in_the_environment_counts_for_nothing(
     tmp_path: Path, variable: str, value: str
 ) -> None:
     """A notebook's backend, which is installed where the notebook is, and a rank that is none."""
-    (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
     # It imports matplotlib, and then, as whoever shares a shell, asks for the rank.
     drawn = "check", "case.toml", "--picture", "boom.png"
     export = "export", "case.toml", "--to", "opensees", "--model", "beam-fe"
-    ended = subprocess.run(
-        [sys.executable, "-m", "protractile", *(drawn if variable == "MPLBACKEND" else export)],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT), variable: value},
-        capture_output=True,
-        text=True,
-    )
+    arguments = drawn if variable == "MPLBACKEND" else export
+    ended = in_a_process(tmp_path, "-m", "protractile", *arguments, **{variable: value})
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
 def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
     """In 250 MB of address space no library of linear algebra can be loaded."""
-    (tmp_path / "case.toml").write_text(COARSE, encoding="utf-8")
-    room = 250_000 * 1024
-    ended = subprocess.run(
-        [sys.executable, "-m", "protractile", "check", "case.toml"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (room, room)),
-    )
+    command = "-m", "protractile", "check", "case.toml"
+    ended = in_a_process(tmp_path, *command, limit=250_000 * 1024)
     assert ended.stderr.count("\n") == 1
     # Debian 13's OpenBLAS ends the process itself.
     if not ended.stderr.startswith("OpenBLAS error: Memory allocation still failed"):
@@ -375,9 +382,6 @@ def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
 
 
 def test_beams_need_no_fenicsx(tmp_path: Path) -> None:
-    (tmp_path / "case.toml").write_text(
-        COARSE.replace("duration = 0.6", "duration = 0.2"), encoding="utf-8"
-    )
     program = f"""
 import sys
 for name in ("dolfinx", "mpi4py", "petsc4py", "ufl", "basix", "slepc4py"):
@@ -386,25 +390,12 @@ for name in ("dolfinx", "mpi4py", "petsc4py", "ufl", "basix", "slepc4py"):
 from runs.cli import main
 main(["run", "case.toml", "--models", "kantorovich-5,timoshenko", "--out", "out"])
 """
-    subprocess.run(
-        [sys.executable, "-c", program],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=True,
-        capture_output=True,
-    )
+    assert in_a_process(tmp_path, "-c", program).returncode == 0
     assert (tmp_path / "out" / "report.html").exists()
 
 
 def test_the_module_is_the_command(tmp_path: Path) -> None:
-    answer = subprocess.run(
-        [sys.executable, "-m", "protractile", "check", "nowhere.toml"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+    answer = in_a_process(tmp_path, "-m", "protractile", "check", "nowhere.toml")
     assert (answer.returncode, answer.stdout) == (2, "")
     assert answer.stderr == (
         "protractile: nowhere.toml: file: does not exist; give the path of a case file\n"

@@ -155,17 +155,6 @@ def test_only_tips_are_compared_no_longer_than_that(against: Plan) -> None:
     assert part.pad_force > 0.0
 
 
-@pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
-    """The matplotlib figures behind the files that are saved."""
-    saved: list[Sheet] = []
-    save = Sheet.savefig
-    monkeypatch.setattr(
-        Sheet, "savefig", lambda sheet, path: (saved.append(sheet), save(sheet, path))
-    )
-    return saved
-
-
 def invented(factor: float, until: float = 0.9) -> Outcome:
     """A model whose tip is so far off, and one of a tenth of that; their first peaks are alike."""
     parts: Measured = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}

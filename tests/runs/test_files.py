@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -16,51 +15,6 @@ import pytest
 from runs.folder.files import MANIFEST, alone, changed_folder, damaged, whole, whole_folder
 
 ROOT = Path(__file__).parents[2]
-
-
-def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    with whole(path) as part:
-        part.write_text("{}", encoding="utf-8")
-        assert part.suffix == path.suffix
-        assert not path.exists()
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
-
-
-def test_a_failing_write_leaves_the_file_that_was_there(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    path.write_text("earlier", encoding="utf-8")
-
-    def fill_the_disk() -> None:
-        with whole(path) as part:
-            part.write_text("half", encoding="utf-8")
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(OSError, match="No space left on device") as failed:
-        fill_the_disk()
-    assert failed.value.filename == str(path)
-    assert path.read_text(encoding="utf-8") == "earlier"
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
-
-
-def test_a_killed_write_leaves_the_file_that_was_there(tmp_path: Path) -> None:
-    path = tmp_path / "summary.json"
-    path.write_text("earlier", encoding="utf-8")
-    program = f"""
-import os, signal
-from pathlib import Path
-from runs.folder.files import whole
-with whole(Path({str(path)!r})) as part:
-    part.write_text("half")
-    os.kill(os.getpid(), signal.SIGKILL)
-"""
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    killed = subprocess.run([sys.executable, "-c", program], env=environment, check=False)
-    assert killed.returncode == -signal.SIGKILL
-    assert path.read_text(encoding="utf-8") == "earlier"
-    with whole(path) as part:
-        part.write_text("later", encoding="utf-8")
-    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
 
 
 def contents(folder: Path) -> dict[str, str]:
@@ -98,25 +52,47 @@ with beside(Path({str(path)!r})) as part:
     )
 
 
+def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
+    path = tmp_path / "summary.json"
+    with whole(path) as part:
+        part.write_text("{}", encoding="utf-8")
+        assert part.suffix == path.suffix
+        assert not path.exists()
+    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
+
+
 def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
+    """By what was written; it has the rights of the old one."""
     folder = tmp_path / "figures"
     for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
         with whole_folder(folder) as part:
             write(part, *names)
         assert contents(folder) == dict.fromkeys(names, " ".join(names))
+        write(folder, "mine")
+        folder.chmod(0o750)
+    assert folder.stat().st_mode & 0o777 == 0o750
     assert [p.name for p in tmp_path.iterdir()] == ["figures"]
 
 
-def test_a_new_folder_has_what_was_written_and_the_rights_of_the_old_one(tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    for name in ("earlier", "later"):
-        with whole_folder(folder) as part:
-            write(part, name)
-        if name == "earlier":
-            write(folder, "mine")
-            folder.chmod(0o750)
-    assert contents(folder) == {"later": "later"}
-    assert folder.stat().st_mode & 0o777 == 0o750
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_a_failing_write_leaves_what_was_there(tmp_path: Path, kind: str) -> None:
+    """An error of the disk names the file as the user knows it."""
+    place = tmp_path / "place"
+    path = place if kind == "file" else place / "a.png"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("earlier", encoding="utf-8")
+
+    def fill_the_disk() -> None:
+        with (whole if kind == "file" else whole_folder)(place) as part:
+            half = part if kind == "file" else part / "a.png"
+            half.write_text("half", encoding="utf-8")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left on device") as failed:
+        fill_the_disk()
+    assert failed.value.filename == str(place)
+    assert path.read_text(encoding="utf-8") == "earlier"
+    assert [p.name for p in tmp_path.iterdir()] == ["place"]
 
 
 def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
@@ -142,22 +118,6 @@ def test_a_changed_folder_keeps_what_is_not_changed(tmp_path: Path) -> None:
     assert damaged(folder) is None
     (folder / "data").write_text("other", encoding="utf-8")
     assert damaged(folder) == "data"
-
-
-def test_a_failing_folder_leaves_the_one_that_was_there(tmp_path: Path) -> None:
-    folder = tmp_path / "figures"
-    with whole_folder(folder) as part:
-        write(part, "a.png")
-
-    def fail() -> None:
-        with whole_folder(folder) as part:
-            (part / "a.png").write_text("half", encoding="utf-8")
-            raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        fail()
-    assert contents(folder) == {"a.png": "a.png"}
-    assert [p.name for p in tmp_path.iterdir()] == ["figures"]
 
 
 @pytest.mark.parametrize("disk", ["Linux's own", "another"])

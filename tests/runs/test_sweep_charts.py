@@ -27,20 +27,6 @@ UNKNOWN = {"settling_time", "drive_speed"}
 CHARTED = [one.name for one in QUANTITIES if one.charted and one.name not in UNKNOWN]
 
 
-@pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
-    """The matplotlib figures behind the files that are saved."""
-    saved: list[Sheet] = []
-    save = Sheet.savefig
-
-    def keep(sheet: Sheet, path: Path) -> None:
-        saved.append(sheet)
-        save(sheet, path)
-
-    monkeypatch.setattr(Sheet, "savefig", keep)
-    return saved
-
-
 def written(
     sweeping: Plan, quantities: Sequence[str] = tuple(one.name for one in QUANTITIES)
 ) -> list[str]:

@@ -30,25 +30,24 @@ def complaint(file: str) -> str:
     return str(refused.value)
 
 
-def test_a_pipe_that_nobody_writes_to_is_no_case() -> None:
-    os.mkfifo("pipe")
-    assert complaint("pipe") == (
-        "pipe: file: cannot be read (not a regular file); give a case file that can"
-    )
-
-
-def test_a_device_without_an_end_is_no_case() -> None:
-    assert complaint("/dev/zero") == (
-        "/dev/zero: file: cannot be read (not a regular file); give a case file that can"
-    )
-
-
-def test_a_huge_file_is_no_case() -> None:
-    with open("huge", "wb") as file:
-        file.truncate(LARGEST + 1)
-    assert complaint("huge") == (
-        "huge: file: cannot be read (larger than 16 MB); give a case file that can"
-    )
+@pytest.mark.parametrize(
+    ("file", "make", "why"),
+    [
+        ("pipe", os.mkfifo, "not a regular file"),
+        ("/dev/zero", lambda path: None, "not a regular file"),
+        (
+            "huge",
+            lambda path: os.truncate(os.open(path, os.O_CREAT | os.O_RDWR), LARGEST + 1),
+            "larger than 16 MB",
+        ),
+    ],
+)
+def test_what_is_no_file_of_a_sensible_size_is_no_case(
+    file: str, make: Callable[[str], object], why: str
+) -> None:
+    """A pipe would wait for its writer, a device has no end."""
+    make(file)
+    assert complaint(file) == f"{file}: file: cannot be read ({why}); give a case file that can"
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,6 @@ def clean():
     signal.raise_signal(signal.SIGTERM)
     print("clean", flush=True)
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # a background job ignores it
 ending.listen()
 with ending.undone(clean):
     signal.raise_signal(signal.SIGINT)
@@ -39,9 +38,9 @@ with ending.undone(clean):
 
 
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
-    """A command in a process group of its own, as a terminal starts it."""
+    """Python in a process group of its own, as a terminal starts it."""
     return subprocess.Popen(
-        [sys.executable, "-m", "protractile", *arguments, "--out", "out"],
+        [sys.executable, *arguments],
         cwd=folder,
         env=os.environ | {"PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
@@ -51,6 +50,10 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
         # What runs in the background ignores Ctrl-C, and so would what it starts.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
+
+
+def command(folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    return start(folder, "-m", "protractile", *arguments, "--out", "out")
 
 
 def listens(process: subprocess.Popen[str]) -> bool:
@@ -78,7 +81,7 @@ def wait_until(happens: Callable[[subprocess.Popen[str]], bool], it: subprocess.
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("stage", ["importing", "working"])
 def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: str) -> None:
-    process = start(tmp_path, *RUN)
+    process = command(tmp_path, *RUN)
     wait_until(listens if stage == "importing" else works(tmp_path), process)
     os.killpg(process.pid, number)
     out, err = process.communicate(timeout=60)
@@ -96,7 +99,7 @@ def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
 
 def test_sigterm_ends_a_run_that_has_meshed_a_shell(tmp_path: Path) -> None:
     """Reference: by construction. gmsh resets the handler of SIGTERM."""
-    process = start(
+    process = command(
         tmp_path, "run", COARSE, "--models", "shell", "--no-cache", "--mesh-size", "0.05"
     )
     wait_until(tells("shell (1 of 1): "), process)
@@ -114,7 +117,7 @@ def test_a_sweep_ends_with_its_processes(
     tmp_path: Path, number: signal.Signals, all_hear_it: bool
 ) -> None:
     """Finished points stay. Its output ends when the last process that could write to it does."""
-    process = start(tmp_path, *SWEEP)
+    process = command(tmp_path, *SWEEP)
     wait_until(has_a_point(tmp_path), process)
     (os.killpg if all_hear_it else os.kill)(process.pid, number)
     out, err = process.communicate(timeout=60)
@@ -127,11 +130,9 @@ def test_a_sweep_ends_with_its_processes(
 
 
 def test_who_presses_twice_does_not_wait_for_ever() -> None:
-    ended = subprocess.run(
-        [sys.executable, "-c", AGAIN], cwd=ROOT, capture_output=True, text=True, timeout=30
-    )
-    assert (ended.stdout, ended.stderr) == ("clean\n", "protractile: interrupted\n")
-    assert ended.returncode == 128 + signal.SIGINT
+    process = start(ROOT, "-c", AGAIN)
+    assert process.communicate(timeout=30) == ("clean\n", "protractile: interrupted\n")
+    assert process.returncode == 128 + signal.SIGINT
 
 
 WORKERS = """
@@ -148,10 +149,7 @@ with workers(2) as pool:
 
 def test_processes_end_with_the_one_that_started_them() -> None:
     """Reference: by construction. Output ends when the last process that could write to it does."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", WORKERS], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, start_new_session=True,
-    )  # fmt: skip
+    process = start(ROOT, "-c", WORKERS)
     assert process.stdout is not None
     assert process.stdout.readline() == "works\n"
     process.terminate()

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""A sample of each campaign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from tests.torture import flipped_bits, full_disk, kills, shared_cache
+from tests.torture.flipped_bits import Row
+
+pytestmark = pytest.mark.slow
+
+BEAM = "--models", "beam-fe-tied"
+
+
+@pytest.mark.parametrize(
+    ("rows", "count"),
+    [
+        pytest.param(lambda folder: flipped_bits.rows(folder, 3), 2, id="flipped bits"),
+        pytest.param(lambda folder: full_disk.rows(folder, 2), 6, id="full disk"),
+        pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:1]), 1, id="killed"),
+        pytest.param(lambda folder: [kills.terminated(folder, 3)], 1, id="terminated"),
+        pytest.param(lambda folder: [shared_cache.one_folder(folder, 1, BEAM)], 1, id="one folder"),
+    ],
+)
+def test_nothing_is_lost_or_wrong_and_believed(
+    tmp_path: Path, rows: Callable[[Path], Iterable[Row]], count: int
+) -> None:
+    found = list(rows(tmp_path))
+    assert len(found) == count
+    for name, tries, breaches, what in found:
+        assert tries > 0
+        assert breaches == 0, f"{name}: {what}"
