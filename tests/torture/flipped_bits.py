@@ -8,9 +8,9 @@ made again, once.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from logging.handlers import BufferingHandler
 from pathlib import Path
 
 import numpy as np
@@ -24,22 +24,10 @@ from runs.pipeline.run import run_case
 from runs.process.terminal import NOTICES
 from runs.sweep import run as sweep
 from runs.sweep.points import plan
-
-Row = tuple[str, int, int, str]
+from tests.torture.shared_cache import Row
 
 _COARSE = str(CASES / "coarse.toml")
 _SEED = 20
-
-
-class _Count(logging.Handler):
-    """Of notices."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.told = 0
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.told += 1
 
 
 def rows(folder: Path, tries: int = 100) -> Iterator[Row]:
@@ -59,8 +47,8 @@ def rows(folder: Path, tries: int = 100) -> Iterator[Row]:
 def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int, int, str]:
     undisturbed = compute()
     random = np.random.default_rng(_SEED)
-    count = _Count()
-    NOTICES.addHandler(count)
+    notices = BufferingHandler(10**9)
+    NOTICES.addHandler(notices)
     wrong = untold = 0
     for _ in range(tries):
         path = random.choice(np.array(sorted(entries.glob("*.record"))))
@@ -68,10 +56,10 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
         bit = int(random.integers(8 * len(content)))
         content[bit // 8] ^= 1 << bit % 8
         path.write_bytes(content)
-        count.told = 0
+        notices.buffer.clear()
         wrong += compute() != undisturbed
-        untold += count.told != 1
-    NOTICES.removeHandler(count)
+        untold += len(notices.buffer) != 1
+    NOTICES.removeHandler(notices)
     return tries, wrong + untold, f"{wrong} results differ, {untold} were not told"
 
 

@@ -24,8 +24,7 @@ from runs import CASES, cli
 from runs.folder.cache import VARIABLE
 from runs.report.opengl import RenderingUnavailable
 from tests import at_once
-
-Row = tuple[str, int, int, str]
+from tests.torture.shared_cache import Row
 
 _CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
 _WRITES = set("wax+")

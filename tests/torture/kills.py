@@ -21,17 +21,13 @@ import numpy as np
 
 from runs import CASES
 from tests.fuzz.contract import PROGRESS
-from tests.torture.shared_cache import COMMAND
+from tests.torture.shared_cache import COMMAND, IN_THE_MAKING, Row, left
 from tests.unprinted import ONE_BLANK_FIGURE
-
-Row = tuple[str, int, int, str]
 
 _ROOT = Path(__file__).parents[2]
 _COARSE = CASES / "coarse.toml"
 # The first moment of all is late in a command, where it writes.
 _SEED = 76
-# In the names of all that is not whole yet.
-_IN_THE_MAKING = "protractile-"
 _COMMAND = sys.executable, "-c", COMMAND
 _RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
 
@@ -79,12 +75,12 @@ def killed(
         _write_case(place, 0.1)
         assert _start(place, command).wait() == 0
         shutil.copytree(place, folder / "old", symlinks=True)
-        old = _left(place / "out")
+        old = left(place / "out")
         _write_case(place, 0.2)
         begin = time.monotonic()
         assert _start(place, command).wait() == 0
         lasts = time.monotonic() - begin
-        new = _left(place / "out")
+        new = left(place / "out")
         breaches = 0
         for moment in random.uniform(0.0, lasts, tries):
             shutil.rmtree(place)
@@ -93,9 +89,9 @@ def killed(
             process = _start(place, command)
             time.sleep(moment)
             _kill(process)
-            kept = _left(place / "out") in (old, new)
-            again = _start(place, command).wait() == 0 and _left(place / "out") == new
-            rests = [path for path in place.rglob("*") if _IN_THE_MAKING in path.name]
+            kept = left(place / "out") in (old, new)
+            again = _start(place, command).wait() == 0 and left(place / "out") == new
+            rests = [path for path in place.rglob("*") if IN_THE_MAKING in path.name]
             breaches += not (kept and again) or bool(rests)
         shutil.rmtree(folder / "old")
         yield f"{name}, killed", tries, breaches, "what was there, then what an undisturbed leaves"
@@ -123,7 +119,7 @@ def terminated(place: Path, tries: int) -> Row:
         process.terminate()
         lines = process.communicate()[1].decode().splitlines()
         said = [line for line in lines if not PROGRESS.fullmatch(line)]
-        rests = [path for path in place.rglob("*") if _IN_THE_MAKING in path.name]
+        rests = [path for path in place.rglob("*") if IN_THE_MAKING in path.name]
         interrupted = (128 + signal.SIGTERM, ["protractile: interrupted"])
         # A run that has written everything may end, by itself or while Python takes leave.
         whole = (place / "out").exists() and (process.returncode, said) in (
@@ -198,16 +194,3 @@ def _of_session(session: int) -> list[int]:
             if int(its_session) == session and state != "Z":
                 found.append(int(path.parent.name))
     return found
-
-
-def _left(out: Path) -> dict[str, bytes]:
-    """Files of a folder, but for those of a sweep's points and what tells how long it took."""
-    return {
-        str(path.relative_to(out)): path.read_bytes()
-        if path.suffix in {".nc", ".csv", ".msh", ".vtu", ".pvd", ".toml"}
-        else b""
-        for path in out.rglob("*")
-        if path.is_file()
-        and "points" not in path.relative_to(out).parts
-        and _IN_THE_MAKING not in str(path)
-    }

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from tests.torture import flipped_bits, full_disk, kills, shared_cache
-from tests.torture.flipped_bits import Row
+from tests.torture.shared_cache import Row
 
 pytestmark = pytest.mark.slow
 
