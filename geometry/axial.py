@@ -30,7 +30,7 @@ class Thrust:
     """A force in N on a segment at x in m towards the base, such as a hoist rope's at the tip.
 
     >>> rope = pt.Thrust(segment=1, x=14.0, force=12e3)
-    >>> arm, fly = pt.with_compression(boom.segments, boom.joints, [rope])
+    >>> arm, fly = with_compression(boom.segments, boom.joints, [rope])
     >>> fly.compression.ends, arm.compression.ends
     (((12000.0, 12000.0),), ((12000.0, 12000.0), (0.0, 0.0)))
     """
@@ -50,7 +50,7 @@ def with_compression(
 
     A boom that stands upright weighs on its base:
 
-    >>> arm, fly = pt.with_compression(boom.segments, boom.joints, [], gravity=9.80665)
+    >>> arm, fly = with_compression(boom.segments, boom.joints, [], gravity=9.80665)
     >>> masses = [segment.mass_per_length * segment.length for segment in (arm, fly)]
     >>> (foot, _), _ = arm.compression.ends
     >>> round(foot / 9.80665 - sum(masses), 6)

@@ -21,7 +21,6 @@ from dynamics.failure import NumericsError as NumericsError
 # Models, and how they move
 from dynamics.trajectory import Trajectory as Trajectory
 from geometry.axial import Thrust as Thrust
-from geometry.axial import with_compression as with_compression
 from geometry.boom import Boom as Boom
 from geometry.cylinder import Cylinder as Cylinder
 from geometry.drive import Drive as Drive
@@ -54,6 +53,7 @@ from protractile.cases import change as change
 from protractile.cases import load_case as load_case
 from protractile.cases import run_case as run_case
 from runs import CASES as CASES
+from runs.case.actions import with_weight as with_weight
 from runs.case.kinds.finite_element import BeamElements as BeamElements
 from runs.case.kinds.kantorovich import Kantorovich as Kantorovich
 from runs.case.kinds.rigid import Rigid as Rigid

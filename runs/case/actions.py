@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from scipy.special import cosdg, sindg
 
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
-from geometry.axial import Thrust
-from geometry.boom import BoomError, Cylinder, Direction, Segment, Stop, check_place
+from geometry.axial import Thrust, with_compression
+from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop, check_place
 from geometry.load import Load, Moment, PartialLoad, Turn
 from runs.case.messages import choices
 from runs.case.places import at
@@ -114,6 +115,31 @@ def across(gravity: GravityTable) -> float:
 def along(gravity: GravityTable) -> float:
     """g sin θ in m/s², towards the base."""
     return gravity.acceleration * float(sindg(gravity.angle))
+
+
+def with_weight(
+    boom: Boom,
+    angle: float = 0.0,
+    acceleration: float = STANDARD_GRAVITY,
+    thrusts: Sequence[Thrust] = (),
+) -> Boom:
+    """Return the boom whose masses all weigh, across it and along it, from t = 0 on.
+
+    >>> upright = pt.with_weight(boom, angle=90.0, acceleration=10.0)
+    >>> foot = upright.segments[0].compression.ends[0][0]
+    >>> round(foot / sum(segment.mass for segment in boom.segments), 6)
+    10.0
+
+    Args:
+        boom: without weight.
+        angle: of luffing in degrees, positive where the tip is up.
+        acceleration: of gravity in m/s².
+        thrusts: other forces along the boom, such as a hoist rope's.
+    """
+    gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
+    segments = with_compression(boom.segments, boom.joints, thrusts, along(gravity))
+    weights = _felt(-across(gravity), "z", Step(), segments)
+    return replace(boom, segments=segments, loads=(*boom.loads, *weights))
 
 
 def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:

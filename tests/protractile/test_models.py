@@ -89,6 +89,14 @@ def test_a_model_moves_as_that_of_a_case_file(
     assert motion.data.attrs["steps"] == results.summary.models[model.name].steps
 
 
+def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:
+    """Reference: other way to say it, to the bit."""
+    model = pt.BeamElements(pt.with_weight(boom, angle=30.0), [LAW], element_length=1.0)
+    results = pt.run_case(declared(model, gravity={"angle": 30.0}))
+    tip = results.trajectories["tip"].sel(model=model.name)
+    np.testing.assert_array_equal(model.simulate(0.2).tip, tip)
+
+
 def test_a_motion_starts_and_is_damped_as_that_of_a_case_file(boom: pt.Boom) -> None:
     """Reference: other way to say it, to the bit."""
     model = pt.BeamElements(boom, [LAW], element_length=1.0)
