@@ -17,13 +17,13 @@ from dynamics.integrator import simulate
 from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Answers, Diagram, ModelAnswers
-from runs.pipeline.at_rest import at_rest, positions
-from runs.pipeline.life import counted, endurance
+from runs.pipeline.answers import Answers, ModelAnswers
+from runs.pipeline.at_rest import Diagram, at_rest, positions
 from runs.pipeline.means import Means
 from runs.pipeline.modes import modes
 from runs.pipeline.moved import Motions, gone_through
 from runs.pipeline.run import run_case
+from runs.pipeline.stresses import counted, endurance
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Held, Proof, Tell, titled
 

@@ -19,26 +19,16 @@ from geometry.boom import Boom
 from geometry.drawing import drawn
 from runs.case.kinds.model import Built
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import (
-    Answers,
-    AtRest,
-    Life,
-    Mode,
-    ModelAnswers,
-    ModesBeside,
-    Moved,
-)
-from runs.pipeline.at_rest import at_rest, drawn_positions, instants, positions
-from runs.pipeline.comparisons import reference_of
-from runs.pipeline.life import COUNTS, life
-from runs.pipeline.model_quality import quality_notes
+from runs.pipeline.answers import Answers, ModelAnswers, added
+from runs.pipeline.at_rest import AtRest, at_rest, drawn_positions, instants, positions
+from runs.pipeline.model_output import ShellOutput
+from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import Plan
-from runs.pipeline.modes import matched, modes
-from runs.pipeline.moved import Motions, gone_through, wall_stresses
-from runs.pipeline.play import added
+from runs.pipeline.modes import Mode, ModesBeside, matched, modes
+from runs.pipeline.moved import Motions, Moved, gone_through
 from runs.pipeline.section_forces import with_cylinders
-from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.statics import reactions, statics
+from runs.pipeline.stresses import COUNTS, Life, life, wall_stresses
 from runs.pipeline.summary import Summary
 from runs.pipeline.swing import swing
 

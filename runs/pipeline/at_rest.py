@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A model of the boom at rest, under the loads of the instants at which these are largest."""
+"""A model of the boom at rest, under the loads of the instants at which these are largest.
+
+Forces of a section are those of the part beyond it on the part before it: the normal force pulls
+where it is positive, a moment where it is positive pulls at the top (a lateral one at larger y).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
 from dynamics.drive.travel import Travel
 from dynamics.equilibrium import rest_at
 from dynamics.excitation import Excitation, followed
@@ -17,20 +21,106 @@ from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint
+from geometry.boom import Boom, Joint
 from geometry.cylinder import forces
 from geometry.drawing import drawn, places
-from geometry.section import Side
-from runs.case.contact import PADS_OF_SIDE
-from runs.pipeline.answers import AtRest, Diagram, Pressed, Tilt, rounded
-from runs.pipeline.place_names import place_names
-from runs.pipeline.section_forces import section_forces
-
-# Of sides.
-_SIGNS: tuple[Side, Side] = (1, -1)
+from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
+from runs.pipeline.section_forces import rounded, section_forces
 
 # A part of the farthest way that is none.
 _SAME_WAY = 1.0e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Diagram:
+    """A segment at rest, from its start to its end.
+
+    Args:
+        segment: its name.
+        x: (num_places) in m; a place where something jumps stands twice.
+        normal: N in N.
+        curves: what the model knows of the other quantities of :data:`dynamics.line.Quantity`:
+            ``deflection`` in m, ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m,
+            ``twist`` in rad, ``lateral_shear``, ``lateral_moment``, ``torque``.
+    """
+
+    segment: str
+    x: list[float]
+    normal: list[float]
+    curves: dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Tilt:
+    """What a joint gives way by its play and by what its contacts are pressed in.
+
+    Args:
+        inner, outer: names of the segments.
+        rotation: of the inner one in the outer one in rad, towards a larger slope.
+        tip: what that moves the tip by as a lever, in m.
+    """
+
+    inner: str
+    outer: str
+    rotation: float
+    tip: float
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """A station.
+
+    Args:
+        place: its name, as trajectories have it.
+        x: in m.
+        direction: z or y.
+        force: in N, positive where the inner segment presses up (along y: towards larger y).
+        pad: the most that one of its pads bears in N, not negative, where those of a side share its
+            force as they are stiff and shims press first; None without pads.
+        depth: how far the contact that is pressed most is pressed in, in m.
+    """
+
+    place: str
+    x: float
+    direction: str
+    force: float
+    pad: float | None
+    depth: float
+
+
+@dataclass(frozen=True, slots=True)
+class AtRest:
+    """A model of the boom at rest.
+
+    Args:
+        time: whose loads act, and as far drawn out as it is then, in s.
+        tip: its deflection in m.
+        tip_lateral: likewise along y, in space.
+        diagrams: of each segment.
+        tilts: of the joints with play and two stations at least.
+        stations: of the joints with play, and of stops.
+        cylinders: forces along them in N by the names of the results.
+    """
+
+    time: float
+    tip: float
+    tip_lateral: float | None
+    diagrams: list[Diagram]
+    tilts: list[Tilt]
+    stations: list[Pressed]
+    cylinders: dict[str, float]
+
+
+def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
+    """A name for each station: its x in m, behind it ``y`` where it works to the sides.
+
+    ``#2`` and so forth stands behind the name where others are at the same place.
+    """
+    names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
+    before = [names[:i].count(name) for i, name in enumerate(names)]
+    return [
+        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
+    ]
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
@@ -168,42 +258,18 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
     ):
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
-            sum(_one_sided(system.laws[row], side, gaps[row]) for row in here) for side in _SIGNS
+            sum(one_sided_force(system.laws[row], side, gaps[row]) for row in here)
+            for side in SIGNS
         ]
         yield Pressed(
             place=name,
             x=x,
             direction=direction,
             force=sides[0] - sides[1],
-            pad=None if joint is None else _of_a_pad(joint, direction, sides),
+            pad=None if joint is None else most_on_pad(joint, direction, sides),
             # A tied model has stations, and no rows there.
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
         )
-
-
-def _of_a_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
-    """The most in N that one pad bears where they bear so much on both sides; None without pads."""
-    if not joint.padded:
-        return None
-    pairs = (_hardest(joint, direction, *of) for of in zip(_SIGNS, sides, strict=True))
-    return max(pairs) / PADS_OF_SIDE
-
-
-def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
-    """What bears most in N of the pairs of a side, of which those with more shim press first."""
-    pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
-    shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
-    own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
-    stiffness = PADS_OF_SIDE * sum(own) or 1.0
-    # Each further pair that presses leaves less way to those before it.
-    ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
-    return float(stiffness * (shares * (ways.min() + shims)).max())
-
-
-def _one_sided(law: ContactLaw, side: int, gap: float) -> float:
-    """What a contact bears on a side in N, not negative."""
-    there = law.one_sided(side)
-    return 0.0 if there is None else float(abs(there.force(np.array(gap))))
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:

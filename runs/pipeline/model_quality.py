@@ -1,22 +1,29 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the numbers of a run can be trusted, and what they are not worth, a line each."""
+"""How far the numbers of a run can be trusted: models compared, lines of accuracy, cautions.
+
+Every model is held against one of them. Where ensembles are known, at three levels, each with what
+it can decide; where segments rub, from the beginning to the end: friction takes what impacts would
+otherwise let grow.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 
+from dynamics.predictability.comparison import Distributions, PeakDifferences, compare
+from dynamics.trajectory import Pointwise
 from geometry.axial import entry
 from geometry.boom import Boom
 from geometry.typography import TO_PERCENT, listed
 from runs.case.actions import series_notes
-from runs.case.schema import Case
+from runs.case.schema import Case, Model
 from runs.pipeline.answers import Answers, ModelAnswers, QualityNote
 from runs.pipeline.drives import lag_cautions, slip_cautions, slippings
 from runs.pipeline.proportions import of_buckling, of_period, of_tip, slips
-from runs.pipeline.summary import Summary
+from runs.pipeline.summary import Comparisons, Levels, Summary, Whole
 
 # The part of the tip's range apart at which members of an ensemble count as parted.
 _PARTED = 0.2
@@ -26,6 +33,90 @@ POOR = 0.01
 
 # Part of the boom's length beyond which no displacement is small.
 MOST = 0.1
+
+# Differences over a whole run are told until here, too, in s.
+HALFWAY = 5.0
+# What each level can and cannot decide, in the words of those who measure.
+DECIDES: Mapping[str, str] = {
+    "pointwise": Pointwise.decides,
+    "peaks": PeakDifferences.decides,
+    "distributions": Distributions.decides,
+}
+
+
+def reference_of(models: Iterable[Model]) -> str | None:
+    """The model that the others are held against: the last shell, else the last with play."""
+    with_play = [model for model in models if not model.play_free]
+    shells = [model for model in with_play if model.meshed]
+    candidates = shells or with_play
+    return candidates[-1].name if candidates else None
+
+
+def leading(case: Case, models: Sequence[str]) -> set[str]:
+    """Those that are read first: the last shell, the last beam with play, the first without.
+
+    All of up to three, and of kinds that a run lacks the last one with play.
+    """
+    if len(models) <= 3:
+        return set(models)
+    ran = [model for model in case.models if model.name in models]
+    loose = [model for model in ran if not model.play_free]
+    shells = [model.name for model in loose if model.meshed]
+    beams = [model.name for model in loose if not model.meshed]
+    tied = [model.name for model in ran if model.play_free]
+    return {*shells[-1:], *beams[-1:], *tied[:1]}
+
+
+def compare_models(
+    case: Case,
+    trajectories: xr.Dataset,
+    ensembles: xr.Dataset | None,
+    cutoff: float | None,
+) -> Comparisons | None:
+    """What the summary says of the models' differences; None where there is nothing to compare.
+
+    Args:
+        case: which model is which.
+        trajectories: dims ``model``, ``time``; ``tip`` in m.
+        ensembles: dims ``model``, ``member``, ``time``; ``tip`` in m.
+        cutoff: of the slow motion in Hz.
+    """
+    ran = trajectories["model"].values
+    reference = reference_of(model for model in case.models if model.name in ran)
+    if reference is None:
+        return None
+    found = Comparisons(reference=reference)
+    if ensembles is not None and cutoff is not None:
+        one, *others = (
+            ensembles.sel(model=name).astype(float)
+            for name in (reference, *_others(ensembles, reference))
+        )
+        found.ensembles = {
+            str(other["model"].item()): Levels.model_validate(compare(one, other, cutoff))
+            for other in others
+        }
+    if case.regular:
+        found.whole = {
+            name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
+        }
+    return found if found.ensembles or found.whole else None
+
+
+def _others(data: xr.Dataset, reference: str) -> list[str]:
+    return [str(name) for name in data["model"].values if name != reference]
+
+
+def _whole(trajectories: xr.Dataset, reference: str, name: str) -> Whole:
+    """Pointwise differences of two tips until the middle and until the end."""
+    time = trajectories["time"].values
+    one, other = (trajectories["tip"].sel(model=model).values for model in (reference, name))
+    ends = [end for end in (HALFWAY, float(time[-1])) if end <= time[-1]]
+    found = [Pointwise.of(one, other, time, end) for end in dict.fromkeys(ends)]
+    return Whole(
+        until=[part.until for part in found],
+        largest=[part.largest for part in found],
+        rms=[part.rms for part in found],
+    )
 
 
 def quality_notes(summary: Summary, answers: Answers, duration: float) -> list[QualityNote]:

@@ -25,9 +25,9 @@ from runs.case.schema import Case, Model
 from runs.folder.cache import key
 from runs.pipeline import members
 from runs.pipeline.means import Means, Progress
+from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import Plan, build
 from runs.pipeline.proportions import static_tip
-from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import (
     BeamOfShell,
     CalibrationCard,

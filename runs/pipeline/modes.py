@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from runs.pipeline.answers import Match, Mode, Shape, rounded
+from runs.pipeline.section_forces import rounded
 
 # Of each model.
 MODES = 8
@@ -29,6 +30,65 @@ _WAYS: Mapping[Quantity, str] = {
 
 # Modes that are alike by less than this are not the same (Allemang 2003).
 ALIKE = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """How a segment moves in a mode: at x in m ``deflection``, in space ``lateral``, ``twist``."""
+
+    segment: str
+    x: list[float]
+    curves: dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A mode of the boom with its joints pressed as they are at rest.
+
+    Args:
+        frequency: in Hz.
+        way: what moves most: ``bending in z``, ``bending in y``, ``twist``.
+        number: among the model's modes of this way, from 1 on.
+        share: of that way in the kinetic energy, from 0 to 1.
+        shapes: of each segment, what moves most 1 m or 1 rad at most.
+    """
+
+    frequency: float
+    way: str
+    number: int
+    share: float
+    shapes: list[Shape]
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A mode of another model that is that of the reference.
+
+    Args:
+        number: among the other model's modes, from 1 on.
+        frequency: in Hz.
+        off: by what part it differs from the reference's.
+        alike: the modal assurance criterion of both shapes, from 0 to 1.
+    """
+
+    number: int
+    frequency: float
+    off: float
+    alike: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModesBeside:
+    """The modes of all models beside those of a reference.
+
+    Args:
+        reference: the name of the model.
+        matches: of each other model with play, for each mode of the reference; None where it has
+            none like it.
+    """
+
+    reference: str
+    matches: dict[str, list[Match | None]]
 
 
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
@@ -17,18 +16,73 @@ from geometry.axial import on_foot
 from geometry.boom import Boom, Segment, Support
 from geometry.cylinder import forces
 from geometry.section import Direction
-from runs.pipeline.answers import (
-    AtRest,
-    Envelope,
-    FibreStress,
-    Moved,
-    Peak,
-    WallStress,
-    rounded,
-)
-from runs.pipeline.fibres import Fibres
-from runs.pipeline.place_names import place_names
-from runs.pipeline.section_forces import section_forces
+from runs.pipeline.at_rest import AtRest, place_names
+from runs.pipeline.section_forces import rounded, section_forces
+from runs.pipeline.stresses import Fibres, FibreStress, Varying, WallStress, largest_stresses
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope:
+    """What a segment has gone through: the least and the largest of every curve of a diagram.
+
+    Args:
+        segment: its name.
+        x: (num_places) in m; a place where something jumps stands twice.
+        low, high: of each curve over the run, as of :class:`Diagram`.
+    """
+
+    segment: str
+    x: list[float]
+    low: dict[str, list[float]]
+    high: dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """The largest of a motion beside the largest at rest, by their absolute values.
+
+    Args:
+        what: ``deflection``, ``contact force``, ``cylinder force``, ``reaction``, where something
+            acts along the boom also ``reaction along the boom`` and ``reaction, across and along``,
+            ``moment at the support`` or ``bending moment``; in space those to the sides, called
+            ``lateral``, and ``torque at the support``.
+        where: the place, as the results or the case name it.
+        unit: of the SI.
+        largest: of the motion; of contacts the mean over an output interval, which is what a pad
+            feels, not the peak of a blow.
+        time: when, in s.
+        at_rest: the largest at rest under the largest loads, wherever it is drawn to; None where
+            there is no rest.
+    """
+
+    what: str
+    where: str
+    unit: str
+    largest: float
+    time: float
+    at_rest: float | None
+
+    @property
+    def factor(self) -> float | None:
+        """The dynamic factor; None where nothing is at rest."""
+        return self.largest / self.at_rest if self.at_rest else None
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """What a model has gone through.
+
+    Args:
+        envelopes: of each segment.
+        peaks: largest over static.
+        fibres: of each segment whose section is known; none of rigid ones.
+        walls: of shells.
+    """
+
+    envelopes: list[Envelope]
+    peaks: list[Peak]
+    fibres: list[FibreStress]
+    walls: list[WallStress]
 
 
 class _Plane(NamedTuple):
@@ -44,14 +98,6 @@ _PLANES = (
     _Plane("z", "", "shear", "moment"),
     _Plane("y", "lateral ", "lateral_shear", "lateral_moment"),
 )
-
-
-class Varying(NamedTuple):
-    """The stress of a segment at (x, y, z) in m, (num_times,) in Pa."""
-
-    segment: str
-    at: tuple[float, float, float]
-    stress: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +152,7 @@ def gone_through(motions: Motions) -> tuple[Moved, list[Varying]]:
         if "moment" in curves:
             peaks += _section_peaks(motions, gone)
         if (found := Fibres.of(segment, line)) is not None:
-            largest, most = _stresses(gone, found, motions.trajectory.time)
+            largest, most = largest_stresses(segment, found, curves, still, times[0])
             fibres.append(largest)
             varying.append(most)
     return Moved(envelopes, peaks, fibres, walls=[]), varying
@@ -119,39 +165,6 @@ def _envelope(gone: _Gone) -> Envelope:
         {name: rounded(values.min(axis=0)) for name, values in gone.curves.items()},
         {name: rounded(values.max(axis=0)) for name, values in gone.curves.items()},
     )
-
-
-def _stresses(gone: _Gone, fibres: Fibres, time: Array) -> tuple[FibreStress, Varying]:
-    """Where it is largest, and where it varies most."""
-    largest, where = 0.0, (0, 0, 0)
-    found, still = [], []
-    for fibre in range(len(fibres.z)):
-        stress = fibres.stress(fibre, gone.curves)
-        step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
-        if abs(stress[step, place]) > abs(largest):
-            largest, where = float(stress[step, place]), (fibre, int(step), int(place))
-        widest = int(np.ptp(stress, axis=0).argmax())
-        at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
-        found.append(Varying(gone.segment.name, at, stress[:, widest].copy()))
-        still.append(np.abs(fibres.stress(fibre, gone.still)).max(initial=0.0))
-    fibre, at_step, at_place = where
-    told = FibreStress(
-        segment=gone.segment.name,
-        x=float(fibres.x[at_place]),
-        y=float(fibres.y[fibre, at_place]),
-        z=float(fibres.z[fibre, at_place]),
-        stress=largest,
-        time=float(time[at_step]),
-        utilisation=utilisation(gone.segment, largest),
-        at_rest=float(max(still)) if len(gone.still["moment"]) else None,
-    )
-    return told, max(found, key=lambda one: float(np.ptp(one.stress)))
-
-
-def utilisation(segment: Segment, stress: float) -> float | None:
-    """Of its yield strength; None where that is not known."""
-    strength = segment.material.yield_strength
-    return None if strength is None else abs(stress) / strength
 
 
 class _Measured(NamedTuple):
@@ -201,33 +214,6 @@ def _section_peaks(motions: Motions, gone: _Gone) -> Iterator[Peak]:
     for support in gone.segment.supports if motions.jumps else ():
         for borne in _borne(motions, gone, support):
             yield _peak(borne, motions.trajectory.time)
-
-
-def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
-    """Of each segment of a shell that comes near a place.
-
-    Args:
-        boom: of the shell.
-        stresses: of :func:`shell_model.stress.history.near_places`.
-    """
-    found = []
-    for segment in boom.segments:
-        patches = stresses["von_mises_patch"].sel(segment=segment.name).values
-        if not np.isfinite(patches).any():
-            continue
-        step, place = np.unravel_index(np.nanargmax(patches), patches.shape)
-        patch = float(patches[step, place])
-        found.append(
-            WallStress(
-                segment=segment.name,
-                x=float(stresses["place"].values[place]),
-                patch=patch,
-                time=float(stresses["time"].values[step]),
-                triangle=float(np.nanmax(stresses["von_mises"].sel(segment=segment.name).values)),
-                utilisation=utilisation(segment, patch),
-            )
-        )
-    return found
 
 
 def _borne(motions: Motions, gone: _Gone, support: Support) -> Iterator[_Measured]:

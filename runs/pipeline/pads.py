@@ -1,26 +1,48 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How hard slide pads are pressed while the boom moves."""
+"""How hard slide pads are pressed, at rest and while the boom moves."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import count
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
-from scipy.optimize import brentq
 
 from dynamics.contact import ContactLaw
 from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.joint import SIDES
+from geometry.section import Side
 from runs.case.build import contact_laws
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
 from runs.case.schema import Case, Model
-from runs.pipeline.summary import PressedPad
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Of sides.
+SIGNS: tuple[Side, Side] = (1, -1)
 
 # Names of sides.
 _ON = {on: side for side, on in SIDES.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class PressedPad:
+    """One slide pad of a pair in one model, where it bears most: ``force`` in N at a station at x
+    in m, ``pressure`` in Pa; ``utilisation`` of what it may bear is None where that is not told.
+    """
+
+    model: str
+    outer: str
+    inner: str
+    x: float
+    side: str
+    force: float
+    pressure: float
+    utilisation: float | None
 
 
 def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPad]:
@@ -94,6 +116,8 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
     if not laws:
         return []
 
+    from scipy.optimize import brentq
+
     def force(approach: float) -> Array:
         return np.array([float(one.force(np.array(approach))) for one in laws])
 
@@ -109,3 +133,28 @@ def _of_a_side(both: float, law: ContactLaw) -> float:
     sides = (law.one_sided(side) for side in (1, -1))
     at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
     return max(both, at_rest + 0.5 * both)
+
+
+def most_on_pad(joint: Joint, direction: Direction, sides: Sequence[float]) -> float | None:
+    """The most in N that one pad bears where they bear so much on both sides; None without pads."""
+    if not joint.padded:
+        return None
+    pairs = (_hardest(joint, direction, *of) for of in zip(SIGNS, sides, strict=True))
+    return max(pairs) / PADS_OF_SIDE
+
+
+def _hardest(joint: Joint, direction: Direction, side: Side, force: float) -> float:
+    """What bears most in N of the pairs of a side, of which those with more shim press first."""
+    pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
+    shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
+    own = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
+    stiffness = PADS_OF_SIDE * sum(own) or 1.0
+    # Each further pair that presses leaves less way to those before it.
+    ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
+    return float(stiffness * (shares * (ways.min() + shims)).max())
+
+
+def one_sided_force(law: ContactLaw, side: int, gap: float) -> float:
+    """What a contact bears on a side in N, not negative."""
+    there = law.one_sided(side)
+    return 0.0 if there is None else float(abs(there.force(np.array(gap))))

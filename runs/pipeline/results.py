@@ -25,11 +25,11 @@ from runs.case.messages import BadInput, first_fault
 from runs.case.schema import Case, Model
 from runs.case.user_files import check_regular
 from runs.folder.files import MANIFEST, damaged, write_whole
-from runs.pipeline.answers import Moved, PlayAdds
-from runs.pipeline.comparisons import leading, reference_of
-from runs.pipeline.model_quality import cautions
+from runs.pipeline.answers import PlayAdds
+from runs.pipeline.at_rest import place_names
+from runs.pipeline.model_quality import cautions, leading, reference_of
+from runs.pipeline.moved import Moved
 from runs.pipeline.pads import pressed_pads
-from runs.pipeline.place_names import place_names
 from runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"

@@ -20,9 +20,9 @@ from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.answering import of_model, of_run
 from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.beam_output import BeamOutput
-from runs.pipeline.comparisons import compare_models
 from runs.pipeline.means import Means
+from runs.pipeline.model_output import BeamOutput, ShellOutput
+from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
     Finished,
     ModelRun,
@@ -31,7 +31,6 @@ from runs.pipeline.model_run import (
     run_model,
 )
 from runs.pipeline.results import CONVENTIONS, Results, label
-from runs.pipeline.shell_output import ShellOutput
 from runs.pipeline.summary import Ensembles, Summary, check_finite
 
 

@@ -7,7 +7,7 @@ between their lugs and the foot that holds it there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +26,15 @@ _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
     ("deflection", "shear"),
     ("lateral", "lateral_shear"),
 )
+
+
+# Digits that are kept of curves.
+_DIGITS = 5
+
+
+def rounded(values: Array | Iterable[float]) -> list[float]:
+    """As a file keeps them."""
+    return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
 def with_cylinders(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:

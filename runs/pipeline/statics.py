@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,6 @@ from geometry.typography import TO_KILO, TO_MILLI
 from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.answers import Reaction
 from runs.pipeline.at_rest import pressed, tilts
 from runs.pipeline.proportions import of_period, of_tip
 
@@ -30,6 +30,27 @@ from runs.pipeline.proportions import of_period, of_tip
 ROUND_OFF = 1.0e-9
 # Moments in N·m that are none.
 _NO_MOMENT = 1.0e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Reaction:
+    """What a support, a cylinder or a stop does to a segment at x in m.
+
+    Args:
+        segment: its name.
+        x: in m.
+        force: along z in N.
+        moment: towards a larger slope in N·m.
+        depth: how far a stop is pressed in, in m; None of what does not give way so.
+        along: along the boom, towards its tip, in N.
+    """
+
+    segment: str
+    x: float
+    force: float
+    moment: float
+    depth: float | None
+    along: float = 0.0
 
 
 class Statics(NamedTuple):

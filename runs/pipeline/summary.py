@@ -20,6 +20,7 @@ from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
+from runs.pipeline.pads import PressedPad
 from shell_model.stress.history import StressSummary
 
 
@@ -256,21 +257,6 @@ class Ensembles(EnsembleTable):
     """What the case asks of ensembles, and the cut-off of the slow motion in Hz."""
 
     slow_below: float | None
-
-
-class PressedPad(Entry):
-    """One slide pad of a pair in one model, where it bears most: ``force`` in N at a station at x
-    in m, ``pressure`` in Pa; ``utilisation`` of what it may bear is None where that is not told.
-    """
-
-    model: str
-    outer: str
-    inner: str
-    x: float
-    side: str
-    force: float
-    pressure: float
-    utilisation: float | None
 
 
 class Snapshots(Entry):

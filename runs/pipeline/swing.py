@@ -7,6 +7,8 @@ under the loads of that moment.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from dynamics.drive.travel import Travel
@@ -17,7 +19,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
 from runs.case.schema import Case, Model
-from runs.pipeline.answers import Swing
 from runs.pipeline.models import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
@@ -25,6 +26,28 @@ from runs.pipeline.models import Plan
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """How far the tip swings while the boom is drawn out, and afterwards.
+
+    A swing is the largest distance of the tip from where it would rest, drawn out as far as it is
+    and under the loads of that moment.
+
+    Args:
+        tip: the swing in m.
+        time: when it is, in s.
+        speed: the mean speed of the fastest drive while it moves, in m/s.
+        where_begun, where_ended: those of the same boom that stands where drives begin and end,
+            under the same loads, in m; None where that cannot be computed.
+    """
+
+    tip: float
+    time: float
+    speed: float
+    where_begun: float | None
+    where_ended: float | None
 
 
 def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -> Swing | None:

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runs.pipeline.answers import Added, AtRest, Peak
+from runs.pipeline.answers import Added
+from runs.pipeline.at_rest import AtRest
+from runs.pipeline.moved import Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
 from runs.report.numerals import NONE, amount, number

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from geometry.typography import listed
 from runs.case.schema import Case
-from runs.pipeline.answers import AtRest
+from runs.pipeline.at_rest import AtRest
 from runs.report import theme
 from runs.report.figure_context import Pen
 

@@ -10,10 +10,12 @@ from typing import NamedTuple
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, listed, signed
 from runs.case.schema import Model
-from runs.pipeline.answers import Added, AtRest, ModelAnswers, Peak
+from runs.pipeline.answers import Added, ModelAnswers
+from runs.pipeline.at_rest import AtRest
 from runs.pipeline.model_quality import off_at_rest
+from runs.pipeline.moved import Peak
+from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
-from runs.pipeline.summary import PressedPad
 from runs.report.answer_tables import hardly, times
 from runs.report.figure_context import farthest
 from runs.report.numerals import NONE, SHOWN, amount, fixed, number, percent

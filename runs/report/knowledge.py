@@ -8,7 +8,7 @@ from functools import partial
 
 from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_MILLI, signed
-from runs.pipeline.comparisons import DECIDES
+from runs.pipeline.model_quality import DECIDES
 from runs.pipeline.results import Results
 from runs.pipeline.summary import (
     CommonPeaks,

@@ -10,7 +10,10 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI, signed
-from runs.pipeline.answers import AtRest, Envelope, Mode, ModelAnswers
+from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.at_rest import AtRest
+from runs.pipeline.modes import Mode
+from runs.pipeline.moved import Envelope
 from runs.report import numerals, theme
 from runs.report.charts import Chart, Curve
 from runs.report.drawn_axis import of_rests, of_start

@@ -27,7 +27,7 @@ from geometry.section import Direction
 from geometry.typography import signed
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.beam_output import BeamOutput, MovedSegment
+from runs.pipeline.model_output import BeamOutput, MovedSegment
 from runs.report.marks import Mark, edges, marks
 from shell_model.stress.stresses import ShellStress
 

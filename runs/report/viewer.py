@@ -19,8 +19,8 @@ from scipy.spatial.transform import Rotation
 from geometry.arrays import Array
 from geometry.drawing import drives_below
 from geometry.typography import TO_MEGA
-from runs.pipeline.beam_output import frames
-from runs.pipeline.comparisons import leading
+from runs.pipeline.model_output import frames
+from runs.pipeline.model_quality import leading
 from runs.pipeline.run import Run
 from runs.report.charts import packed_plotly
 from runs.report.overlap_pictures import StressScale

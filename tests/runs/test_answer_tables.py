@@ -11,10 +11,11 @@ import pytest
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.answers import Added, Answers, Life, PlayAdds, Reaction, WallStress
-from runs.pipeline.life import COUNTS
+from runs.pipeline.answers import Added, Answers, PlayAdds
+from runs.pipeline.pads import PressedPad
 from runs.pipeline.results import Results
-from runs.pipeline.summary import PressedPad
+from runs.pipeline.statics import Reaction
+from runs.pipeline.stresses import COUNTS, Life, WallStress
 from runs.report.answer_tables import (
     answer_tables,
     mode_table,

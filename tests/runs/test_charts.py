@@ -12,7 +12,7 @@ import pytest
 
 from runs import CASES
 from runs.case.reading import load
-from runs.pipeline.comparisons import leading
+from runs.pipeline.model_quality import leading
 from runs.report.charts import MOST, Chart, Curve, extremes, packed_charts, packed_plotly
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.schema import Case, StopTable
-from runs.pipeline.comparisons import compare_models, reference_of
+from runs.pipeline.model_quality import compare_models, reference_of
 
 COARSE = CASES / "coarse.toml"
 PRESSED = 4500.0, 5000.0

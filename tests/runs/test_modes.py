@@ -19,8 +19,7 @@ from dynamics.damping import pressed_modes
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
-from runs.pipeline.answers import Mode
-from runs.pipeline.modes import matched, modes
+from runs.pipeline.modes import Mode, matched, modes
 
 BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 

@@ -18,10 +18,10 @@ from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from runs.case import reading as case_file
 from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.fibres import Fibres, outer_corners
 from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
+from runs.pipeline.stresses import Fibres, outer_corners
 from runs.pipeline.summary import Summary
 
 CASE = """

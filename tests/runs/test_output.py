@@ -19,8 +19,8 @@ from runs.case.messages import BadInput
 from runs.client import judge
 from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.at_rest import place_names
 from runs.pipeline.means import Means
-from runs.pipeline.place_names import place_names
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.report.output import write, write_csv, write_report

@@ -18,7 +18,7 @@ from geometry.section import BoxSection
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.reading import load
-from runs.pipeline.beam_output import BeamOutput, MovedSegment
+from runs.pipeline.model_output import BeamOutput, MovedSegment
 from runs.report.gallery import change_of_shape
 from runs.report.overlap_pictures import smoothed
 from runs.report.scene import Scene, round_scale

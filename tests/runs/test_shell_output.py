@@ -16,7 +16,7 @@ from mpi4py import MPI
 from dynamics.excitation import Step
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Cylinder, Load, PointMass, Stop
-from runs.pipeline.shell_output import ShellOutput
+from runs.pipeline.model_output import ShellOutput
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space

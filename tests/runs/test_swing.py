@@ -23,8 +23,7 @@ from protractile.cases import run_case
 from runs import CASES
 from runs.case.reading import load
 from runs.case.schema import Case
-from runs.pipeline.answers import Swing
-from runs.pipeline.swing import farthest_from_rest
+from runs.pipeline.swing import Swing, farthest_from_rest
 from runs.report import theme
 from runs.sweep.swings import Swings, describe, draw_swings, fastest_within, swings
 

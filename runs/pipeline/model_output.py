@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a shell leaves besides its trajectory: its fields, its stresses, its meshes."""
+"""What models leave besides trajectories: fields, stresses, meshes of shells, lines of beams."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from dynamics.damping import pressed_modes
+from dynamics.line import Line, Quantity
 from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
 from geometry.boom import Boom
 from runs.pipeline.at_rest import positions
 from runs.pipeline.modes import MODES
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
 
 STRESSES = "stress.nc"
 SERIES = "fields"
+
+# Enough for a film.
+FRAMES = 61
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +108,38 @@ class ShellOutput:
         for segment, mesh in self.meshes.items():
             mesh.write(meshes / f"{segment}.vtu")
             mesh.write_gmsh(meshes / f"{segment}.msh")
+
+
+class MovedSegment(NamedTuple):
+    """Along one segment, x (num_places,) in m, rising, the quantities (num_frames, num_places)."""
+
+    x: Array
+    read: Mapping[Quantity, Array]
+
+
+class BeamOutput(NamedTuple):
+    """Of all segments at so many times (num_frames,) in s."""
+
+    time: Array
+    segments: list[MovedSegment]
+
+    @classmethod
+    def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
+        """From a beam that has moved; where something jumps what is beyond is kept."""
+        steps = frames(trajectory.time.size)
+        moved = []
+        for line in lines:
+            last = np.append(np.diff(line.x) > 0.0, True)
+            read = line.read(trajectory.states[steps])
+            moved.append(
+                MovedSegment(line.x[last], {name: along[:, last] for name, along in read.items()})
+            )
+        return cls(trajectory.time[steps], moved)
+
+
+def frames(num_times: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Positions of the output times that a film shows, spread evenly, the ends included."""
+    return np.unique(np.linspace(0, num_times - 1, FRAMES).round().astype(np.intp))
 
 
 def _places(boom: Boom) -> list[float]:

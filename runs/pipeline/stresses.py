@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Stresses of a motion: in outer fibres, in the walls of shells, and what their cycles do.
+
+σ = N/A + M z/J + M_y y/J_y, as beams have it (Navier 1826); of a shell with the integrals of its
+walls' stresses, so that both are the nominal stress of the same section.
+
+Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). A range does damage
+by the curve of its detail category after EN 1993-1-9, 7.1, in Miner's sum: N = 2e6 (C/Δσ)³ up to
+5e6 cycles, from there on of the slope 5, and none below the cut-off at 1e8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from dynamics.line import Line, Quantity
+from geometry.arrays import Array
+from geometry.boom import Boom, Segment
+from geometry.section import Section
+from runs.case.schema import LifeTable
+from runs.pipeline.section_forces import rounded
+
+# Cycles at which a category is named, at the constant-amplitude limit, and at the cut-off.
+NAMED, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
+STEEP, FLAT = 3.0, 5.0
+
+# Debian's own packages have no such counter: there a run goes without it.
+COUNTS = find_spec("rainflow") is not None
+
+# In Pa, as categories are named.
+_MEGA = 1.0e6
+
+# Classes of ranges that are kept.
+_CLASSES = 20
+
+
+@dataclass(frozen=True, slots=True)
+class FibreStress:
+    """The stress along x in an outer fibre of a segment where it is largest, of section forces.
+
+    Args:
+        segment: its name.
+        x, y, z: where, in m; y is 0 in a flat boom.
+        stress: in Pa, positive where it pulls.
+        time: when, in s.
+        utilisation: of the yield strength; None where the case does not tell that.
+        at_rest: the largest |stress| of the segment at rest under the largest loads in Pa; None
+            where there is no rest.
+    """
+
+    segment: str
+    x: float
+    y: float
+    z: float
+    stress: float
+    time: float
+    utilisation: float | None
+    at_rest: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class WallStress:
+    """The largest von Mises stresses of a shell's segment near stations and supports.
+
+    Args:
+        segment: its name.
+        x: of the place near which the patch is, in m.
+        patch: the mean over a patch of a wall in Pa, which settles as the mesh refines.
+        time: of that, in s.
+        triangle: of any triangle in Pa, which may grow as the mesh refines.
+        utilisation: of the patch, as of :class:`FibreStress`.
+    """
+
+    segment: str
+    x: float
+    patch: float
+    time: float
+    triangle: float
+    utilisation: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Life:
+    """What the stress of a segment's outer fibre does to a detail there, where it varies most.
+
+    Args:
+        segment: its name.
+        x, y, z: where, in m.
+        cycles: how many are counted in the run, of whatever range.
+        largest: range in Pa.
+        equivalent: the range in Pa that, once in a run, does as much as all of them at a slope
+            of 3.
+        ranges: (num_classes) the middles of classes of ranges in Pa, rising, and
+        counts: how many cycles each has.
+        damage: of the run, of the case's detail category; None without one.
+        life_damage: of as many runs as the case tells.
+    """
+
+    segment: str
+    x: float
+    y: float
+    z: float
+    cycles: float
+    largest: float
+    equivalent: float
+    ranges: list[float]
+    counts: list[float]
+    damage: float | None
+    life_damage: float | None
+
+
+class Varying(NamedTuple):
+    """The stress of a segment at (x, y, z) in m, (num_times,) in Pa."""
+
+    segment: str
+    at: tuple[float, float, float]
+    stress: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Fibres:
+    """The outer fibres of a segment.
+
+    Args:
+        x: (num_places,) in m.
+        y, z: (num_fibres, num_places) in m.
+        of_moment, of_lateral: (num_fibres, num_places) the stress of a moment of 1 N·m, along z and
+            along y, in Pa.
+        of_normal: (num_places,) of a normal force of 1 N, in Pa.
+    """
+
+    x: Array
+    y: Array
+    z: Array
+    of_moment: Array
+    of_lateral: Array
+    of_normal: Array
+
+    @classmethod
+    def of(cls, segment: Segment, line: Line) -> Fibres | None:
+        """None where the section is not known or the segment does not bend."""
+        if segment.section is None or "moment" not in line.rows:
+            return None
+        spatial = "lateral_moment" in line.rows
+        there = [segment.local(x) for x in line.x.tolist()]
+        y, z = _corners(segment, line.x, spatial)
+        of_moment = z / _each(there, "second_moment_of_area")
+        of_lateral = y / _each(there, "lateral.second_moment_of_area") if spatial else y
+        return cls(line.x, y, z, of_moment, of_lateral, 1.0 / _each(there, "section.area"))
+
+    def stress(self, fibre: int, curves: Mapping[Quantity, Array]) -> Array:
+        """(..., num_places) in Pa of section forces (..., num_places)."""
+        stress = self.of_moment[fibre] * curves["moment"] + self.of_normal * curves["normal"]
+        if "lateral_moment" in curves:
+            stress += self.of_lateral[fibre] * curves["lateral_moment"]
+        return np.asarray(stress)
+
+
+def _each(segments: Sequence[Segment], number: str) -> Array:
+    return np.array([attrgetter(number)(segment) for segment in segments])
+
+
+def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
+    """(num_fibres, num_places) y and z in m; of a flat boom those that differ in z, at y = 0."""
+    different = x.tolist() if segment.head_section is not None else [float(x[0])]
+    corners = np.array([outer_corners(segment.section_at(place)) for place in different])
+    found = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
+    y, z = np.moveaxis(found, 0, -1)
+    if spatial:
+        return y, z
+    _, heights = np.unique(z[:, 0], return_index=True)
+    return np.zeros_like(z[heights]), z[heights]
+
+
+def outer_corners(section: Section) -> tuple[Array, Array]:
+    """y and z (num_corners,) in m of the corners of the plates' outer surfaces, from the centroid.
+
+    Of plates that meet, those of the surface whose normal is nearer to the direction count.
+    """
+    places, beyond = [], []
+    for before, after in zip(
+        section.plates[-1:] + section.plates[:-1], section.plates, strict=True
+    ):
+        # A normal has the components of the tangent, exchanged.
+        normals = [0.5 * plate.thickness * np.abs(plate.tangent[::-1]) for plate in (before, after)]
+        places.append(after.start)
+        beyond.append(np.maximum(*normals))
+    y, z = (np.array(places) + np.sign(places) * np.array(beyond)).T
+    return y, z
+
+
+def largest_stresses(
+    segment: Segment,
+    fibres: Fibres,
+    curves: Mapping[Quantity, Array],
+    still: Mapping[Quantity, Array],
+    time: Array,
+) -> tuple[FibreStress, Varying]:
+    """Return the stress of a segment where it is largest, and where it varies most.
+
+    Args:
+        segment, fibres: of which.
+        curves: (num_times, num_places) of its section forces.
+        still: (num_rests, num_places) of them at rest.
+        time: (num_times,) in s.
+    """
+    largest, where = 0.0, (0, 0, 0)
+    found, at_rest = [], []
+    for fibre in range(len(fibres.z)):
+        stress = fibres.stress(fibre, curves)
+        step, place = np.unravel_index(np.abs(stress).argmax(), stress.shape)
+        if abs(stress[step, place]) > abs(largest):
+            largest, where = float(stress[step, place]), (fibre, int(step), int(place))
+        widest = int(np.ptp(stress, axis=0).argmax())
+        at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
+        found.append(Varying(segment.name, at, stress[:, widest].copy()))
+        at_rest.append(np.abs(fibres.stress(fibre, still)).max(initial=0.0))
+    fibre, at_step, at_place = where
+    told = FibreStress(
+        segment=segment.name,
+        x=float(fibres.x[at_place]),
+        y=float(fibres.y[fibre, at_place]),
+        z=float(fibres.z[fibre, at_place]),
+        stress=largest,
+        time=float(time[at_step]),
+        utilisation=utilisation(segment, largest),
+        at_rest=float(max(at_rest)) if len(still["moment"]) else None,
+    )
+    return told, max(found, key=lambda one: float(np.ptp(one.stress)))
+
+
+def utilisation(segment: Segment, stress: float) -> float | None:
+    """Of its yield strength; None where that is not known."""
+    strength = segment.material.yield_strength
+    return None if strength is None else abs(stress) / strength
+
+
+def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
+    """Of each segment of a shell that comes near a place.
+
+    Args:
+        boom: of the shell.
+        stresses: of :func:`shell_model.stress.history.near_places`.
+    """
+    found = []
+    for segment in boom.segments:
+        patches = stresses["von_mises_patch"].sel(segment=segment.name).values
+        if not np.isfinite(patches).any():
+            continue
+        step, place = np.unravel_index(np.nanargmax(patches), patches.shape)
+        patch = float(patches[step, place])
+        found.append(
+            WallStress(
+                segment=segment.name,
+                x=float(stresses["place"].values[place]),
+                patch=patch,
+                time=float(stresses["time"].values[step]),
+                triangle=float(np.nanmax(stresses["von_mises"].sel(segment=segment.name).values)),
+                utilisation=utilisation(segment, patch),
+            )
+        )
+    return found
+
+
+class Ranges(NamedTuple):
+    """Ranges in Pa and how many cycles each has, halves among them, (num_ranges,) each."""
+
+    sizes: Array
+    counts: Array
+
+
+def counted(stress: Sequence[float] | Array) -> Ranges:
+    """The cycles of a stress in Pa, rainflow counted."""
+    import rainflow
+
+    found = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
+    sizes, counts = np.array(found, dtype=float).reshape(-1, 2).T
+    return Ranges(sizes, counts)
+
+
+def endurance(sizes: Array, category: float) -> Array:
+    """(num_ranges,) cycles to failure of ranges in Pa; infinite below the cut-off.
+
+    Args:
+        sizes: the ranges.
+        category: in Pa.
+    """
+    limit = category * (NAMED / LIMIT) ** (1.0 / STEEP)
+    cut_off = limit * (LIMIT / CUT_OFF) ** (1.0 / FLAT)
+    relative = np.maximum(sizes, cut_off) / limit
+    cycles = LIMIT * np.where(relative >= 1.0, relative**-STEEP, relative**-FLAT)
+    return np.asarray(np.where(sizes >= cut_off, cycles, np.inf))
+
+
+def life(varying: Varying, table: LifeTable) -> Life:
+    """What a segment goes through where its stress varies most.
+
+    Args:
+        varying: the stress.
+        table: of the case.
+    """
+    sizes, counts = counted(varying.stress)
+    damage = None
+    if table.detail_category is not None:
+        raised = table.partial_factor * sizes
+        damage = float((counts / endurance(raised, _MEGA * table.detail_category)).sum())
+    largest = float(sizes.max(initial=0.0))
+    kept, edges = np.histogram(sizes, _CLASSES, (0.0, largest or 1.0), weights=counts)
+    return Life(
+        varying.segment,
+        *varying.at,
+        cycles=float(counts.sum()),
+        largest=largest,
+        equivalent=float((counts @ sizes**STEEP) ** (1.0 / STEEP)),
+        ranges=rounded(0.5 * (edges[1:] + edges[:-1])),
+        counts=rounded(kept),
+        damage=damage,
+        life_damage=None if damage is None else table.repeats * damage,
+    )
