@@ -91,6 +91,19 @@ def verdicts(
     return {verdict.id: verdict for verdict in judge(Results(case, data, whole, ensembles))}
 
 
+def verdict(
+    key: str,
+    motion: Mapping[str, Mapping[str, np.ndarray]] | None = None,
+    summary: Mapping[str, Mapping[str, Any]] | None = None,
+    tips: Mapping[str, np.ndarray] | None = None,
+    case: Case | None = None,
+) -> tuple[str, float | None, str]:
+    """Judge one statement: the verdict, the number and the reason; usual curves unless given."""
+    ensembles = None if tips is None else members(tips)
+    found = verdicts(case or paper(), motion or curves(), summary, ensembles)[key]
+    return found.verdict, found.measured, found.why
+
+
 def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
     """Ensembles from the members' tips, (num_members, num_times) by the model's name."""
     time = np.arange(next(iter(tips.values())).shape[1]) / 1000

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from io import StringIO
 from typing import Any
+
+from rich.console import Console
 
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
@@ -48,3 +51,11 @@ def changed(results: Results, model: str, **changes: Any) -> Results:
     for name, value in changes.items():
         setattr(summary.models[model], name, value)
     return replace(results, summary=summary)
+
+
+def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
+    """What a function prints to a console of some width, its last argument."""
+    console = Console(file=StringIO(), width=width)
+    show(*given, console)
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()

@@ -3,11 +3,8 @@
 
 from __future__ import annotations
 
-from io import StringIO
-
 import pytest
 import xarray as xr
-from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
@@ -17,7 +14,7 @@ from runs.pipeline.answers import Answers, ModelAnswers
 from runs.pipeline.results import Results
 from runs.pipeline.swing import Swing
 from runs.report.document import print_models
-from tests.runs.summaries import model_summary, summary_of
+from tests.runs.summaries import model_summary, printed, summary_of
 
 
 def judged(case: str, **judgements: Judgement) -> list[Verdict]:
@@ -48,15 +45,8 @@ def test_the_first_run_that_decides_is_heard(statement: str, name: str, verdict:
     assert (found[0], found[1].verdict) == (name, verdict)
 
 
-def printed(runs: dict[str, list[Verdict]]) -> str:
-    console = Console(file=StringIO(), width=160)
-    print_verdicts(runs, console)
-    assert isinstance(console.file, StringIO)
-    return console.file.getvalue()
-
-
 def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
-    lines = [line.split() for line in printed(RUNS).splitlines() if line.strip()]
+    lines = [line.split() for line in printed(print_verdicts, RUNS).splitlines() if line.strip()]
     for statement, verdict, name in (
         ("S7", "contradicted", "paper-friction"),
         ("S1", "reproduced", "paper"),
@@ -64,11 +54,11 @@ def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
         at = next(i for i, words in enumerate(lines) if words[0] == statement)
         assert lines[at][1:4] == [verdict, "–", "–"]
         assert lines[at + 1][:2] == ["in", name]
-    assert "in paper" not in printed({"paper": RUNS["paper"]})
+    assert "in paper" not in printed(print_verdicts, {"paper": RUNS["paper"]})
 
 
 def test_runs_that_are_not_judged_show_no_table() -> None:
-    assert printed({"boom": []}) == ""
+    assert printed(print_verdicts, {"boom": []}) == ""
 
 
 def test_every_run_tells_how_near_its_reduction_is() -> None:
@@ -76,10 +66,7 @@ def test_every_run_tells_how_near_its_reduction_is() -> None:
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = case_file.load(str(CASES / "paper.toml"))
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
-    console = Console(file=StringIO(), width=160)
-    print_models(results, console)
-    assert isinstance(console.file, StringIO)
-    assert console.file.getvalue().splitlines()[-2:] == [
+    assert printed(print_models, results).splitlines()[-2:] == [
         "shell: 110 coordinates answer as the full shell does, contacts within 2 × 10⁻⁹, tip and "
         "head within 8 × 10⁻⁷",
         "shell: where the segments touch, the walls give way by 0.83 % more or less than on an "
@@ -93,10 +80,7 @@ def test_a_boom_that_is_drawn_out_tells_how_its_tip_swings() -> None:
     swing = Swing(0.0182, 1.0, 0.8, 0.0181, None)
     summary = summary_of({"beam": model_summary()})
     summary.answers = Answers({"beam": ModelAnswers(swing=swing)})
-    console = Console(file=StringIO(), width=160)
-    print_models(Results(case, xr.Dataset(), summary), console)
-    assert isinstance(console.file, StringIO)
-    assert console.file.getvalue().splitlines()[-1] == (
+    assert printed(print_models, Results(case, xr.Dataset(), summary)).splitlines()[-1] == (
         "beam: drawn out at 0.8 m/s in the mean the tip swings by 18.2 mm, at rest by 18.1 and – "
         "mm where that begins and ends"
     )

@@ -6,15 +6,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from html.parser import HTMLParser
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from matplotlib import image
 from PIL import Image
-from rich.console import Console
 
 from protractile.cases import run_case
 from runs import CASES
@@ -31,7 +31,7 @@ from runs.report.document import print_models, render
 from runs.report.figure_context import Figure
 from runs.report.pages import Addition
 from runs.report.tables import Table
-from tests.runs.summaries import changed, model_summary, summary_of
+from tests.runs.summaries import changed, model_summary, printed, summary_of
 
 COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-tied"]
@@ -76,19 +76,21 @@ def report(
     results: Results,
     figures: list[Figure],
     verdicts: list[Verdict] | None = None,
-    tables: Sequence[Table] = (),
+    surveyed: Sequence[Table] = (),
     snapshots: Sequence[Figure] = (),
 ) -> str:
     found = judge(results) if verdicts is None else verdicts
-    return render(results, addition(results.case, found, tables), figures, snapshots)
+    return render(results, addition(results.case, found, surveyed), figures, snapshots)
 
 
-def printed(results: Results, width: int = 100) -> str:
-    console = Console(file=StringIO(), width=width)
-    print_models(results, console)
-    print_verdicts({"coarse": judge(results)}, console)
-    assert isinstance(console.file, StringIO)
-    return console.file.getvalue()
+@pytest.fixture
+def page(results: Results, figures: list[Figure]) -> Page:
+    return Page(report(results, figures))
+
+
+def tables(results: Results, width: int = 100) -> str:
+    models = printed(print_models, results, width=width)
+    return models + printed(print_verdicts, {"coarse": judge(results)}, width=width)
 
 
 def skipping(results: Results, why: str) -> Summary:
@@ -96,8 +98,7 @@ def skipping(results: Results, why: str) -> Summary:
     return results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=why)})
 
 
-def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> None:
-    page = Page(report(results, figures))
+def test_shows_every_verdict_first(results: Results, page: Page) -> None:
     for verdict in judge(results):
         assert verdict.statement in page.text
         assert verdict.why in page.text
@@ -107,8 +108,7 @@ def test_shows_every_verdict_first(results: Results, figures: list[Figure]) -> N
     assert order == sorted(order)
 
 
-def test_shows_every_model_and_where_it_comes_from(results: Results, figures: list[Figure]) -> None:
-    page = Page(report(results, figures))
+def test_shows_every_model_and_where_it_comes_from(results: Results, page: Page) -> None:
     cells = re.sub(r"\s+", " ", page.text)
     for name, model in results.summary.models.items():
         assert f"{name} {model.kind}" in cells
@@ -153,9 +153,8 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
     assert found == [len(MODELS), len(MODELS), 2]
 
 
-def test_links_lead_to_what_is_there(results: Results, figures: list[Figure]) -> None:
+def test_links_lead_to_what_is_there(page: Page) -> None:
     """Reference: the ids of the page itself; no id twice, no link into nothing."""
-    page = Page(report(results, figures))
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
     links = [str(link["href"]).removeprefix("#") for link in page.all("a")]
@@ -193,14 +192,14 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
         r"<tr>\s*<td[^>]*>[^\n]*kantorovich-4</td>.*?no peak.*?</tr>", text, re.DOTALL
     )[:1]
     assert re.search(r"<td[^>]*>no peak</td>\n<td[^>]*>within 0.6 s</td>", row)
-    lines = {line.split()[0]: line for line in printed(results).splitlines() if line.split()}
+    lines = {line.split()[0]: line for line in tables(results).splitlines() if line.split()}
     assert re.search("no peak +within 0.6 s", lines["kantorovich-4"])
     assert "no peak" not in lines["beam-fe-tied"]
 
 
 def test_shows_a_survey_of_readings(results: Results, figures: list[Figure]) -> None:
     table = Table.of_rows("readings", "A <survey>", ("reading", "S1"), [("one", "✗")], ("A note.",))
-    page = Page(report(results, figures, tables=[table]))
+    page = Page(report(results, figures, surveyed=[table]))
     assert "A <survey>" in page.text
     assert {"data-name": "S1", "class": "no"} in page.all("td")
     assert {"href": "#readings"} in page.all("a")
@@ -242,8 +241,7 @@ def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]
     assert f"Skipped: {reason}" in page.text
 
 
-def test_fits_a_telephone_and_paper(results: Results, figures: list[Figure]) -> None:
-    page = Page(report(results, figures))
+def test_fits_a_telephone_and_paper(page: Page) -> None:
     viewport = [meta for meta in page.all("meta") if meta.get("name") == "viewport"]
     assert viewport == [{"name": "viewport", "content": "width=device-width, initial-scale=1"}]
     assert "@media (max-width:" in page.style
@@ -255,11 +253,11 @@ def test_says_what_the_case_demands(results: Results, figures: list[Figure]) -> 
     case = results.case.model_copy(update={"demand": ("S1",)})
     demanding = replace(results, case=case)
     assert Page(report(demanding, figures)).text.count("(demanded)") == 1
-    assert printed(demanding).count("(demanded)") == 1
+    assert tables(demanding).count("(demanded)") == 1
 
 
 def test_terminal_shows_both_tables(results: Results) -> None:
-    text = printed(results)
+    text = tables(results)
     for name, model in results.summary.models.items():
         (line,) = [line for line in text.splitlines() if line.split()[:1] == [name]]
         assert line.split()[1] == str(model.degrees_of_freedom)
@@ -269,7 +267,7 @@ def test_terminal_shows_both_tables(results: Results) -> None:
 
 
 def test_terminal_keeps_names_whole_at_80_columns(results: Results) -> None:
-    lines = printed(results, 80).splitlines()
+    lines = tables(results, 80).splitlines()
     assert max(map(len, lines)) <= 80
     for name in MODELS:
         assert any(line.split()[:1] == [name] for line in lines)
@@ -277,7 +275,7 @@ def test_terminal_keeps_names_whole_at_80_columns(results: Results) -> None:
 
 def test_terminal_does_not_read_markup(results: Results) -> None:
     case = results.case.model_copy(update={"title": "[red]play[/nothing]"})
-    assert "[red]play[/nothing]" in printed(replace(results, case=case))
+    assert "[red]play[/nothing]" in tables(replace(results, case=case))
 
 
 def told(results: Results) -> list[str]:
@@ -296,19 +294,37 @@ def test_cautions_against_what_is_no_small_displacement(results: Results) -> Non
         "displacements do not hold; check units and loads"
     )
     summary = results.summary.model_copy(update={"cautions": [line]})
-    assert line in printed(replace(results, summary=summary), width=200)
+    assert line in tables(replace(results, summary=summary), width=200)
 
 
-def test_cautions_against_a_poor_reduction(results: Results) -> None:
+POOR_REDUCTION = (
+    "caution: the 6 coordinates of {} err by 93 % where the segments touch; allow more modes, or "
+    "--modes auto"
+)
+POOR_MESH = (
+    "caution: the mesh of {} errs by 34 % of what the walls give way where the segments touch; "
+    "give a smaller mesh_size"
+)
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"modes": 6, "reduction_errors": {"contact_compliance": 0.009, "readings": 0.0}}, ""),
+        (
+            {"modes": 6, "reduction_errors": {"contact_compliance": 0.93, "readings": 0.0}},
+            POOR_REDUCTION,
+        ),
+        ({"mesh_error": None}, ""),
+        ({"mesh_error": 0.009}, ""),
+        ({"mesh_error": 0.34}, POOR_MESH),
+    ],
+)
+def test_cautions_against_a_poor_shell(
+    results: Results, changes: dict[str, Any], line: str
+) -> None:
     name = str(results.trajectories["model"].values[0])
-    for error, names in ((0.009, []), (0.93, [name])):
-        errors = {"contact_compliance": error, "readings": 0.0}
-        poor = changed(results, name, modes=6, reduction_errors=errors)
-        assert told(poor) == [
-            f"caution: the 6 coordinates of {name} err by 93 % where the segments touch; allow "
-            "more modes, or --modes auto"
-            for name in names
-        ]
+    assert told(changed(results, name, **changes)) == ([line.format(name)] if line else [])
 
 
 def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
@@ -321,17 +337,6 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
         "reduction within 0.013, its modes right up to 85 Hz, local compliance 26 % off an "
         "infinitely fine mesh&#39;s" in page
     )
-
-
-def test_cautions_against_a_poor_mesh(results: Results) -> None:
-    name = str(results.trajectories["model"].values[0])
-    for error, names in ((0.009, []), (0.34, [name]), (None, [])):
-        poor = changed(results, name, mesh_error=error)
-        assert told(poor) == [
-            f"caution: the mesh of {name} errs by 34 % of what the walls give way where the "
-            "segments touch; give a smaller mesh_size"
-            for name in names
-        ]
 
 
 @pytest.mark.parametrize(
@@ -353,7 +358,7 @@ def test_judges_the_statements_that_the_case_asks_for_alone(
     other = replace(results, case=results.case.model_copy(update={"statements": ()}))
     one = results.case.model_copy(update={"statements": ("S9",), "demand": ("S1",)})
     assert [verdict.id for verdict in judge(replace(results, case=one))] == ["S1", "S9"]
-    assert "Statements of the paper" in printed(results)
-    assert "Statements of the paper" not in printed(other)
+    assert "Statements of the paper" in tables(results)
+    assert "Statements of the paper" not in tables(other)
     assert "Verdicts" in Page(report(results, figures)).text
     assert "Verdicts" not in Page(report(other, figures)).text

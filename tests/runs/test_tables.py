@@ -6,13 +6,12 @@ from __future__ import annotations
 import json
 import math
 import re
-from io import StringIO
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from runs.report.tables import ROOMY, Column, Table
+from tests.runs.summaries import printed
 
 ROWS = [("beam", "1 s\n2 mm"), ("[b]", "–")]
 TABLE = Table.of_rows("peaks", "Peaks", ("model", "first\nmm"), ROWS, ("A note.",))
@@ -26,10 +25,7 @@ def test_markdown_has_one_line_a_row() -> None:
 
 
 def test_the_terminal_shows_cells_as_they_are() -> None:
-    console = Console(file=StringIO(), width=60)
-    TABLE.show(console)
-    assert isinstance(console.file, StringIO)
-    lines = [line.split() for line in console.file.getvalue().splitlines()]
+    lines = [line.split() for line in printed(TABLE.show, width=60).splitlines()]
     assert ["beam", "1", "s"] in lines
     assert ["[b]", "–"] in lines
 

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import json
-from io import StringIO
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
@@ -17,6 +15,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.paper.statements import THEN_FILE
 from runs.paper.verdicts import Outcome, Verdict, beside, print_verdicts
+from tests.runs.summaries import printed
 
 SAYS = "not shown: in no run of 18 numerics"
 REMEDY = "remove it, or run python -m studies.as_computed_then again"
@@ -61,17 +60,10 @@ def test_the_table_has_the_column_where_something_was_tried(
     paper: Case, verdicts: list[Verdict], tmp_path: Path
 ) -> None:
     leave(tmp_path, toml.digest(paper))
-    with_file = printed(beside(verdicts, tmp_path, paper))
+    with_file = printed(print_verdicts, {"paper": beside(verdicts, tmp_path, paper)})
     assert "as computed then" in with_file
     assert SAYS in with_file
-    assert "as computed then" not in printed(verdicts)
-
-
-def printed(verdicts: list[Verdict]) -> str:
-    console = Console(file=StringIO(), width=160)
-    print_verdicts({"paper": verdicts}, console)
-    assert isinstance(console.file, StringIO)
-    return console.file.getvalue()
+    assert "as computed then" not in printed(print_verdicts, {"paper": verdicts})
 
 
 def test_a_file_of_another_case_is_one_line(paper: Case, tmp_path: Path) -> None:
