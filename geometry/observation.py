@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-Quantity = Literal[
-    "deflection", "rotation", "distortion", "lateral", "twist", "velocity", "acceleration"
-]
+# What a case may ask for.
+Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
+
+Quantity = Literal[Recorded, "distortion"]
 
 
 # What a row can read of a cross-section.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic.json_schema import GenerateJsonSchema
 
+from geometry.observation import Recorded
 from runs.case.contact import JointTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.model import ModelTable
@@ -266,9 +267,7 @@ class ObserveTable(Table):
     """the name of the segment"""
     x: Place
     """the x in m"""
-    quantity: Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"] = (
-        "deflection"
-    )
+    quantity: Recorded = "deflection"
     """the deflection along z, its velocity, its acceleration as the mean of each output interval,
     the rotation of the cross-section; in space the lateral deflection and the twist"""
 

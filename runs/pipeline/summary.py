@@ -18,8 +18,10 @@ from pydantic_core import to_jsonable_python
 
 from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
+from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
 from runs.pipeline.answers import Answers
+from runs.pipeline.metrics import Metric
 from runs.pipeline.pads import PressedPad
 from shell_model.stress.history import StressSummary
 
@@ -180,13 +182,33 @@ class ModelSummary(Entry):
     seconds: dict[str, float]
     step: float
     steps: int
-    first_contact: Known
+    first_contact: Annotated[Known, Metric("first_contact", "s", "first contact", 1.0, "s")]
     contact_changes: int
-    energy_residual: float
+    energy_residual: Annotated[
+        float,
+        Metric(
+            "energy_residual",
+            "1",
+            "energy residual",
+            1.0,
+            "–",
+            charted=False,
+            heading="energy residual\nof the work",
+            form=".1g",
+        ),
+    ]
     first_peak: dict[str, FirstPeak]
-    peak_contact_force: Known
-    wall_time: float | None = None
-    step_error: Known = None
+    peak_contact_force: Annotated[
+        Known,
+        Metric("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
+    ]
+    wall_time: Annotated[
+        float | None, Metric("", "s", "wall time", 1.0, "s", heading="wall time", form=".1f")
+    ] = None
+    step_error: Annotated[
+        Known,
+        Metric("step_error", "1", "error by the time step", TO_PERCENT, "%", charted=False),
+    ] = None
     resolving_step: Known = None
     ensemble: EnsembleSummary | None = None
     horizons: Predictability | None = None

@@ -8,6 +8,7 @@ under the loads of that moment.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -18,7 +19,9 @@ from dynamics.failure import NUMERICS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array, Indices
+from geometry.typography import TO_MILLI
 from runs.case.schema import Case, Model
+from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import Plan
 
 # At so many places along all that changes rests are found, linear between them, and so many from
@@ -29,25 +32,55 @@ _TIP = ("tip", "tip_lateral")
 
 
 @dataclass(frozen=True, slots=True)
-class Swing:
+class Swing(Record):
     """How far the tip swings while the boom is drawn out, and afterwards.
-
-    A swing is the largest distance of the tip from where it would rest, drawn out as far as it is
-    and under the loads of that moment.
 
     Args:
         tip: the swing in m.
         time: when it is, in s.
-        speed: the mean speed of the fastest drive while it moves, in m/s.
         where_begun, where_ended: those of the same boom that stands where drives begin and end,
             under the same loads, in m; None where that cannot be computed.
+        speed: the mean speed of the fastest drive while it moves, in m/s.
     """
 
-    tip: float
-    time: float
-    speed: float
-    where_begun: float | None
-    where_ended: float | None
+    title = "Swing while it is drawn"
+    notes = (
+        "The largest distance of the tip from where it would rest, drawn out as far as it is and "
+        "under the loads of that moment; beside it that of the same boom that is not drawn.",
+    )
+
+    tip: Annotated[
+        float,
+        Metric("swing", "m", "swing while drawn out", TO_MILLI, "mm", heading="tip swings"),
+    ]
+    time: Annotated[float, Metric("", "s", "time of the swing", 1.0, "s", heading="at", form=".3f")]
+    speed: Annotated[
+        float, Metric("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False)
+    ]
+    where_begun: Annotated[
+        float | None,
+        Metric(
+            "swing_where_begun",
+            "m",
+            "swing at rest where it begins",
+            TO_MILLI,
+            "mm",
+            charted=False,
+            heading="at rest where\nit begins",
+        ),
+    ]
+    where_ended: Annotated[
+        float | None,
+        Metric(
+            "swing_where_ended",
+            "m",
+            "swing at rest where it ends",
+            TO_MILLI,
+            "mm",
+            charted=False,
+            heading="at rest where\nit ends",
+        ),
+    ]
 
 
 def swing(system: GapSystem, trajectory: Trajectory, case: Case, model: Model) -> Swing | None:

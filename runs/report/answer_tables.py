@@ -7,11 +7,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runs.pipeline.answers import Added
+from runs.pipeline.answers import Added, ModelAnswers
 from runs.pipeline.at_rest import AtRest
+from runs.pipeline.metrics import records
 from runs.pipeline.moved import Peak
 from runs.pipeline.results import Results
 from runs.report.drawn_axis import of_rests
+from runs.report.model_tables import metric_columns
 from runs.report.numerals import NONE, amount, number
 from runs.report.tables import Column, Table
 
@@ -30,7 +32,7 @@ def answer_tables(results: Results) -> list[Table]:
         peak_table(results),
         drive_table(results),
         stick_slip_table(results),
-        swing_table(results),
+        *record_tables(results),
         pad_table(results),
         stress_table(results),
         life_table(results),
@@ -263,25 +265,14 @@ def stick_slip_table(results: Results) -> Table | None:
     return Table("Drives that give way", columns, notes, "stick-slip")
 
 
-def swing_table(results: Results) -> Table | None:
-    """Return how the tip swings in every model that telescopes, beside the boom that stands."""
-    models = results.summary.answers.models
-    rows = {name: own.swing for name, own in models.items() if own.swing is not None}
-    if not rows:
-        return None
-    swings = list(rows.values())
-    columns = (
-        Column("model", list(rows)),
-        Column("tip swings", [one.tip for one in swings], ".4g", "mm"),
-        Column("at", [one.time for one in swings], ".3f", "s"),
-        Column("at rest where\nit begins", [one.where_begun for one in swings], ".4g", "mm"),
-        Column("at rest where\nit ends", [one.where_ended for one in swings], ".4g", "mm"),
-    )
-    notes = (
-        "The largest distance of the tip from where it would rest, drawn out as far as it is and "
-        "under the loads of that moment; beside it that of the same boom that is not drawn.",
-    )
-    return Table("Swing while it is drawn", columns, notes, "swing")
+def record_tables(results: Results) -> Iterator[Table]:
+    """Yield a table for each answer that is one record of numbers in each model."""
+    answers = results.summary.answers.models
+    for name, kind in records(ModelAnswers).items():
+        found = {m: getattr(own, name) for m, own in answers.items() if getattr(own, name)}
+        if found:
+            columns = metric_columns(kind, list(found.values()))
+            yield Table(kind.title, [Column("model", list(found)), *columns], kind.notes, name)
 
 
 def pad_table(results: Results) -> Table | None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.case.build import contact_laws, material_of
 from runs.case.schema import Case
+from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
 from runs.pipeline.summary import CalibrationCard, FirstPeak, ModelSummary
 from runs.report.numerals import number, percent
@@ -54,8 +56,7 @@ def model_table(results: Results) -> Table:
         Column("", [height for _, height in peaks], ".1f", "mm"),
         *(horizon_column(models, share, duration) for share in shares),
         Column("peak contact force", [_peak_force(model) for model in models], ".3g", "kN"),
-        Column("energy residual\nof the work", [model.energy_residual for model in models], ".1g"),
-        Column("wall time", [model.wall_time for model in models], ".1f", "s"),
+        *metric_columns(ModelSummary, models),
     )
     notes = []
     if shares:
@@ -69,6 +70,15 @@ def model_table(results: Results) -> Table:
             f"time.step = {min(resolving):.1e} would resolve it."
         )
     return Table("What each model found", columns, notes, "models")
+
+
+def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
+    """Return the columns that a kind of record declares for tables, a row for each record."""
+    return [
+        Column(one.heading, [getattr(row, name) for row in rows], one.form, one.unit_of_heading)
+        for name, one in metrics(kind).items()
+        if one.heading
+    ]
 
 
 def _peak_force(model: ModelSummary) -> Cell:

@@ -15,10 +15,11 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure as Sheet
 from numpy.typing import NDArray
 
+from runs.pipeline.metrics import Metric
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.sweep.figures import RC, at_ends, finish, finish_lines, in_shown_units, marked, scale_axis
-from runs.sweep.quantities import DISTANCES, LEVELS, TIP_OFF, UNTIL, Quantity
+from runs.sweep.quantities import DISTANCES, LEVELS, TIP_OFF, UNTIL
 
 _Word = TypeVar("_Word", bound=str)
 
@@ -52,7 +53,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
             _lines(data, keys[0], title, folder / "sweep-distances.png")
 
 
-def _known(data: xr.Dataset) -> list[Quantity]:
+def _known(data: xr.Dataset) -> list[Metric]:
     return [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
 
 
@@ -72,7 +73,7 @@ def _lines(data: xr.Dataset, key: str, title: str, path: Path) -> None:
 
 
 def _maps(
-    data: xr.Dataset, quantity: Quantity, keys: Sequence[str], reference: str, folder: Path
+    data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
     """One distance over the last two keys, for each model that has it and, side by side, each
     combination of the ends of the keys before them.

@@ -22,10 +22,11 @@ from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from runs.pipeline.metrics import Metric
 from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.numerals import number
-from runs.sweep.quantities import QUANTITIES, Quantity
+from runs.sweep.quantities import QUANTITIES
 from runs.sweep.swings import draw_swings
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
@@ -89,11 +90,11 @@ def at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]
         yield dict(zip(keys, values, strict=True))
 
 
-def _changing(data: xr.Dataset) -> list[Quantity]:
+def _changing(data: xr.Dataset) -> list[Metric]:
     """Those that a chart says something of; where nothing changes, all that are known."""
     known = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
-    def changes(one: Quantity) -> bool:
+    def changes(one: Metric) -> bool:
         values = data[one.name]
         keys = [dim for dim in values.dims if dim != "model"]
         spans = (values.max(keys) - values.min(keys)).values
@@ -156,7 +157,7 @@ def _lines(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], title: str, pa
     finish_lines(sheet, panels, data[key], title, path)
 
 
-def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path) -> None:
+def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) -> None:
     """One quantity over two keys, a panel for each model that has it, all with one scale."""
     places = (data[keys[0]].values, data[keys[1]].values)
     edges = [_edges(along) for along in places]

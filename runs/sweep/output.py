@@ -13,13 +13,15 @@ import xarray as xr
 from rich.console import Console
 
 from runs.folder.files import alone, changed_folder, whole
+from runs.pipeline.metrics import Metric, metrics
 from runs.pipeline.results import CONVENTIONS
+from runs.pipeline.summary import ModelSummary
 from runs.report.numerals import NONE, number
 from runs.report.tables import Table
 from runs.sweep.distance_figures import draw_distances
 from runs.sweep.figures import draw
 from runs.sweep.points import Plan
-from runs.sweep.quantities import DISTANCES, QUANTITIES, STEP_ERROR, UNTIL, Quantity
+from runs.sweep.quantities import DISTANCES, QUANTITIES, UNTIL
 from runs.sweep.run import Outcome
 from runs.sweep.swings import describe, swings
 
@@ -125,9 +127,9 @@ def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
     title = f"Distances from {reference}"
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
-    until = _range(data[UNTIL], Quantity(UNTIL, "s", "", 1.0, "s"))
-    step_error = data[STEP_ERROR.name].sel(model=reference).round(DIGITS)
-    changed = _range(step_error, STEP_ERROR)
+    until = _range(data[UNTIL], Metric(UNTIL, "s", "", 1.0, "s"))
+    step_error = data["step_error"].sel(model=reference).round(DIGITS)
+    changed = _range(step_error, metrics(ModelSummary)["step_error"])
     if until != NONE:
         console.print(f"tips are compared until {until} s", markup=False, highlight=False)
     if changed != NONE:
@@ -135,7 +137,7 @@ def _show_distances(data: xr.Dataset, reference: str, console: Console) -> None:
         console.print(line, markup=False, highlight=False)
 
 
-def _range(values: xr.DataArray, quantity: Quantity) -> str:
+def _range(values: xr.DataArray, quantity: Metric) -> str:
     finite = quantity.factor * values.values[np.isfinite(values.values)]
     if not finite.size:
         return NONE

@@ -23,8 +23,10 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
 from runs.case.schema import Case, Model
 from runs.pipeline.answers import ModelAnswers
+from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
+from runs.pipeline.summary import ModelSummary
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -48,58 +50,34 @@ HELD = 0.02
 OUTSTANDING = 0.2
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """One number of a model."""
-
-    name: str  #: in files
-    unit: str  #: in files, SI
-    title: str  #: for people, a lower-case phrase
-    factor: float  #: from the SI unit to the shown one
-    shown_unit: str  #: of tables and charts
-    logarithmic: bool = False  #: whether it spans decades
-    charted: bool = True  #: whether it is a curve and no noise
-
-
-# Of the tip, as a part of its range.
-STEP_ERROR = Quantity("step_error", "1", "error by the time step", TO_PERCENT, "%", charted=False)
+# What declares numbers of a model beside its fields: answers that are records, and its summary.
+_DECLARING: list[type] = [*records(ModelAnswers).values(), ModelSummary]
 
 # Of the boom at rest, of its motion, and of what it is worth.
 QUANTITIES = (
-    Quantity("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
-    Quantity("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
-    Quantity("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
-    Quantity("contact_force", "N", "contact force", TO_KILO, "kN"),
-    Quantity("stress", "Pa", "stress", TO_MEGA, "MPa"),
-    Quantity("wall_stress", "Pa", "wall stress", TO_MEGA, "MPa"),
-    Quantity("damage", "1", "damage", 1.0, "–", logarithmic=True),
-    Quantity("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
-    Quantity("mass", "kg", "mass", 1.0, "kg"),
-    Quantity("settling_time", "s", "settling time", 1.0, "s"),
-    Quantity("first_contact", "s", "first contact", 1.0, "s"),
-    Quantity("swing", "m", "swing while drawn out", TO_MILLI, "mm"),
-    Quantity(
-        "swing_where_begun", "m", "swing at rest where it begins", TO_MILLI, "mm", charted=False
-    ),
-    Quantity(
-        "swing_where_ended", "m", "swing at rest where it ends", TO_MILLI, "mm", charted=False
-    ),
-    Quantity("drive_force", "N", "largest force of a drive that gives way", TO_KILO, "kN"),
-    Quantity("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
-    Quantity("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False),
-    Quantity("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
-    Quantity("energy_residual", "1", "energy residual", 1.0, "–", charted=False),
-    STEP_ERROR,
+    Metric("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
+    Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
+    Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
+    Metric("contact_force", "N", "contact force", TO_KILO, "kN"),
+    Metric("stress", "Pa", "stress", TO_MEGA, "MPa"),
+    Metric("wall_stress", "Pa", "wall stress", TO_MEGA, "MPa"),
+    Metric("damage", "1", "damage", 1.0, "–", logarithmic=True),
+    Metric("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
+    Metric("mass", "kg", "mass", 1.0, "kg"),
+    Metric("settling_time", "s", "settling time", 1.0, "s"),
+    Metric("drive_force", "N", "largest force of a drive that gives way", TO_KILO, "kN"),
+    Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
+    *(one for kind in _DECLARING for one in metrics(kind).values() if one.name),
 )
 
 TIP_OFF = "tip_off"
 # Each as a part of the reference's.
 DISTANCES = (
-    Quantity("first_peak_off", "1", "first peak off", TO_PERCENT, "%"),
-    Quantity("slow_period_off", "1", "slow period off", TO_PERCENT, "%"),
-    Quantity("pad_force_off", "1", "pad force off", TO_PERCENT, "%"),
-    Quantity("stress_off", "1", "stress off", TO_PERCENT, "%"),
-    Quantity(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
+    Metric("first_peak_off", "1", "first peak off", TO_PERCENT, "%"),
+    Metric("slow_period_off", "1", "slow period off", TO_PERCENT, "%"),
+    Metric("pad_force_off", "1", "pad force off", TO_PERCENT, "%"),
+    Metric("stress_off", "1", "stress off", TO_PERCENT, "%"),
+    Metric(TIP_OFF, "1", "tip off", TO_PERCENT, "%"),
 )
 # Up to when tips are compared, in s: of a point, and of all its models.
 UNTIL = "compared_until"
@@ -116,14 +94,15 @@ def measure(results: Results, model: str) -> Measured:
     force is the largest mean of an output interval at any station, the peak of a blow what no pad
     feels as long; the stress that of an outer fibre, of section forces, the wall stress a shell's
     own over a patch, the damage that of a life at the worst place. Swings are those of
-    :class:`runs.pipeline.answers.Swing`; force and slip of drives of a given stiffness are those of
+    :class:`runs.pipeline.swing.Swing`; force and slip of drives of a given stiffness are those of
     :class:`dynamics.drive.stick_slip.StickSlip`.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
     summary = results.summary.models[model]
     own = results.summary.answers.models.get(model, ModelAnswers())
-    moved, swing = own.moved, own.swing
+    declaring = [*(getattr(own, name) for name in records(ModelAnswers)), summary]
+    moved = own.moved
     peaks = () if moved is None else moved.peaks
     deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
     contacts = (peak.largest for peak in peaks if peak.what == "contact force")
@@ -135,23 +114,20 @@ def measure(results: Results, model: str) -> Measured:
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "dynamic_factor": None if deflection is None else deflection.factor,
         "contact_force": max(contacts, default=None),
-        "peak_contact_force": summary.peak_contact_force,
         "stress": max(fibres, default=None),
         "wall_stress": max(walls, default=None),
         "damage": max(damages, default=None),
         "first_frequency": own.modes[0].frequency if own.modes else None,
         # Of all segments and of what they carry.
         "mass": sum(segment.mass for segment in results.boom.segments),
-        "swing": None if swing is None else swing.tip,
-        "swing_where_begun": None if swing is None else swing.where_begun,
-        "swing_where_ended": None if swing is None else swing.where_ended,
         "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
         "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
-        "drive_speed": None if swing is None else swing.speed,
         "settling_time": settling_time(time, tip),
-        "first_contact": summary.first_contact,
-        "energy_residual": summary.energy_residual,
-        STEP_ERROR.name: summary.step_error,
+    } | {
+        metric.name: getattr(record, field, None)
+        for record, kind in zip(declaring, _DECLARING, strict=True)
+        for field, metric in metrics(kind).items()
+        if metric.name
     }
 
 

@@ -152,13 +152,13 @@ def test_a_sentence_tells_whether_it_is_strong_enough(results: Results) -> None:
 def test_pads_of_unknown_strength_are_not_strong_enough(results: Results) -> None:
     """Reference: by hand, a pad without an allowable pressure, and one that nothing presses."""
     of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
-    pad = PressedPad.model_validate(of | {"force": 2.7e3, "pressure": 27e6, "utilisation": None})
+    pad = PressedPad(**of, force=2.7e3, pressure=27e6, utilisation=None)
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
     for pads, start, end in (
         ([pad], "Of what is known all is ", "No allowable pressure is given of pads of inner."),
         (
-            [pad.model_copy(update={"force": 0.0, "pressure": 0.0})],
+            [replace(pad, force=0.0, pressure=0.0)],
             "All is ",
             "yield strength (outer, 2.0 m).",
         ),

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""How numbers of a model are shown: declared once, beside the field of the record that holds one.
+
+>>> from runs.pipeline.swing import Swing
+>>> metrics(Swing)["tip"].title
+'swing while drawn out'
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import UnionType
+from typing import ClassVar, get_args, get_type_hints
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """A number of a model in sweeps and tables; an annotation of the field that holds it."""
+
+    name: str  #: in files of sweeps, which leave it out where this is empty
+    unit: str  #: in files, SI
+    title: str  #: for people, a lower-case phrase
+    factor: float  #: from the SI unit to the shown one
+    shown_unit: str  #: of tables and charts
+    logarithmic: bool = False  #: whether it spans decades
+    charted: bool = True  #: whether it is a curve and no noise
+    heading: str = ""  #: of its column in the tables of reports, which leave it out without
+    form: str = ".4g"  #: of the numbers there
+
+    @property
+    def unit_of_heading(self) -> str:
+        """The unit below the heading; empty for parts."""
+        return "" if self.unit == "1" else self.shown_unit
+
+
+class Record:
+    """Numbers of one model that reports show as a table, a row for each model."""
+
+    __slots__ = ()
+    title: ClassVar[str]
+    notes: ClassVar[tuple[str, ...]]
+
+
+def metrics(kind: type) -> dict[str, Metric]:
+    """Return the metrics of a record by the names of their fields."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {
+        name: metric
+        for name, hint in hints.items()
+        for metric in getattr(hint, "__metadata__", ())
+        if isinstance(metric, Metric)
+    }
+
+
+def records(kind: type) -> dict[str, type[Record]]:
+    """Return the kinds of the fields of a class that are a :class:`Record` or None, by name."""
+    return {
+        name: one
+        for name, hint in get_type_hints(kind).items()
+        for one in (get_args(hint) if isinstance(hint, UnionType) else ())
+        if issubclass(one, Record)
+    }
