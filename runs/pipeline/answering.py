@@ -33,17 +33,35 @@ from runs.pipeline.summary import Summary
 from runs.pipeline.swing import swing
 
 
-class Resting(NamedTuple):
-    """A boom at rest, (num_rests, num_modes), what is told of it, and its modes there."""
+class _Model(NamedTuple):
+    """A model of a boom, all that stays constant in the load of its system, and along it."""
 
-    positions: Array
-    rests: list[AtRest]
-    modes: list[Mode]
+    boom: Boom
+    system: GapSystem
+    lines: Sequence[Line]
 
-    def beside(self, other: Resting) -> Resting:
-        """With the rests of another one."""
-        positions = np.concatenate([self.positions, other.positions])
-        return Resting(positions, [*self.rests, *other.rests], self.modes)
+    def rests(self, found: Mapping[float, Array]) -> list[AtRest]:
+        """What is told of rests (num_modes,) by their time in s."""
+        return [at_rest(*self, time, position) for time, position in found.items()]
+
+    def modes(self, found: Mapping[float, Array]) -> list[Mode]:
+        """The first ones at the rest of t = 0."""
+        return modes(*self, found[0.0]) if found else []
+
+    def moved(
+        self,
+        trajectory: Trajectory,
+        found: Mapping[float, Array],
+        rests: Sequence[AtRest],
+        case: Case,
+        model: Model,
+    ) -> tuple[Moved, list[Life]]:
+        """What it has gone through, held against its rests."""
+        still = np.array([*found.values()]).reshape(-1, self.system.num_modes)
+        smooth = model.smooth
+        motions = Motions(self.boom, self.lines, trajectory, still, rests, jumps=not smooth)
+        moved, varying = gone_through(motions)
+        return moved, [life(one, case.life) for one in varying] if COUNTS else []
 
 
 def of_model(
@@ -54,7 +72,7 @@ def of_model(
     trajectory: Trajectory,
     shell: ShellOutput | None,
 ) -> ModelAnswers:
-    """What one model answers, on the first rank.
+    """Return what one model answers, on the first rank.
 
     Args:
         boom: of the case.
@@ -64,105 +82,63 @@ def of_model(
         trajectory: its motion.
         shell: what it leaves besides.
     """
-    shown = boom.play_free if model.play_free else boom
-    played = Shown.of(shown, built.system.gathered(), model.lines(boom, built))
-    times = instants(played.system, case.time.duration)
-    resting = _resting(played, times)
-    drawn = _drawn(played, case.time.duration)
-    moved, lives = _moving(played, resting.beside(drawn), trajectory, model, case)
-    walls = [] if shell is None else wall_stresses(played.boom, shell.stresses)
+    system, shown = built.system.gathered(), boom.play_free if model.play_free else boom
+    lines = with_cylinders(shown, system, model.lines(boom, built))
+    played, times = _Model(shown, system, lines), instants(system, case.time.duration)
+    found, farthest = positions(system, times), drawn_positions(system, case.time.duration)
+    rests, drawn = played.rests(found), played.rests(farthest)
+    moved, lives = played.moved(trajectory, found | farthest, [*rests, *drawn], case, model)
+    walls = [] if shell is None else wall_stresses(shown, shell.stresses)
     answers = ModelAnswers(
-        rests=resting.rests,
-        drawn=drawn.rests,
-        modes=resting.modes,
+        rests=rests,
+        drawn=drawn,
+        modes=played.modes(found),
         moved=replace(moved, walls=walls),
         life=lives,
-        swing=swing(played.system, trajectory, case, model),
+        swing=swing(system, trajectory, case, model),
     )
     if model.play_free or not boom.joints:
         return answers
     try:
-        tied = _tied(boom, model, played, resting)
-        tied_rests = _resting(tied, times)
+        tied = _tied(boom, model, played, found)
+        return _beside_tied(answers, tied, positions(tied.system, times), boom, model, case)
     except NUMERICS:
         # Rigid segments that are tied leave nothing to move, for one.
         return answers
-    return _beside_tied(answers, tied, tied_rests, boom, model, case)
 
 
-class Shown(NamedTuple):
-    """A model of a boom, all that stays constant in the load of its system, and along it."""
-
-    boom: Boom
-    system: GapSystem
-    lines: Sequence[Line]
-
-    @classmethod
-    def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Shown:
-        """With what cylinders push along it."""
-        return cls(boom, system, with_cylinders(boom, system, lines))
-
-
-def _resting(shown: Shown, times: Sequence[float]) -> Resting:
-    found = positions(shown.system, times)
-    if not found:
-        return Resting(np.zeros((0, shown.system.num_modes)), [], [])
-    return Resting(
-        np.array(list(found.values())),
-        [at_rest(*shown, time, position) for time, position in found.items()],
-        modes(*shown, found[0.0]),
-    )
-
-
-def _drawn(shown: Shown, duration: float) -> Resting:
-    """Where drives have drawn it farthest; its modes there are left out."""
-    found = drawn_positions(shown.system, duration)
-    rests = [at_rest(*shown, time, position) for time, position in found.items()]
-    positions = np.array(list(found.values())).reshape(-1, shown.system.num_modes)
-    return Resting(positions, rests, [])
-
-
-def _moving(
-    shown: Shown, resting: Resting, trajectory: Trajectory, model: Model, case: Case
-) -> tuple[Moved, list[Life]]:
-    motions = Motions(
-        shown.boom,
-        shown.lines,
-        trajectory,
-        resting.positions,
-        resting.rests,
-        jumps=not model.smooth,
-    )
-    moved, varying = gone_through(motions)
-    return moved, [life(one, case.life) for one in varying] if COUNTS else []
-
-
-def _tied(boom: Boom, model: Model, played: Shown, resting: Resting) -> Shown:
+def _tied(boom: Boom, model: Model, played: _Model, found: Mapping[float, Array]) -> _Model:
     """The same without play."""
-    own = model.without_play(boom)
-    if own is not None:
-        return Shown.of(boom.play_free, own[0].gathered(), own[1])
-    rests = zip(resting.rests, resting.positions, strict=True)
-    begun = [position for rest, position in rests if _as_begun(boom, rest.time)]
+    without = boom.play_free
+    if (own := model.without_play(boom)) is not None:
+        system = own[0].gathered()
+        return _Model(without, system, with_cylinders(without, system, own[1]))
+    begun = [position for time, position in found.items() if _as_begun(boom, time)]
     system, basis = tied_system(played.system.standing(0.0), begun)
-    return Shown(boom.play_free, system, [line.on(basis) for line in played.lines])
+    return _Model(without, system, [line.on(basis) for line in played.lines])
 
 
 def _beside_tied(
-    answers: ModelAnswers, tied: Shown, resting: Resting, boom: Boom, model: Model, case: Case
+    answers: ModelAnswers,
+    tied: _Model,
+    found: Mapping[float, Array],
+    boom: Boom,
+    model: Model,
+    case: Case,
 ) -> ModelAnswers:
+    rests = tied.rests(found)
     answers = replace(
         answers,
-        tied=[rest for rest in resting.rests if _as_begun(boom, rest.time)],
+        tied=[rest for rest in rests if _as_begun(boom, rest.time)],
         # Their shapes are those of the pressed boom to the eye.
-        tied_modes=[replace(mode, shapes=[]) for mode in resting.modes],
+        tied_modes=[replace(mode, shapes=[]) for mode in tied.modes(found)],
     )
     if boom.driven:
         # Tied it cannot be drawn out.
         return answers
     try:
         motion = Plan.of(tied.system, case, model).trajectory()
-        moved, lives = _moving(tied, resting, motion, model, case)
+        moved, lives = tied.moved(motion, found, rests, case, model)
     except NUMERICS:
         # What rests is known all the same.
         return answers
@@ -175,7 +151,7 @@ def _as_begun(boom: Boom, time: float) -> bool:
 
 
 def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelAnswers]) -> Answers:
-    """What all of them answer together.
+    """Return what all models answer together.
 
     Args:
         boom: of the case.

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, zip_longest
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from dynamics.failure import NUMERICS
 from dynamics.gap_system import GapSystem
 from dynamics.line import Line
 from geometry.arrays import Array
-from geometry.boom import Boom, Joint
+from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.drawing import drawn, places
 from runs.pipeline.pads import SIGNS, most_on_pad, one_sided_force
@@ -211,7 +211,7 @@ def drawn_positions(system: GapSystem, duration: float) -> dict[float, Array]:
 def at_rest(
     boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
 ) -> AtRest:
-    """What is told of a rest.
+    """Return what is told of a rest.
 
     Args:
         boom: with the play that the system has.
@@ -220,42 +220,33 @@ def at_rest(
         time: whose loads act, and as far drawn out as it is then, in s.
         position: (num_modes,) of the rest.
     """
-    system = system.standing(time)
+    system, diagrams = system.standing(time), []
+    for number, line in enumerate(lines):
+        carried = section_forces(boom, number, line, position, np.array(time))
+        curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}
+        name, normal = boom.segments[number].name, curves.pop("normal")
+        diagrams.append(Diagram(name, rounded(line.x), normal, curves))
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
-    stations = list(pressed(boom, system, position))
     return AtRest(
         time=time,
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
-        diagrams=[
-            _diagram(boom, number, line, position, time) for number, line in enumerate(lines)
-        ],
+        diagrams=diagrams,
         tilts=list(tilts(boom, system, position, time)),
-        stations=stations,
+        stations=list(pressed(boom, system, position)),
         cylinders={name: seen[name] for name in forces(boom)},
     )
 
 
-def _diagram(boom: Boom, number: int, line: Line, position: Array, time: float) -> Diagram:
-    carried = section_forces(boom, number, line, position, np.array(time))
-    curves: dict[str, list[float]] = {name: rounded(values) for name, values in carried.items()}
-    return Diagram(boom.segments[number].name, rounded(line.x), curves.pop("normal"), curves)
-
-
 def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]:
-    """Of the stations of joints with play, in z and in y, and of stops, at (num_modes,)."""
+    """Yield the stations of joints with play, in z and in y, and the stops, at (num_modes,)."""
     gaps = system.rows @ position
-    joints = [
-        joint
-        for _ in boom.directions
-        for joint in boom.joints
-        if not joint.tied
-        for _ in joint.stations
-    ] + [None for _ in boom.stops]
-    names = place_names(boom.stations)
+    loose = [joint for joint in boom.joints if not joint.tied]
+    joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
     for k, ((x, direction), name, joint) in enumerate(
-        zip(boom.stations, names, joints, strict=True)
+        zip_longest(boom.stations, place_names(boom.stations), joints)
     ):
+        # A tied model has stations, and no rows there.
         here = np.flatnonzero(system.station_of_row == k)
         sides = [
             sum(one_sided_force(system.laws[row], side, gaps[row]) for row in here)
@@ -267,27 +258,20 @@ def pressed(boom: Boom, system: GapSystem, position: Array) -> Iterator[Pressed]
             direction=direction,
             force=sides[0] - sides[1],
             pad=None if joint is None else most_on_pad(joint, direction, sides),
-            # A tied model has stations, and no rows there.
             depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
         )
 
 
 def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Of the joints with play and two stations at least, at a rest (num_modes,) at a time in s."""
+    """Yield those of joints with play and two stations at least, at a rest (num_modes,) in s."""
     gaps, numbers = system.rows @ position, count()
     for joint in (joint for joint in boom.joints if not joint.tied):
-        of_station = [
-            float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations
-        ]
-        if len(joint.stations) > 1:
-            yield _tilt(boom, joint, of_station, time)
-
-
-def _tilt(boom: Boom, joint: Joint, gaps: Sequence[float], time: float) -> Tilt:
-    way = drawn(boom, joint.inner, time) - drawn(boom, joint.outer, time)
-    on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
-    first, last = on_outer[0], on_outer[-1]
-    tip = boom.tip + drawn(boom, len(boom.segments) - 1, time) - drawn(boom, joint.outer, time)
-    rotation = (gaps[-1] - gaps[0]) / (last - first)
-    inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
-    return Tilt(inner, outer, rotation, gaps[0] + rotation * (tip - first))
+        own = [float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations]
+        if len(own) > 1:
+            before = drawn(boom, joint.outer, time)
+            way = drawn(boom, joint.inner, time) - before
+            on_outer = [x for x, _ in places(joint, way)] if joint.drive else joint.stations
+            tip = boom.tip + drawn(boom, len(boom.segments) - 1, time) - before
+            rotation = (own[-1] - own[0]) / (on_outer[-1] - on_outer[0])
+            inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
+            yield Tilt(inner, outer, rotation, own[0] + rotation * (tip - on_outer[0]))
