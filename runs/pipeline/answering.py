@@ -168,7 +168,7 @@ def of_run(boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelA
         modes=_beside(boom, ran, models),
         play=added(ran, models) if boom.joints else [],
     )
-    return replace(answers, trust=quality_notes(summary, answers, case.time.duration))
+    return replace(answers, trust=[*quality_notes(summary, answers, case.time.duration)])
 
 
 def _beside(

@@ -96,9 +96,17 @@ def compare_models(
             for other in others
         }
     if case.regular:
-        found.whole = {
-            name: _whole(trajectories, reference, name) for name in _others(trajectories, reference)
-        }
+        time, whole = trajectories["time"].values, {}
+        ends = dict.fromkeys(end for end in (HALFWAY, float(time[-1])) if end <= time[-1])
+        tips = {name: trajectories["tip"].sel(model=name).values for name in ran}
+        for name in _others(trajectories, reference):
+            parts = [Pointwise.of(tips[reference], tips[name], time, end) for end in ends]
+            whole[name] = Whole(
+                until=[part.until for part in parts],
+                largest=[part.largest for part in parts],
+                rms=[part.rms for part in parts],
+            )
+        found.whole = whole
     return found if found.ensembles or found.whole else None
 
 
@@ -106,36 +114,42 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
     return [str(name) for name in data["model"].values if name != reference]
 
 
-def _whole(trajectories: xr.Dataset, reference: str, name: str) -> Whole:
-    """Pointwise differences of two tips until the middle and until the end."""
-    time = trajectories["time"].values
-    one, other = (trajectories["tip"].sel(model=model).values for model in (reference, name))
-    ends = [end for end in (HALFWAY, float(time[-1])) if end <= time[-1]]
-    found = [Pointwise.of(one, other, time, end) for end in dict.fromkeys(ends)]
-    return Whole(
-        until=[part.until for part in found],
-        largest=[part.largest for part in found],
-        rms=[part.rms for part in found],
-    )
-
-
-def quality_notes(summary: Summary, answers: Answers, duration: float) -> list[QualityNote]:
-    """Return what can be said of the accuracy of a run.
+def quality_notes(summary: Summary, answers: Answers, duration: float) -> Iterator[QualityNote]:
+    """Yield what can be said of the accuracy of a run.
 
     Args:
         summary: of its models.
         answers: of its models.
         duration: of the motion in s.
     """
-    kinds = {
-        "agreement": _agreement(answers),
-        "horizon": _horizon(summary, duration),
-        "step": _step(summary),
-        "reduction": _reduction(summary),
-        "mesh": _mesh(summary),
-        "energy": _energy(summary),
-    }
-    return [QualityNote(what, line) for what, lines in kinds.items() for line in lines]
+    models = summary.models
+    for line in _agreement(answers):
+        yield QualityNote("agreement", line)
+    for line in _horizon(summary, duration):
+        yield QualityNote("horizon", line)
+    if errors := [model.step_error for model in models.values() if model.step_error]:
+        most = percent(max(errors))
+        yield QualityNote("step", f"The time step changes the tip by {most} of its range at most.")
+    for name, model in models.items():
+        if (error := model.reduction_errors.get("contact_compliance")) is not None:
+            yield QualityNote(
+                "reduction",
+                f"{name}: its {model.modes} coordinates answer contacts as the full shell does, "
+                f"within {error:.1g} of what gives way there.",
+            )
+    for name, model in models.items():
+        if model.mesh_error is not None:
+            yield QualityNote(
+                "mesh",
+                f"{name}: where something presses, its walls give way by "
+                f"{percent(model.mesh_error)} more or less than on an infinitely fine mesh.",
+            )
+    name, worst = max(models.items(), key=lambda entry: entry[1].energy_residual)
+    yield QualityNote(
+        "energy",
+        f"Energy is accounted for within {worst.energy_residual:.1g} of the work done in every "
+        f"model; the least well in {name}.",
+    )
 
 
 def percent(part: float) -> str:
@@ -149,23 +163,17 @@ def _agreement(answers: Answers) -> Iterator[str]:
         return
     reference = answers.modes.reference
     own = answers.models[reference]
-    for name in answers.modes.matches:
-        parts = [f"{part} {what}" for what, part in _distances(answers, own, name)]
+    for name, matches in answers.modes.matches.items():
+        other, parts = answers.models[name], []
+        if (off := off_at_rest(own, other)) is not None:
+            parts.append(f"{percent(abs(off))} in the tip at rest")
+        if (first := matches[0]) is not None:
+            parts.append(f"{percent(abs(first.off))} in the first frequency")
+        if own.moved is not None and other.moved is not None and own.moved.peaks[0].largest:
+            ratio = other.moved.peaks[0].largest / own.moved.peaks[0].largest
+            parts.append(f"{percent(abs(ratio - 1.0))} in the largest deflection of the tip")
         if parts:
             yield f"{name} is off {reference} by {listed(parts)}."
-
-
-def _distances(answers: Answers, own: ModelAnswers, name: str) -> Iterator[tuple[str, str]]:
-    other = answers.models[name]
-    if (off := off_at_rest(own, other)) is not None:
-        yield "in the tip at rest", percent(abs(off))
-    assert answers.modes is not None
-    first = answers.modes.matches[name][0]
-    if first is not None:
-        yield "in the first frequency", percent(abs(first.off))
-    if own.moved is not None and other.moved is not None and own.moved.peaks[0].largest:
-        ratio = other.moved.peaks[0].largest / own.moved.peaks[0].largest
-        yield "in the largest deflection of the tip", percent(abs(ratio - 1.0))
 
 
 def off_at_rest(own: ModelAnswers, other: ModelAnswers) -> float | None:
@@ -194,39 +202,6 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     regular = [name for name, time in times.items() if time is None]
     if regular:
         yield f"The motion of {listed(regular)} can be predicted over all {duration:g} s."
-
-
-def _step(summary: Summary) -> Iterator[str]:
-    errors = [model.step_error for model in summary.models.values() if model.step_error]
-    if errors:
-        yield f"The time step changes the tip by {percent(max(errors))} of its range at most."
-
-
-def _reduction(summary: Summary) -> Iterator[str]:
-    for name, model in summary.models.items():
-        error = model.reduction_errors.get("contact_compliance")
-        if error is not None:
-            yield (
-                f"{name}: its {model.modes} coordinates answer contacts as the full shell does, "
-                f"within {error:.1g} of what gives way there."
-            )
-
-
-def _mesh(summary: Summary) -> Iterator[str]:
-    for name, model in summary.models.items():
-        if model.mesh_error is not None:
-            yield (
-                f"{name}: where something presses, its walls give way by "
-                f"{percent(model.mesh_error)} more or less than on an infinitely fine mesh."
-            )
-
-
-def _energy(summary: Summary) -> Iterator[str]:
-    name, model = max(summary.models.items(), key=lambda entry: entry[1].energy_residual)
-    yield (
-        f"Energy is accounted for within {model.energy_residual:.1g} of the work done in every "
-        f"model; the least well in {name}."
-    )
 
 
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:

@@ -92,7 +92,10 @@ class ModesBeside:
 
 
 def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
-    """The first ones, by rising frequency.
+    """Return the first modes, by rising frequency.
+
+    A mode's way is that of the largest part of the kinetic energy, without that of turning
+    cross-sections and of point masses.
 
     Args:
         boom: whose segments the lines read.
@@ -101,47 +104,41 @@ def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> 
         rest: (num_modes,) where it rests.
     """
     omega, shapes = pressed_modes(system, rest)
+    ways: list[Quantity] = [name for name in _WAYS if name in lines[0].rows]
+    even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]
     found: list[Mode] = []
     for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
-        curves = [_curves(line, shape) for line in lines]
-        shares = _shares(boom.segments, curves)
-        way = max(shares, key=lambda name: shares[name])
-        number = 1 + sum(mode.way == _WAYS[way] for mode in found)
+        curves = [
+            {name: np.interp(x, line.x, line.rows[name] @ shape) for name in ways}
+            for x, line in zip(even, lines, strict=True)
+        ]
+        energies = {
+            name: sum(
+                inertia(segment, name) * segment.length * float((of[name] ** 2).mean())
+                for segment, of in zip(boom.segments, curves, strict=True)
+            )
+            for name in ways
+        }
+        way, whole = max(ways, key=lambda name: energies[name]), sum(energies.values())
+        most = np.concatenate([of[way] for of in curves])
+        scale = 1.0 / float(most[np.abs(most).argmax()] or 1.0)
         found.append(
             Mode(
                 frequency=float(frequency),
                 way=_WAYS[way],
-                number=number,
-                share=shares[way],
-                shapes=_scaled(boom.segments, curves, way),
+                number=1 + sum(mode.way == _WAYS[way] for mode in found),
+                share=energies[way] / whole if whole else 0.0,
+                shapes=[
+                    Shape(
+                        segment.name,
+                        rounded(np.linspace(segment.start, segment.end, _PLACES)),
+                        {name: rounded(scale * curve) for name, curve in of.items()},
+                    )
+                    for segment, of in zip(boom.segments, curves, strict=True)
+                ],
             )
         )
     return found
-
-
-def _curves(line: Line, shape: Array) -> dict[Quantity, Array]:
-    """Of each way to move at even places."""
-    even = np.linspace(line.x[0], line.x[-1], _PLACES)
-    return {
-        name: np.interp(even, line.x, line.rows[name] @ shape)
-        for name in _WAYS
-        if name in line.rows
-    }
-
-
-def _shares(
-    segments: Sequence[Segment], curves: Sequence[Mapping[Quantity, Array]]
-) -> dict[Quantity, float]:
-    """Parts of the kinetic energy, without that of turning cross-sections and of point masses."""
-    energies = {
-        name: sum(
-            inertia(segment, name) * segment.length * float((of[name] ** 2).mean())
-            for segment, of in zip(segments, curves, strict=True)
-        )
-        for name in curves[0]
-    }
-    whole = sum(energies.values())
-    return {name: energy / whole if whole else 0.0 for name, energy in energies.items()}
 
 
 def inertia(segment: Segment, way: Quantity) -> float:
@@ -150,22 +147,6 @@ def inertia(segment: Segment, way: Quantity) -> float:
         return segment.mass_per_length
     assert segment.lateral is not None
     return segment.lateral.polar_inertia
-
-
-def _scaled(
-    segments: Sequence[Segment], curves: Sequence[Mapping[Quantity, Array]], way: Quantity
-) -> list[Shape]:
-    """The largest of the way that moves most is 1."""
-    most = np.concatenate([of[way] for of in curves])
-    scale = 1.0 / float(most[np.abs(most).argmax()] or 1.0)
-    return [
-        Shape(
-            segment.name,
-            rounded(np.linspace(segment.start, segment.end, _PLACES)),
-            {name: rounded(scale * curve) for name, curve in of.items()},
-        )
-        for segment, of in zip(segments, curves, strict=True)
-    ]
 
 
 def matched(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
