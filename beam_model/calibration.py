@@ -19,7 +19,6 @@ from scipy.optimize import least_squares
 from beam_model.component import Component, SegmentModel, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.segment_model import AT_PADS, gap_system
-from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import residual_compliance, with_springs
 from geometry.arrays import Array
@@ -69,8 +68,6 @@ class Calibration:
 
 def calibrate(
     boom: Boom,
-    laws: Sequence[ContactLaw],
-    lateral_laws: Sequence[ContactLaw],
     shell: GapSystem,
     far_fields: Sequence[FarField],
     segments: Callable[[Boom], Sequence[SegmentModel]],
@@ -79,7 +76,6 @@ def calibrate(
 
     Args:
         boom: all its segments with sections.
-        laws, lateral_laws: of its joints.
         shell: of the boom, pressed near its webs or by pads.
         far_fields: of the shell's segments.
         segments: makes beams of a boom.
@@ -89,7 +85,7 @@ def calibrate(
         for segment, far in zip(boom.segments, far_fields, strict=True)
     ]
     stiff = stiffened(boom, found)
-    beam = gap_system(stiff, segments(stiff), laws, lateral_laws, AT_PADS)
+    beam = gap_system(stiff, segments(stiff), AT_PADS)
     residual = residual_compliance(beam, shell)
     return with_springs(beam, residual), Calibration(found, residual)
 

@@ -15,7 +15,6 @@ from typing import NamedTuple
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from beam_model.drawn_rows import travels
-from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -51,36 +50,26 @@ AT_PADS = Touch((1, -1), lambda pad: (pad.middle, pad.slid), lambda pad: pad.cov
 def gap_system(
     boom: Boom,
     models: Sequence[SegmentModel],
-    laws: Sequence[ContactLaw],
-    lateral_laws: Sequence[ContactLaw] = (),
     touch: Touch = AT_STATIONS,
 ) -> GapSystem:
     """Segments side by side in modal coordinates, coupled by contact, friction and ties alone.
 
-    Laws are one for each joint, along z and, of a boom in space, along y; ``touch`` tells where
-    pads are read.
+    ``touch`` tells where pads are read.
     """
     modes = BoomModes(boom, models)
-    rows_at = partial(_rows, boom, modes, {"z": laws, "y": lateral_laws}, touch)
+    rows_at = partial(_rows, boom, modes, touch)
     system = _standing(boom, modes, rows_at({}))
     return replace(system, travels=travels(boom, models, rows_at, modes.displacement))
 
 
-def standing_system(
-    boom: Boom,
-    modes: BoomModes,
-    laws: Sequence[ContactLaw],
-    lateral_laws: Sequence[ContactLaw] = (),
-) -> GapSystem:
+def standing_system(boom: Boom, modes: BoomModes) -> GapSystem:
     """The same where drives have not drawn anything yet, and do not.
 
     Args:
-        boom, laws, lateral_laws: as of :func:`gap_system`.
+        boom: as of :func:`gap_system`.
         modes: of the boom's segments.
     """
-    return _standing(
-        boom, modes, _rows(boom, modes, {"z": laws, "y": lateral_laws}, AT_STATIONS, {})
-    )
+    return _standing(boom, modes, _rows(boom, modes, AT_STATIONS, {}))
 
 
 def _standing(boom: Boom, modes: BoomModes, rows: GapBuilder[Array]) -> GapSystem:
@@ -102,23 +91,19 @@ def _standing(boom: Boom, modes: BoomModes, rows: GapBuilder[Array]) -> GapSyste
 
 def tied_system(boom: Boom, models: Sequence[SegmentModel]) -> GapSystem:
     """The play-free boom: every joint's segments move alike at its stations."""
-    return gap_system(boom.play_free, models, ())
+    return gap_system(boom.play_free, models)
 
 
 def _rows(
     boom: Boom,
     modes: BoomModes,
-    laws: Mapping[Direction, Sequence[ContactLaw]],
     touch: Touch,
     ways: Mapping[int, float],
 ) -> GapBuilder[Array]:
     """What touches, rubs and drags where joints are drawn out by their ways in m."""
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
-        law, (on_outer, on_inner) = (
-            laws[pad.direction][pad.number],
-            pad.ways(ways.get(pad.number, 0.0)),
-        )
+        on_outer, on_inner = pad.ways(ways.get(pad.number, 0.0))
         pressed, slid = touch.x(pad)
         read = partial(_relative, modes, pad)
         points_of = touch.offsets(pad), (pad.inner, pad.outer)
@@ -126,13 +111,14 @@ def _rows(
         slide = read(pad.rubs, (slid + on_inner, slid + on_outer), points_of[1])
         sides = (pad.side,) if pad.side else touch.sides
         points = [(side, pad.weight, approach) for side in sides]
+        law = pad.joint.law(pad.direction)
         pressing = rows.press(pad.station, law, points, pad.raised)
         rows.drag(pad.station, pad.joint.dashpot, points)
         rows.rub(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
     for station, stop in boom.numbered_stops:
         way = sum(ways.get(number, 0.0) for number in drives_below(boom.joints, stop.segment))
         row = modes.displacement(stop.segment, stop.x - way, "z")
-        rows.stop(station, stop, [(side, 1.0, row) for side in touch.sides])
+        rows.stop(station, stop.law, [(side, 1.0, row) for side in touch.sides])
     return rows
 
 

@@ -20,7 +20,6 @@ from beam_model.component import Component, SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import gap_system, standing_system
-from dynamics.contact import ContactLaw
 from dynamics.equilibrium import rest_at
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -84,15 +83,12 @@ class Elements:
 
 def static_state(
     boom: Boom,
-    laws: Sequence[ContactLaw],
-    lateral_laws: Sequence[ContactLaw],
     elements: Elements | None = None,
 ) -> StaticState:
     """A boom of beam elements at rest, of Timoshenko's where all sections are known.
 
     Args:
         boom: with its loads.
-        laws, lateral_laws: of its joints along z, and in space along y.
         elements: of its segments, if they are known from the same boom with play or without.
 
     Raises:
@@ -100,7 +96,7 @@ def static_state(
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = standing_system(boom, modes, laws, lateral_laws).gathered()
+    system = standing_system(boom, modes).gathered()
     position = rest_at(system)
     holds = [
         hold
@@ -110,11 +106,9 @@ def static_state(
     return StaticState(boom, system, position, holds)
 
 
-def drawn_out(
-    boom: Boom, laws: Sequence[ContactLaw], lateral_laws: Sequence[ContactLaw]
-) -> GapSystem:
+def drawn_out(boom: Boom) -> GapSystem:
     """The beams of :func:`static_state`, and all that its drives move."""
-    return gap_system(boom, _segments(boom), laws, lateral_laws).gathered()
+    return gap_system(boom, _segments(boom)).gathered()
 
 
 def _segments(boom: Boom) -> list[SegmentModel]:

@@ -9,15 +9,12 @@ from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.segment_model import gap_system
-from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 
 
 def finite_element_system(
     boom: Boom,
-    laws: Sequence[ContactLaw],
-    lateral_laws: Sequence[ContactLaw] = (),
     element_length: float = 0.5,
     theory: Theory = "euler-bernoulli",
     rotary_inertia: bool = True,
@@ -26,8 +23,6 @@ def finite_element_system(
 
     Args:
         boom: flat or in space.
-        laws: one for each joint, along z.
-        lateral_laws: one for each joint, along y; none for a flat boom.
         element_length: largest length of an element in m.
         theory: ``timoshenko`` needs the segments' sections.
         rotary_inertia: keep I_p of (3).
@@ -36,23 +31,19 @@ def finite_element_system(
         BoomError: the boom lacks what the theory needs.
     """
     models = finite_element_segments(boom, element_length, theory, rotary_inertia)
-    return gap_system(boom, models, laws, lateral_laws)
+    return gap_system(boom, models)
 
 
 def kantorovich_system(
     boom: Boom,
-    laws: Sequence[ContactLaw],
     terms: Sequence[int],
     base: Base = "complete",
-    lateral_laws: Sequence[ContactLaw] = (),
     rotary_inertia: bool = True,
 ) -> GapSystem:
     """A boom by Kantorovich series.
 
     Args:
         boom: flat or in space.
-        laws: one for each joint, along z.
-        lateral_laws: one for each joint, along y; none for a flat boom.
         terms: number of functions of each segment.
         base: which reading of (29) and (31).
         rotary_inertia: keep I_p of (3) and (9), or drop it as (21) does.
@@ -61,4 +52,4 @@ def kantorovich_system(
         BoomError: the boom has what the base cannot take.
     """
     models = kantorovich_segments(boom, terms, base, rotary_inertia)
-    return gap_system(boom, models, laws, lateral_laws)
+    return gap_system(boom, models)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 
 import numpy as np
 
@@ -27,15 +27,15 @@ _LEAST, _DEEPEST = 1.0e-300, 300.0
 
 
 class ContactLaw(ABC):
-    """What presses while a gap y = u − w is beyond its clearance; the base of every law.
+    """What presses two bodies that touch, by their relative displacement y = u − w.
 
     A law of one's own derives from this class, is a frozen dataclass, and gives
 
-    1. ``terms``, whose sum is the elastic force: zero up to the clearance, then never attractive.
-       Those of one side rise by their onset;
-    2. ``clearance`` Δ in m, the least onset, and ``damping`` d in s/m of Hunt and Crossley (1975),
-       F (1 + d ṗ) at the rate ṗ of the penetration, never adhesive;
-    3. :meth:`one_sided`, :meth:`shared` and :meth:`behind`, which give a law of the same class;
+    1. ``terms``, whose sum is the elastic force: never attractive, and zero at y = 0, where the
+       bodies begin to touch unless the law is :meth:`behind` a clearance;
+    2. ``damping`` d in s/m of Hunt and Crossley (1975), F (1 + d ṗ) at the rate ṗ of the
+       penetration, never adhesive;
+    3. :meth:`one_sided` and :meth:`shared`, which give a law of the same class;
     4. ``str(law)``, the few words by which a table tells it from others.
 
     Force, energy and the compiled loops follow from these.
@@ -43,13 +43,12 @@ class ContactLaw(ABC):
 
     __slots__ = ()
 
-    clearance: float
     damping: float
 
     @property
     @abstractmethod
     def terms(self) -> tuple[Term, ...]:
-        """One-sided powers whose sum is the force."""
+        """One-sided powers whose sum is the force, those of one side by rising onset."""
 
     @abstractmethod
     def one_sided(self, side: int) -> ContactLaw | None:
@@ -59,23 +58,23 @@ class ContactLaw(ABC):
     def shared(self, weight: float) -> ContactLaw:
         """The part ``weight`` of the law, for one of several points that carry it together."""
 
-    @abstractmethod
-    def behind(self, clearance: float) -> ContactLaw:
-        """The same law behind another clearance in m."""
+    def behind(self, above: float, below: float | None = None) -> Gap:
+        """Return the law behind a clearance in m, and behind another one below if it is given."""
+        return Gap(self, above, above if below is None else below)
 
     def scaled(self, factor: float) -> ContactLaw:
-        """The same law behind so many times its clearance, on each side its own."""
-        return self.behind(factor * self.clearance)
+        """Return the law behind so many times its clearances."""
+        return self
 
     @property
     def play(self) -> float:
         """From one side to the other in m; twice the clearance where there is but one."""
-        onsets = self._onset(1.0), self._onset(-1.0)
+        onsets = self.onset(1.0), self.onset(-1.0)
         whole = sum(onsets) if np.isfinite(onsets).all() else 2.0 * min(onsets)
         return max(whole, 0.0)
 
-    def _onset(self, side: float) -> float:
-        """Of the first term of a side in m; infinite where there is none."""
+    def onset(self, side: float) -> float:
+        """Return where a side begins to touch in m; infinite where it never does."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
@@ -102,21 +101,21 @@ class ContactLaw(ABC):
         """Return dF/dy in N/m where the law presses with a force in N, on its stiffer side."""
         from scipy.optimize import brentq
 
-        # The least penetration would be lost beside a clearance. In logarithms a power is a line.
-        law, wanted = self.behind(0.0), np.log(max(force, _LEAST))
+        # In logarithms a power is a line.
+        wanted = np.log(max(force, _LEAST))
 
         def slope(side: float) -> float:
             def excess(log_depth: float) -> float:
-                found = float(abs(law.force(np.array(side * np.exp(log_depth)))))
+                found = float(abs(self.force(np.array(side * np.exp(log_depth)))))
                 return float(np.log(max(found, _LEAST)) - wanted)
 
             ends = excess(-_DEEPEST), excess(_DEEPEST)
             depth = brentq(excess, -_DEEPEST, _DEEPEST) if ends[0] < 0.0 < ends[1] else 0.0
-            return float(law.slope(np.array(side * np.exp(depth))))
+            return float(self.slope(np.array(side * np.exp(depth))))
 
         # What overflows far beyond the force is none that matters.
         with np.errstate(over="ignore"):
-            return max(slope(side) for side in {term.side for term in law.terms})
+            return max(slope(side) for side in {term.side for term in self.terms})
 
     def _sum(self, of_term: OfTerm, y: Array) -> Array:
         gaps = np.asarray(y, dtype=np.float64)
@@ -124,21 +123,81 @@ class ContactLaw(ABC):
 
 
 @dataclass(frozen=True, slots=True)
+class Gap(ContactLaw):
+    """A contact law across a gap: the law of a row that has a clearance.
+
+    >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
+    >>> law.force(np.array([0.005, -0.005]))
+    array([1000.,    0.])
+
+    Args:
+        law: what presses beyond the clearances.
+        above, below: the clearances Δ in m where y is positive and where it is negative; negative
+            where what touches is pressed in by so much, and then the law is linear.
+
+    Raises:
+        ValueError: a clearance is not finite, or negative before a law that is not linear.
+    """
+
+    law: ContactLaw
+    above: float
+    below: float
+    damping: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.above, self.below]).all():
+            raise ValueError(
+                f"clearance must be a finite number of m, got {self.above} and {self.below}"
+            )
+        linear = all(term.exponent == 1.0 and term.onset == 0.0 for term in self.law.terms)
+        if not linear and any(term.onset < 0.0 for term in self.terms):
+            raise ValueError(f"a law must be linear behind a negative clearance, got {self.law}")
+        object.__setattr__(self, "damping", self.law.damping)
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        return tuple(
+            term._replace(onset=(self.above if term.side > 0.0 else self.below) + term.onset)
+            for term in self.law.terms
+        )
+
+    def one_sided(self, side: int) -> Gap | None:
+        law = self.law.one_sided(side)
+        return None if law is None else replace(self, law=law)
+
+    def shared(self, weight: float) -> Gap:
+        return replace(self, law=self.law.shared(weight))
+
+    def behind(self, above: float, below: float | None = None) -> Gap:
+        """Return the law behind clearances that are so much larger in m."""
+        more = above if below is None else below
+        return replace(self, above=self.above + above, below=self.below + more)
+
+    def scaled(self, factor: float) -> Gap:
+        return replace(self, above=factor * self.above, below=factor * self.below)
+
+    def slope_at(self, force: float) -> float:
+        # Beside a clearance the least penetration would be lost.
+        return self.law.slope_at(force)
+
+    def __str__(self) -> str:
+        return str(self.law)
+
+
+@dataclass(frozen=True, slots=True)
 class PowerContact(ContactLaw):
-    """Gap contact: F(y) = k₂ (y − Δ)ⁿ above Δ, −k₁ (−y − Δ)ⁿ below −Δ, zero between.
+    """F(y) = k₂ yⁿ above 0, −k₁ (−y)ⁿ below.
 
     Equation (4) of Rusiński and Wyciślok (1997), in the one sign convention that restores;
     n = 3/2 is Hertz, n = 1 a linear stop. A side with stiffness zero never touches.
 
-    >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5, clearance=0.01)
+    >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5).behind(0.01)
     >>> law.force(np.array([0.0, 0.01, 0.02]))
     array([   0.,    0., 1000.])
 
     Args:
         stiffness: k₂ in N/mⁿ.
         exponent: n, at least 1. Below 1 the force has an infinite slope at touch.
-        clearance: Δ in m on each side (half the play); negative where what touches is pressed in
-            by so much from either side, and then n is 1.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
         damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
             never adhesive; not negative.
@@ -148,8 +207,8 @@ class PowerContact(ContactLaw):
     """
 
     stiffness: float
-    exponent: float
-    clearance: float
+    exponent: float = 2.0
+    _: KW_ONLY
     stiffness_below: float | None = None
     damping: float = 0.0
 
@@ -161,12 +220,6 @@ class PowerContact(ContactLaw):
             raise ValueError("stiffness must be positive on one side at least, got 0.0 on both")
         if not 1.0 <= self.exponent < np.inf:
             raise ValueError(f"exponent must be at least 1, got {self.exponent}")
-        if not np.isfinite(self.clearance):
-            raise ValueError(f"clearance must be a finite number of m, got {self.clearance}")
-        if self.clearance < 0.0 and self.exponent != 1.0:
-            raise ValueError(
-                f"exponent must be 1 where the clearance is negative, got {self.exponent}"
-            )
         if not 0.0 <= self.damping < np.inf:
             raise ValueError(f"damping must be finite and not negative, got {self.damping} s/m")
 
@@ -178,7 +231,7 @@ class PowerContact(ContactLaw):
     @property
     def terms(self) -> tuple[Term, ...]:
         sides = (1.0, self.stiffness), (-1.0, self.below)
-        return tuple(Term(side, k, self.clearance, self.exponent) for side, k in sides if k > 0.0)
+        return tuple(Term(side, k, 0.0, self.exponent) for side, k in sides if k > 0.0)
 
     def upper(self) -> PowerContact:
         """The same law on the side y > 0 alone."""
@@ -196,9 +249,6 @@ class PowerContact(ContactLaw):
     def shared(self, weight: float) -> PowerContact:
         return replace(self, stiffness=weight * self.stiffness, stiffness_below=weight * self.below)
 
-    def behind(self, clearance: float) -> PowerContact:
-        return replace(self, clearance=clearance)
-
     def __str__(self) -> str:
         below = "" if self.below == self.stiffness else f", {self.below:g} below"
         return f"k {self.stiffness:g}{below}, n {self.exponent:g}"
@@ -211,8 +261,7 @@ def contact_terms(laws: Sequence[ContactLaw]) -> Terms:
 
 def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
     """Where rows touch, for the compiled loops; infinite on a side where one never does."""
-
-    return np.array([(-law._onset(-1.0), law._onset(1.0), law.damping) for law in laws], LIMITS)
+    return np.array([(-law.onset(-1.0), law.onset(1.0), law.damping) for law in laws], LIMITS)
 
 
 def restitution_damping(restitution: float, speed: float) -> float:

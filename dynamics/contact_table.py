@@ -14,18 +14,17 @@ from dynamics.contact_term import Term
 
 @dataclass(frozen=True, slots=True)
 class TableContact(ContactLaw):
-    """Gap contact whose force follows a table of the penetration, beyond it its last line.
+    """A contact whose force follows a table of the penetration, beyond it its last line.
 
     A change of slope is a linear spring that begins there, so that the law is a sum of such.
 
-    >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3), clearance=0.01)
-    >>> round(float(pad.force(np.array(0.0115))), 6)
+    >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3))
+    >>> round(float(pad.force(np.array(0.0015))), 6)
     2500.0
 
     Args:
         depths: penetrations in m, rising from above 0; the force is zero at zero.
         forces: in N, positive, one for each depth.
-        clearance: Δ in m on each side (half the play), not negative.
         damping: as in :class:`ContactLaw`, in s/m.
         sides: 1 where the inner segment presses up, −1 where it presses down.
 
@@ -35,7 +34,6 @@ class TableContact(ContactLaw):
 
     depths: tuple[float, ...]
     forces: tuple[float, ...]
-    clearance: float
     damping: float = 0.0
     sides: tuple[int, ...] = (1, -1)
 
@@ -44,8 +42,6 @@ class TableContact(ContactLaw):
             raise ValueError("a table needs one force for each depth, and one at least")
         if not (np.isfinite(self._slopes()).all() and (np.diff([0.0, *self.depths]) > 0.0).all()):
             raise ValueError("depths must be finite and rise from above 0")
-        if not 0.0 <= self.clearance < np.inf:
-            raise ValueError(f"clearance must be finite and not negative, got {self.clearance} m")
         if min(self.forces) <= 0.0 or self._slopes()[-1] < 0.0:
             raise ValueError("forces must be positive, and must not fall at the end")
 
@@ -62,7 +58,7 @@ class TableContact(ContactLaw):
         changes = np.diff([0.0, *self._slopes()]).tolist()
         starts = [0.0, *self.depths[:-1]]
         return tuple(
-            Term(float(side), change, self.clearance + start, 1.0)
+            Term(float(side), change, start, 1.0)
             for side in self.sides
             for change, start in zip(changes, starts, strict=True)
             if change != 0.0
@@ -73,9 +69,6 @@ class TableContact(ContactLaw):
 
     def shared(self, weight: float) -> TableContact:
         return replace(self, forces=tuple(weight * force for force in self.forces))
-
-    def behind(self, clearance: float) -> TableContact:
-        return replace(self, clearance=clearance)
 
     def __str__(self) -> str:
         return f"table to {1e-3 * self.forces[-1]:g} kN at {1e3 * self.depths[-1]:g} mm"

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, Literal, NamedTuple, Protocol, TypeVar
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.drive.travel import KINDS, Kind
 from dynamics.excitation import Excitation, History, Released, Thrown
 from dynamics.friction import DryFriction
@@ -43,19 +43,6 @@ class Dashpot(NamedTuple, Generic[R]):
 
     coefficient: float
     parts: list[tuple[float, R]]
-
-
-class Stop(Protocol):
-    """What of a stop on the ground makes its law, a :class:`dynamics.contact.PowerContact`."""
-
-    @property
-    def stiffness(self) -> float: ...
-    @property
-    def exponent(self) -> float: ...
-    @property
-    def clearance(self) -> float: ...
-    @property
-    def stiffness_below(self) -> float: ...
 
 
 class Observed(NamedTuple, Generic[R]):
@@ -102,13 +89,12 @@ class GapBuilder(Generic[R]):
             there = law if side == 0 else law.one_sided(side)
             if there is not None:
                 part = there.shared(weight) if side else there
-                part = part.behind(part.clearance - raised) if raised else part
+                part = part.behind(-raised) if raised else part
                 self.contacts.append(Contact(reading, part, station))
         return tuple(range(first, len(self.contacts)))
 
-    def stop(self, station: int, stop: Stop, points: Iterable[tuple[int, float, R]]) -> None:
+    def stop(self, station: int, law: ContactLaw, points: Iterable[tuple[int, float, R]]) -> None:
         """Contact with the ground, as of :meth:`press`."""
-        law = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
         self.grounded.append(station)
         self.press(station, law, points)
 

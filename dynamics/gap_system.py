@@ -55,7 +55,7 @@ class GapSystem:
     ...     omega2=np.zeros(1),
     ...     load=np.array([-9.81]),
     ...     rows=np.ones((1, 1)),
-    ...     laws=[pt.PowerContact(1e6, 1.0, clearance=0.0).lower()],
+    ...     laws=[pt.PowerContact(1e6, 1.0).lower()],
     ...     station_of_row=np.array([0]),
     ...     stations=[0.0],
     ...     observers={"height": Observer(np.ones(1))},

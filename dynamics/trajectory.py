@@ -292,7 +292,7 @@ class Trajectory:
     def compare(self, other: Trajectory, name: str = "tip", until: float = np.inf) -> Pointwise:
         """Return the differences of another motion.
 
-        >>> fine, coarse = (pt.BeamElements(boom, laws, element_length=l) for l in (0.5, 1.0))
+        >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
         >>> print(f"{100.0 * fine.simulate(0.5).compare(coarse.simulate(0.5)).largest:.1f} %")
         0.5 %
 

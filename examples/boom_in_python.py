@@ -3,12 +3,12 @@
 
 import protractile as pt
 
-LOAD, CLEARANCE = -500.0, 5.0e-3
-LAW = pt.PowerContact(1.0e9, exponent=1.0, clearance=CLEARANCE)
+LOAD, PLAY = -500.0, 0.010
+LAW = pt.PowerContact(1.0e9, exponent=1.0)
 
 
-def boom() -> pt.Boom:
-    """A clamped arm and a fly of which the last 2 m are in it."""
+def boom(play: float = PLAY) -> pt.Boom:
+    """A clamped arm and a fly of which the last 2 m are in it, with a play in m."""
     steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
     boxes = (
         pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006),
@@ -17,11 +17,11 @@ def boom() -> pt.Boom:
     wall = pt.Support(0.0, "clamped")
     arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
     fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=LOAD)
-    joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=CLEARANCE)
+    joint = pt.Joint(0, 1, stations=(6.0, 8.0), play=play, contact=LAW)
     return pt.Boom((arm, fly), (joint,))
 
 
 if __name__ == "__main__":
-    motion = pt.BeamElements(boom(), [LAW]).simulate(1.0)
+    motion = pt.BeamElements(boom()).simulate(1.0)
     print(f"touches at {motion.first_contact:.5f} s, the tip peaks at {motion.first_peak()}")
     motion.tip.plot()

@@ -16,7 +16,7 @@ def fall() -> pt.Trajectory:
         omega2=np.array([0.0]),
         load=np.array([-GRAVITY]),
         rows=np.array([[1.0]]),
-        laws=[pt.PowerContact(STIFFNESS, 1.0, clearance=0.0).lower()],
+        laws=[pt.PowerContact(STIFFNESS, 1.0).lower()],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"height": Observer(np.array([1.0]))},

@@ -13,26 +13,22 @@ from dynamics.integrator import simulate
 
 @dataclass(frozen=True, slots=True)
 class RubberStop(pt.ContactLaw):
-    """Linear at first, then ever stiffer; above the gap alone."""
+    """Linear at first, then ever stiffer; above alone."""
 
     linear: float
     cubic: float
-    clearance: float
     damping: float = 0.0
 
     @property
     def terms(self) -> tuple[Term, ...]:
         powers = (self.linear, 1.0), (self.cubic, 3.0)
-        return tuple(Term(1.0, k, self.clearance, n) for k, n in powers)
+        return tuple(Term(1.0, k, 0.0, n) for k, n in powers)
 
     def one_sided(self, side: int) -> "RubberStop | None":
         return self if side > 0 else None
 
     def shared(self, weight: float) -> "RubberStop":
         return replace(self, linear=weight * self.linear, cubic=weight * self.cubic)
-
-    def behind(self, clearance: float) -> "RubberStop":
-        return replace(self, clearance=clearance)
 
 
 def strike(law: pt.ContactLaw, speed: float) -> pt.Trajectory:

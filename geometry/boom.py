@@ -73,12 +73,12 @@ class Boom:
     >>> wall = pt.Support(0.0, "clamped")
     >>> arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
     >>> fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=-500.0)
-    >>> joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3)
+    >>> law = pt.PowerContact(1e9, exponent=1.0)
+    >>> joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, contact=law)
     >>> boom = pt.Boom((arm, fly), (joint,))
     >>> boom.tip, boom.stations
     (14.0, [(6.0, 'z'), (8.0, 'z')])
-    >>> laws = [pt.PowerContact(1e9, exponent=1.0, clearance=joint.clearance)]
-    >>> pt.BeamElements(boom, laws).system().num_modes
+    >>> pt.BeamElements(boom).system().num_modes
     66
 
     Raises:
@@ -133,7 +133,7 @@ class Boom:
     @property
     def spatial(self) -> bool:
         """Whether the segments move along y and twist, too."""
-        return any(joint.lateral_clearance is not None for joint in self.joints)
+        return any(joint.lateral_play is not None for joint in self.joints)
 
     @cached_property
     def play_free(self) -> Boom:
@@ -304,7 +304,7 @@ class Boom:
 
     def _check_space(self) -> None:
         for number, joint in enumerate(self.joints, start=1):
-            if joint.lateral_clearance is None:
+            if joint.lateral_play is None:
                 raise BoomError(
                     f"joint[{number}].lateral_play",
                     "missing, and another joint has it; a boom is flat or in space as a whole",

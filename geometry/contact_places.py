@@ -182,7 +182,7 @@ class Pad:
     @property
     def slid(self) -> float:
         """x in m where its slide is read: of a flat boom in its middle, in space at its corner."""
-        return self.middle if self.joint.lateral_clearance is None else self.x
+        return self.middle if self.joint.lateral_play is None else self.x
 
     @property
     def covered(self) -> tuple[Offset, Offset]:
@@ -250,12 +250,12 @@ def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
     """Side, inner and outer point, weight, and inner face in space, of the pads at one station."""
-    if joint.lateral_clearance is None:
+    if joint.lateral_play is None:
         for side in _SIDES if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
         return
     inner, outer = (boom.segments[number].section_at(x) for number in (joint.inner, joint.outer))
-    clearance = joint.clearance if direction == "z" else joint.lateral_clearance
+    clearance = 0.5 * (joint.play if direction == "z" else joint.lateral_play)
     for side in _SIDES:
         touching, surface = inner.face(direction, side), outer.face(direction, side).inside
         for corner in (touching.low, touching.high):

@@ -32,7 +32,7 @@ class Cylinder:
     >>> hinge = pt.Support(0.0)
     >>> arm = replace(boom.segments[0], supports=(hinge,))
     >>> luffed = replace(boom, segments=(arm, boom.segments[1]), cylinders=(jack,))
-    >>> bool((pt.BeamElements(luffed, laws).system().omega2[:2] > 0.0).all())
+    >>> bool((pt.BeamElements(luffed).system().omega2[:2] > 0.0).all())
     True
 
     Args:

@@ -29,18 +29,18 @@ def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
         return
     near = SAME_PLACE * outer.length
     height, width = room(joint, outer, inner)
-    if height < 2.0 * joint.clearance - near or width < 0.0:
+    if height < joint.play - near or width < 0.0:
         raise BoomError(
             f"{where}.play",
             f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
-            f"{width:.6g} m of width are free, and a play of {2.0 * joint.clearance:.6g} m is "
+            f"{width:.6g} m of width are free, and a play of {joint.play:.6g} m is "
             "asked for; make the inner section or the play smaller",
         )
-    if joint.lateral_clearance is not None and width < 2.0 * joint.lateral_clearance - near:
+    if joint.lateral_play is not None and width < joint.lateral_play - near:
         raise BoomError(
             f"{where}.lateral_play",
             f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
-            f"a lateral play of {2.0 * joint.lateral_clearance:.6g} m is asked for; make the inner "
+            f"a lateral play of {joint.lateral_play:.6g} m is asked for; make the inner "
             "section or the lateral play smaller",
         )
 
@@ -55,12 +55,12 @@ def check_drawn_room(where: str, joint: Joint, outer: Segment, inner: Segment, w
         return
     near = SAME_PLACE * outer.length
     height, width = room(joint, outer, inner, way)
-    if height < 2.0 * joint.clearance - near or width < 0.0:
+    if height < joint.play - near or width < 0.0:
         raise BoomError(
             where,
             f"draws {inner.name!r} by {way:g} m to where it does not fit in {outer.name!r}: "
             f"{height:.6g} m of height and {width:.6g} m of width are free there, and a play of "
-            f"{2.0 * joint.clearance:.6g} m is asked for; make the travel or the taper smaller",
+            f"{joint.play:.6g} m is asked for; make the travel or the taper smaller",
         )
 
 
@@ -72,8 +72,7 @@ def room(joint: Joint, outer: Segment, inner: Segment, way: float = 0.0) -> tupl
     """
     first, last = max(outer.start, inner.start + way), min(outer.end, inner.end + way)
     found = [
-        free_room(outer.section_at(x), inner.section_at(x - way), 2.0 * joint.clearance)
-        for x in (first, last)
+        free_room(outer.section_at(x), inner.section_at(x - way), joint.play) for x in (first, last)
     ]
     heights, widths = zip(*found, strict=True)
     return min(heights), min(widths)

@@ -186,9 +186,9 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
 def _one_way(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
     """The push of the stops that a segment meets from one side."""
     return [
-        np.sign(stop.stiffness_below - stop.stiffness) * bodies[stop.segment].force(stop.x, "z")
+        -stop.sides[0] * bodies[stop.segment].force(stop.x, "z")
         for stop in boom.stops
-        if 0.0 in (stop.stiffness, stop.stiffness_below)
+        if len(stop.sides) == 1
     ]
 
 
@@ -211,7 +211,7 @@ def _always(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
             if boom.spatial:
                 yield inner.torque(x) - outer.torque(x)
     for stop in boom.stops:
-        if stop.stiffness > 0.0 and stop.stiffness_below > 0.0:
+        if len(stop.sides) == 2:
             yield bodies[stop.segment].force(stop.x, "z")
 
 

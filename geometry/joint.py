@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import Any, Literal
 
 from geometry.drive import Drive
+from geometry.fault import BoomError
 from geometry.section import Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
@@ -52,7 +53,7 @@ class SlidePad(PadSize):
     Args:
         side: on which wall of the inner segment.
         stiffness: beside which those of the same side share its force, in N/m.
-        shim: in m by which it stands out beyond the joint's clearance.
+        shim: in m by which it stands out into the joint's play.
     """
 
     side: PadSide = "below"
@@ -69,14 +70,21 @@ class Joint:
     """Where an inner segment slides in an outer one, touching it at the stations.
 
     >>> (joint,) = boom.joints
-    >>> boom.overlap(joint)
-    (6.0, 8.0)
+    >>> boom.overlap(joint), joint.clearances("z")
+    ((6.0, 8.0), (0.005, 0.005))
 
     Args:
         outer, inner: positions of the two in ``Boom.segments``.
         stations: x at which they may touch, rising.
-        clearance: Δ in m each way, half the play.
-        lateral_clearance: Δ along y in m each way; None in a flat boom.
+        play: 2Δ in m, the clearance above and below together.
+        contact: what presses at each station across the play, a
+            :class:`dynamics.contact.ContactLaw`; a tied joint needs none.
+        lateral_play: the play along y in m; None in a flat boom.
+        lateral_contact: what presses along y; as ``contact`` unless given.
+        play_above, lateral_play_right: the part of a play in m that is there; half of it unless
+            given.
+        interference, lateral_interference: by how much shims press from both sides together in m,
+            where there is no play.
         friction: μ of (28), and of (10) and (11) in space.
         normal_forces: N of (28) in N, one for each station; empty in space, where what presses
             is the contact force of the other plane.
@@ -95,8 +103,15 @@ class Joint:
     outer: int
     inner: int
     stations: tuple[float, ...]
-    clearance: float
-    lateral_clearance: float | None = None
+    play: float
+    contact: Any = None
+    _: KW_ONLY
+    lateral_play: float | None = None
+    lateral_contact: Any = None
+    play_above: float | None = None
+    lateral_play_right: float | None = None
+    interference: float = 0.0
+    lateral_interference: float = 0.0
     friction: float = 0.0
     normal_forces: tuple[float, ...] = ()
     tied: bool = False
@@ -106,6 +121,30 @@ class Joint:
     dashpot: float = 0.0
     locked_at: float | None = None
     drive: Drive | None = None
+
+    def clearances(self, direction: Direction) -> tuple[float, float]:
+        """Above and below in m, along y right and left; negative where shims press."""
+        if direction == "z":
+            play, first, pressed = self.play, self.play_above, self.interference
+        else:
+            assert self.lateral_play is not None
+            play, first = self.lateral_play, self.lateral_play_right
+            pressed = self.lateral_interference
+        first = 0.5 * play if first is None else first
+        return first - 0.5 * pressed, play - first - 0.5 * pressed
+
+    def law(self, direction: Direction) -> Any:
+        """Return what presses at each station along a direction, across its clearances.
+
+        Raises:
+            BoomError: the joint has no contact.
+        """
+        law = (self.lateral_contact or self.contact) if direction == "y" else self.contact
+        if law is None:
+            raise BoomError(
+                "joint.contact", "missing; give a contact law, or tie the segments of the joint"
+            )
+        return law.behind(*self.clearances(direction))
 
     @property
     def padded(self) -> bool:
@@ -134,25 +173,33 @@ class Joint:
 class Stop:
     """A rest on the ground that a segment meets when it deflects along z.
 
-    >>> rest = pt.Stop(1, 14.0, 0.1, stiffness=0.0, stiffness_below=1e6, exponent=1.0)
+    >>> rest = pt.Stop(1, 14.0, play=0.2, contact=pt.PowerContact(1e6, exponent=1.0).lower())
     >>> replace(boom, stops=(rest,)).stations[-1]
     (14.0, 'z')
 
     Args:
         segment: position in ``Boom.segments``.
         x: m.
-        clearance: Δ in m each way.
-        stiffness: k of (4) in N/mⁿ against a deflection upwards; 0 where nothing is above.
-        stiffness_below: k against a deflection downwards.
-        exponent: n of (4).
+        play: 2Δ in m, half of it each way.
+        contact: what presses across the play, a :class:`dynamics.contact.ContactLaw`; one-sided
+            where the ground is on one side alone.
         contact_length: of the segment's corners that it presses, in m; a fifth of the height of
             its box unless given.
     """
 
     segment: int
     x: float
-    clearance: float
-    stiffness: float
-    stiffness_below: float
-    exponent: float
+    play: float
+    contact: Any
     contact_length: float | None = None
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """1 where it stops a deflection upwards, −1 where one downwards."""
+        both: tuple[Side, Side] = (1, -1)
+        return tuple(side for side in both if self.contact.one_sided(side) is not None)
+
+    @property
+    def law(self) -> Any:
+        """What presses, across the play."""
+        return self.contact.behind(0.5 * self.play)

@@ -47,7 +47,7 @@ class Load:
     """A force on a segment's axis that follows a history.
 
     >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
-    >>> len(pt.BeamElements(replace(boom, loads=(gust,)), laws).system().excitations)
+    >>> len(pt.BeamElements(replace(boom, loads=(gust,))).system().excitations)
     1
 
     Args:

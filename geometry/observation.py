@@ -47,7 +47,7 @@ class Observation:
     """Something that every model records.
 
     >>> seat = pt.Observation("seat", segment=1, x=10.0, quantity="velocity")
-    >>> system = pt.BeamElements(replace(boom, observations=(seat,)), laws).system()
+    >>> system = pt.BeamElements(replace(boom, observations=(seat,))).system()
     >>> system.observers["seat"].unit
     'm/s'
 

@@ -55,7 +55,7 @@ class PointMass:
 
     >>> arm = replace(boom.segments[0], masses=(pt.PointMass(x=8.0, mass=200.0),))
     >>> heavier = replace(boom, segments=(arm, boom.segments[1]))
-    >>> masses = [pt.BeamElements(b, laws).system().row_masses[0] for b in (boom, heavier)]
+    >>> masses = [pt.BeamElements(b).system().row_masses[0] for b in (boom, heavier)]
     >>> bool(masses[1] > masses[0])
     True
     """

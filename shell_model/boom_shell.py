@@ -12,7 +12,6 @@ from time import perf_counter
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.contact import ContactLaw
 from dynamics.gap_builder import GapBuilder, Observed
 from geometry.arrays import Array
 from geometry.axial import pin_moments
@@ -170,7 +169,6 @@ class BoomShell:
 
 def assemble_boom(
     boom: Boom,
-    laws: Mapping[Direction, Sequence[ContactLaw]],
     options: ShellOptions,
     comm: MPI.Comm,
     stages: Stages | None = None,
@@ -179,7 +177,6 @@ def assemble_boom(
 
     Args:
         boom: all its segments with sections.
-        laws: along each direction, one for each joint.
         options: mesh and contact points.
         comm: the ranks that share the work.
         stages: told how far it is.
@@ -190,7 +187,7 @@ def assemble_boom(
     watch = stages or Stages()
     shells = assemble_segments(boom, options, comm, watch)
     with watch.stage("rows"):
-        touching = Touching.of(boom, shells, laws, options.contact_line, options.surface)
+        touching = Touching.of(boom, shells, options.contact_line, options.surface)
         return BoomShell(
             comm=comm,
             shells=shells,

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -11,11 +11,10 @@ import numpy as np
 import xarray as xr
 from mpi4py import MPI
 
-from dynamics.contact import ContactLaw
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction
+from geometry.boom import Boom
 from geometry.far_field import FarField
 from geometry.plating import PlatedMesh
 from shell_model.boom_shell import BoomShell, ShellOptions, Stages, assemble_boom
@@ -74,33 +73,28 @@ class ReducedShell:
 
 def reduce_boom(
     boom: Boom,
-    laws: Sequence[ContactLaw],
     options: ShellOptions,
     comm: MPI.Comm,
     progress: Callable[[str, float], None] | None = None,
-    lateral_laws: Sequence[ContactLaw] = (),
 ) -> ReducedShell:
     """Mesh, assemble and reduce every segment. Collective.
 
     Args:
         boom: all its segments with sections.
-        laws: one for each joint, along z.
         options: mesh, contact points, reduction.
         comm: the ranks that share the work; the result is the same on each.
         progress: called with the stage and the part of it that is done.
-        lateral_laws: one for each joint, along y; none for a flat boom.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.
     """
     stages = Stages(progress)
-    planes: Mapping[Direction, Sequence[ContactLaw]] = {"z": laws, "y": lateral_laws}
-    full = assemble_boom(boom, planes, options, comm, stages)
+    full = assemble_boom(boom, options, comm, stages)
     found = (_telescoping if boom.driven else _resting)(boom, full, options, stages)
     with stages.stage("fields"):
         fields = gather_fields(boom, full.shells, found.segments, found.coordinates, found.system)
     with stages.stage("mesh error"):
-        coarse = assemble_boom(boom, planes, options.coarser, comm)
+        coarse = assemble_boom(boom, options.coarser, comm)
         local, coarse_local = (
             local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
             for whole, rows in (

@@ -9,14 +9,12 @@ the lateral lever of a contact goes with the play, and stays what it is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
 from dynamics.excitation import Excitation, Released, Step, Thrown
-from geometry.boom import Boom, Direction, Joint, Segment
+from geometry.boom import Boom, Joint, Segment
 from geometry.load import Load
 from shell_model.reduced_shell import ReducedShell
 
@@ -25,7 +23,10 @@ def standard_boom(boom: Boom) -> Boom:
     """The boom under unit loads, in the plane without play."""
     joints = boom.joints
     if not boom.spatial:
-        joints = tuple(replace(joint, clearance=0.0) for joint in joints)
+        joints = tuple(
+            one if _shimmed(one) else replace(one, play=0.0, play_above=None, interference=0.0)
+            for one in joints
+        )
     return replace(
         boom,
         segments=tuple(map(_unit_segment, boom.segments)),
@@ -34,34 +35,23 @@ def standard_boom(boom: Boom) -> Boom:
     )
 
 
-def standard_laws(boom: Boom, laws: Sequence[ContactLaw]) -> list[ContactLaw]:
-    """The laws of a boom's joints without play; as they are where shims take some of it."""
-    return [
-        law if _shimmed(joint) else law.behind(0.0)
-        for joint, law in zip(boom.joints, laws, strict=False)
-    ]
-
-
-def with_plays_and_loads(
-    shell: ReducedShell, boom: Boom, laws: Mapping[Direction, Sequence[ContactLaw]]
-) -> ReducedShell:
-    """The shell of a boom from that of its :func:`standard_boom` under :func:`standard_laws`."""
+def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
+    """The shell of a boom from that of its :func:`standard_boom`."""
     system = shell.system
     more = [
-        0.0 if _shimmed(joint) else law.clearance
-        for direction in boom.directions
-        for joint, law in zip(boom.joints, laws[direction], strict=True)
-        if not joint.tied
+        joint.clearances("z")
+        for joint in boom.joints
+        if not (joint.tied or boom.spatial or _shimmed(joint))
         for _ in joint.stations
     ]
-    # Behind those of the joints come those of stops, which keep theirs.
-    more += [0.0] * (len(system.stations) - len(more))
+    # In space, and behind the joints at stops, rows have their clearances already.
+    more += [(0.0, 0.0)] * (len(system.stations) - len(more))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _changing(load)]
     opened = replace(
         system,
         laws=[
-            law.behind(law.clearance + more[station]) if more[station] else law
+            law.behind(*more[station]) if any(more[station]) else law
             for law, station in zip(system.laws, system.station_of_row.tolist(), strict=True)
         ],
         load=system.load - shell.own_loads.sum(axis=0) + factors @ shell.own_loads,

@@ -234,7 +234,7 @@ def blow(outer: Quarter, inner: Quarter, wall: float) -> Blow:
         omega2=np.concatenate([part.omega2 for part in coordinates]),
         load=np.zeros(velocity.size),
         rows=np.concatenate([-outer.rows["head"] @ head, inner.rows["struck"] @ struck])[None],
-        laws=[PowerContact(CONTACT * wall, 1.0, CLEARANCE).upper()],
+        laws=[PowerContact(CONTACT * wall, 1.0).upper().behind(CLEARANCE)],
         station_of_row=np.array([0]),
         stations=[HEAD],
         observers={"tip": Observer(np.concatenate([still, inner.rows["tip"] @ struck]))},

@@ -71,7 +71,7 @@ class PressedBoom:
         gaps = self.system.rows @ self.rest
         laws = list(zip(self.system.laws, gaps, strict=True))
         pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]
-        deep = np.array([abs(gap) - law.clearance for law, gap in laws])
+        deep = np.array([abs(gap) - law.onset(np.copysign(1.0, gap)) for law, gap in laws])
         shape, period = self.shapes[:, mode], 2.0 * np.pi / self.omega[mode]
         reach = np.abs(self.system.rows @ shape)
         run = FixedStep(period / STEPS)(

@@ -18,7 +18,7 @@ from mpi4py import MPI
 
 from dynamics.energy import ENERGY_BOUND
 from geometry.arrays import Array
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom, joined
 from runs.case.schema import Case
 from runs.pipeline.models import Plan
 from runs.report.tables import Table
@@ -85,7 +85,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
     case = lasting(case, sizes.duration)
     boom, output_step = build_boom(case), case.time.output_step
     model = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
-    laws = contact_laws(case, model)
+    seen = joined(case, boom, model).boom
     krylov = KrylovOptions(sizes.shifts, sizes.moments)
     options = ShellOptions(sizes.mesh, contact_line=model.contact_line)
     finer = replace(options, krylov=krylov)
@@ -94,7 +94,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
         return float(np.abs(forces).sum()) * output_step
 
     tell("the reduced shell")
-    larger = reduce_boom(boom, laws, finer, MPI.COMM_SELF).system
+    larger = reduce_boom(seen, finer, MPI.COMM_SELF).system
     found = []
     for how, system in (
         ("reduced", gap_system(case, boom, model)),
@@ -108,7 +108,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, tell: Tell) -> lis
         tip, pushed = np.asarray(data["tip"].values), impulse(data["contact_force"].values)
         taken, residual = float(data.attrs["step"]), motion.energy_residual
         found.append(Run(how, system.num_modes, taken, tip, pushed, residual, seconds))
-    full = assemble_boom(boom, {"z": laws}, options, MPI.COMM_SELF)
+    full = assemble_boom(seen, options, MPI.COMM_SELF)
     for step in steps:
         tell(f"the unreduced shell, step {step:g} s")
         start = perf_counter()

@@ -69,18 +69,18 @@ class Model:
 def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem, float | None]:
     """Beam elements of either theory, without rotary inertia."""
     models = finite_element_segments(boom, ELEMENT, theory, rotary_inertia=False)
-    return gap_system(boom, models, ()), critical_factor(boom, models)
+    return gap_system(boom, models), critical_factor(boom, models)
 
 
 def series(boom: Boom) -> tuple[GapSystem, float | None]:
     """The complete series."""
     models = kantorovich_segments(boom, [TERMS], "complete", rotary_inertia=False)
-    return gap_system(boom, models, ()), critical_factor(boom, models)
+    return gap_system(boom, models), critical_factor(boom, models)
 
 
 def shell(boom: Boom) -> tuple[GapSystem, float | None]:
     """The box of plates, reduced."""
-    reduced = reduce_boom(boom, [], ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
+    reduced = reduce_boom(boom, ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
     return reduced.system, reduced.critical_factor
 
 

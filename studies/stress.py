@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.contact import ContactLaw
 from geometry.boom import Boom
 from geometry.contact_places import pads
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom, joined
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
@@ -80,15 +79,14 @@ class Pressed:
         return cls(boom, ShellStress.still(shell.mesh, modes))
 
     @classmethod
-    def reduced(cls, boom: Boom, laws: Sequence[ContactLaw], size: float) -> Pressed:
+    def reduced(cls, boom: Boom, size: float) -> Pressed:
         """The same state from the coordinates that a run moves in.
 
         Args:
             boom: with two stations.
-            laws: of its joint.
             size: of the mesh in m.
         """
-        shell = reduce_boom(boom, laws, ShellOptions(size), MPI.COMM_SELF)
+        shell = reduce_boom(boom, ShellOptions(size), MPI.COMM_SELF)
         system, fields = shell.system, shell.fields
         assert fields is not None
         needed = contact_forces(boom)
@@ -194,8 +192,8 @@ def study(tell: Tell, sizes: Sizes | None = None) -> Iterator[Piece]:
         tell(f"mesh of {size:g} m")
         pressed.append(Pressed.on_mesh(boom, size))
     tell(f"mesh of {sizes.default:g} m, reduced")
-    laws = contact_laws(case, model_of(case, "shell"))
-    reduced = Pressed.reduced(boom, laws, sizes.default)
+    seen = joined(case, boom, model_of(case, "shell")).boom
+    reduced = Pressed.reduced(seen, sizes.default)
     near = stresses(pressed, sizes)
     title = "Von Mises stress where the inner segment is pressed"
     yield refined_table("stress", title, list(near.values()), "{:g} m", (NOTE,))

@@ -160,7 +160,8 @@ def _swinging(tell: Tell) -> Iterator[Proof]:
     )
     held = replace(boom, section=None, supports=(Support(0.0, "clamped"),))
     fly = replace(held, name="fly", start=LENGTH - 1.0, supports=())
-    joint = Joint(0, 1, (LENGTH - 0.75, LENGTH - 0.25), clearance=0.0, dashpot=DASHPOT)
+    both_ways = PowerContact(stiffness, exponent=1.0)
+    joint = Joint(0, 1, (LENGTH - 0.75, LENGTH - 0.25), 0.0, both_ways, dashpot=DASHPOT)
     for what, stands, arm, effective in (
         ("cylinder", Boom((boom,), (), cylinders=(_DRAGGED,)), lever(_DRAGGED), inertia),
         ("support", Boom((elastic,), ()), 2.5, inertia),
@@ -191,16 +192,15 @@ def _segment() -> Segment:
 
 
 def _rigid(boom: Boom) -> GapSystem:
-    both_ways = PowerContact(CYLINDER.stiffness, exponent=1.0, clearance=0.0)
-    return gap_system(boom, [rigid_segment(one) for one in boom.segments], [both_ways])
+    return gap_system(boom, [rigid_segment(one) for one in boom.segments])
 
 
 def _elements(boom: Boom, theory: Theory = "euler-bernoulli") -> GapSystem:
-    return gap_system(boom, finite_element_segments(boom, 0.5, theory, rotary_inertia=True), [])
+    return gap_system(boom, finite_element_segments(boom, 0.5, theory, rotary_inertia=True))
 
 
 def _series(boom: Boom) -> GapSystem:
-    return gap_system(boom, kantorovich_segments(boom, [24], "complete", rotary_inertia=True), [])
+    return gap_system(boom, kantorovich_segments(boom, [24], "complete", rotary_inertia=True))
 
 
 def _shell(boom: Boom) -> GapSystem:
@@ -209,7 +209,7 @@ def _shell(boom: Boom) -> GapSystem:
     from shell_model.boom_shell import ShellOptions
     from shell_model.reduced_shell import reduce_boom
 
-    return reduce_boom(boom, [], ShellOptions(0.2), MPI.COMM_SELF).system
+    return reduce_boom(boom, ShellOptions(0.2), MPI.COMM_SELF).system
 
 
 _MODELS: Mapping[str, Callable[[Boom], GapSystem]] = {

@@ -98,12 +98,7 @@ def paper_boom(steel: Material) -> Boom:
         section=infer_inner_section(55.07 / steel.density, 2.1829e-4, outer_box, 7.0e-3),
         load=55.07,
     )
-    joint = Joint(
-        outer=0,
-        inner=1,
-        stations=(9.0, 10.0),
-        clearance=7.0e-3,
-    )
+    joint = Joint(outer=0, inner=1, stations=(9.0, 10.0), play=0.014)
     return Boom((outer, inner), (joint,))
 
 
@@ -114,14 +109,14 @@ def spatial_boom(paper_boom: Boom) -> Boom:
     (joint,) = paper_boom.joints
     return Boom(
         tuple(in_space(segment) for segment in paper_boom.segments),
-        (replace(joint, lateral_clearance=5.0e-3),),
+        (replace(joint, lateral_play=0.01),),
     )
 
 
 @pytest.fixture(scope="session")
 def paper_law() -> PowerContact:
     """(4) with the paper's k, n and Δ."""
-    return PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
+    return PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
 
 
 @pytest.fixture

@@ -39,7 +39,7 @@ def told() -> str:
         omega2=np.linspace(0.0, 300.0, 12) ** 2,
         load=random.normal(size=12),
         rows=rows,
-        laws=[PowerContact(1.0e6, 2.0, 1.0e-3)] * 2,
+        laws=[PowerContact(1.0e6, 2.0).behind(1.0e-3)] * 2,
         station_of_row=np.array([0, 1]),
         stations=[0.0, 1.0],
         observers={"tip": Observer(rows[0])},

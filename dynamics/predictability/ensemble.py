@@ -81,11 +81,12 @@ def check_varied(motion: Motion, vary: Vary) -> None:
         ValueError: they are.
     """
     system = motion.system
-    sides = [law.one_sided(side) for law in system.laws for side in (1, -1)]
     loads = [system.load, *(x.load for x in system.excitations)]
     varied: dict[Vary, bool] = {
         "load": any(load.any() for load in loads),
-        "clearance": any(law is not None and law.clearance > 0.0 for law in sides),
+        "clearance": any(
+            0.0 < law.onset(side) < np.inf for law in system.laws for side in (1.0, -1.0)
+        ),
         "velocity": bool(motion.velocity.any()),
     }
     if not varied[vary]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from scipy.special import cosdg, sindg
 
+from dynamics.contact import PowerContact
 from dynamics.excitation import History, Ramp, Released, Sine, Step, Table, Thrown
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, BoomError, Cylinder, Direction, Segment, Stop, check_place
@@ -230,12 +231,10 @@ def stops(case: Case, segments: Sequence[Segment]) -> tuple[Stop, ...]:
         Stop(
             segment=index,
             x=at(table.x, segments[index].start, segments[index].end),
-            clearance=0.5 * table.play,
-            stiffness=table.stiffness,
-            stiffness_below=(
-                table.stiffness if table.stiffness_below is None else table.stiffness_below
+            play=table.play,
+            contact=PowerContact(
+                table.stiffness, table.exponent, stiffness_below=table.stiffness_below
             ),
-            exponent=table.exponent,
             contact_length=table.contact_length,
         )
         for number, table in enumerate(case.stops, start=1)

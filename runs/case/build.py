@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
-from dynamics.contact import ContactLaw
 from dynamics.drive.stick_slip import FOLLOWED
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import Released, Thrown
@@ -16,7 +16,6 @@ from geometry.boom import (
     BoomError,
     Collar,
     Diaphragm,
-    Direction,
     Joint,
     Lateral,
     Material,
@@ -99,7 +98,7 @@ def check_varied(case: Case, boom: Boom) -> None:
             "no load acts from t = 0 on, of which members change a part; give vary = 'clearance', "
             "or leave the ensemble out",
         )
-    plays = [joint.clearance for joint in boom.joints] + [stop.clearance for stop in boom.stops]
+    plays = [joint.play for joint in boom.joints] + [stop.play for stop in boom.stops]
     if vary == "clearance" and not any(plays):
         raise BoomError(
             "ensemble.vary",
@@ -133,23 +132,21 @@ def _observations(case: Case, segments: Sequence[Segment]) -> tuple[Observation,
 
 
 def joined(case: Case, boom: Boom, model: Model) -> Joined:
-    """The boom of a case with the contacts of its joints, as a model sees them."""
-    lateral = contact_laws(case, model, "y") if boom.spatial else []
-    return Joined(boom, contact_laws(case, model), lateral)
-
-
-def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[ContactLaw]:
-    """The contact law of each joint along one direction, as a model sees it.
+    """The boom of a case as a model sees it: with the model's own contact, if it has one.
 
     Raises:
         BoomError: what shims press follows no such law.
     """
-    own, laws = model.contact, []
-    for number, joint in enumerate(case.joints, start=1):
+    own = model.contact
+    if own is not None:
+        along_z, along_y = own.law("z"), own.law("y")
+        joints = (replace(j, contact=along_z, lateral_contact=along_y) for j in boom.joints)
+        boom = replace(boom, joints=tuple(joints))
+    for number, joint in enumerate(boom.joints, start=1):
         try:
-            law = joint.law(direction) if own is None else own.law(joint, direction)
-            for pad in joint.slide_pads:
-                law.behind(law.clearance - pad.shim)
+            for law in (joint.law(direction) for direction in boom.directions):
+                for pad in joint.pads:
+                    law.behind(-pad.shim)
         except ValueError:
             key = "interference" if not joint.pads else "pads"
             raise BoomError(
@@ -157,8 +154,7 @@ def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[C
                 f"what presses from both sides of a joint needs a law of the exponent 1, and model "
                 f"{model.name!r} has another; give it one, or leave interference out",
             ) from None
-        laws.append(law)
-    return laws
+    return Joined(boom)
 
 
 def check_names(where: str, names: Sequence[str]) -> None:
@@ -209,8 +205,14 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         outer=outer,
         inner=inner,
         stations=tuple(at(place, tail, head) for place in table.stations),
-        clearance=0.5 * table.play,
-        lateral_clearance=None if table.lateral_play is None else 0.5 * table.lateral_play,
+        play=table.play,
+        contact=table.law("z"),
+        lateral_play=table.lateral_play,
+        lateral_contact=None if table.lateral_play is None else table.law("y"),
+        play_above=table.play_above,
+        lateral_play_right=table.lateral_play_right,
+        interference=table.interference,
+        lateral_interference=table.lateral_interference,
         friction=table.friction,
         normal_forces=table.normal_forces,
         tied=table.tied,
@@ -430,7 +432,7 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
             outer = sections[joint.outer]
             if sections[joint.inner] is None and outer is not None:
                 _check_plain(case, joint)
-                sections[joint.inner] = _infer(case, joint.inner, (outer, joint.clearance))
+                sections[joint.inner] = _infer(case, joint.inner, (outer, 0.5 * joint.play))
     return sections
 
 

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 # sheet of PolyJARID; dry it has 3.2e9.
 POLYAMIDE = 1.9e9
 
+BOTH: tuple[Side, Side] = (1, -1)
+
 # Pads that press together on one side of a station, one beside each web.
 PADS_OF_SIDE = 2
 
@@ -51,9 +53,7 @@ PAD_WITHOUT_STIFFNESS = (
 _OF_POWER = ("stiffness", "stiffness_below", "exponent")
 
 
-def table_law(
-    points: Sequence[tuple[float, float]], clearance: float = 0.0, damping: float = 0.0
-) -> TableContact:
+def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
     """A contact that follows pairs of a penetration in m and a force in N.
 
     Raises:
@@ -62,7 +62,7 @@ def table_law(
     from dynamics.contact_table import TableContact
 
     depths, forces = zip(*points, strict=True)
-    return TableContact(depths, forces, clearance, damping)
+    return TableContact(depths, forces, damping)
 
 
 def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
@@ -273,38 +273,17 @@ class JointTable(Table):
         along_z = 1.0 if self.thick_pads and not self.stiffness else self.exponent
         return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
-    def clearances(self, direction: Direction) -> tuple[float, float]:
-        """Above and below in m, along y left and right; negative where shims press."""
-        if direction == "z":
-            play, first, pressed = self.play, self.play_above, self.interference
-        else:
-            assert self.lateral_play is not None
-            play, first = self.lateral_play, self.lateral_play_right
-            pressed = self.lateral_interference
-        first = 0.5 * play if first is None else first
-        return first - 0.5 * pressed, play - first - 0.5 * pressed
-
-    def law(self, direction: Direction) -> ContactLaw:
-        """The contact law of each station along z, or in space along y.
-
-        Raises:
-            ValueError: no law can press from both sides like that.
-        """
+    def law(self, direction: Direction) -> ContactLaw | None:
+        """The contact law of each station along z, or in space along y; None where no pad is."""
         if self.pads:
-            law = _law(self, self._of_side(direction, 1), self._of_side(direction, -1), 1.0)
-            return _behind(law, self.clearances(direction))
+            above, below = (self._of_side(direction, side) for side in BOTH)
+            return _law(self, above, below, 1.0) if above or below else None
         of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None
         exponent = self.exponent if of_pads is None or self.stiffness else 1.0
         if direction == "z":
-            law = _law(self, self.stiffness or of_pads, self.stiffness_below, exponent)
-        else:
-            law = _law(
-                self,
-                self.lateral_stiffness or self.stiffness or of_pads,
-                None,
-                self.lateral_exponent or exponent,
-            )
-        return _behind(law, self.clearances(direction))
+            return _law(self, self.stiffness or of_pads, self.stiffness_below, exponent)
+        stiffness = self.lateral_stiffness or self.stiffness or of_pads
+        return _law(self, stiffness, None, self.lateral_exponent or exponent)
 
     def _of_side(self, direction: Direction, side: Side) -> float:
         """Stiffness of all pads there in N/m."""
@@ -339,11 +318,10 @@ class ContactTable(Table):
     def exponent_of(self, key: str) -> float:
         return self.exponent or 2.0
 
-    def law(self, joint: JointTable, direction: Direction) -> ContactLaw:
-        """As that of a joint, with its play."""
+    def law(self, direction: Direction) -> ContactLaw:
+        """As that of a joint."""
         below = self.stiffness_below if direction == "z" else None
-        law = _law(self, self.stiffness, below, self.exponent)
-        return _behind(law, joint.clearances(direction))
+        return _law(self, self.stiffness, below, self.exponent)
 
 
 def _law(
@@ -352,7 +330,6 @@ def _law(
     below: float | None,
     exponent: float | None,
 ) -> ContactLaw:
-    """Without clearance."""
     from dynamics.contact import PowerContact, restitution_damping
 
     blow = table.restitution
@@ -360,12 +337,4 @@ def _law(
     if table.force_table is not None and stiffness is None:
         return table_law(table.force_table, damping=damping)
     assert stiffness is not None
-    return PowerContact(stiffness, exponent or 2.0, 0.0, below, damping)
-
-
-def _behind(law: ContactLaw, clearances: tuple[float, float]) -> ContactLaw:
-    """A law behind a clearance in m above, and one below."""
-    from dynamics.sided_contact import SidedContact
-
-    above, below = (law.behind(clearance) for clearance in clearances)
-    return above if above == below else SidedContact(above, below)
+    return PowerContact(stiffness, exponent or 2.0, stiffness_below=below, damping=damping)

@@ -16,10 +16,10 @@ import numpy as np
 from scipy.stats import t as student
 
 from geometry.arrays import Array, Mask
-from runs.case.build import contact_laws
+from runs.case.build import joined
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
-from runs.case.schema import Case, Model
+from runs.case.schema import Model
 from runs.paper.parting import apart_at_the_end, peaks_apart
 from runs.paper.questions import Lacking, Run, options
 from runs.paper.statements import STATEMENTS
@@ -315,7 +315,7 @@ def _s9(run: Run) -> Finding:
         (abs(run.peak_height(a) / run.peak_height(b) - 1.0), a.name, b.name)
         for a, b in combinations(untied, 2)
         if options(a, "contact", "step") == options(b, "contact", "step")
-        and _exponents(run.case, a) != _exponents(run.case, b)
+        and _exponents(run, a) != _exponents(run, b)
     ]
     if not differences:
         raise Lacking("No two models of the case differ in the contact law alone.")
@@ -459,6 +459,7 @@ def _range(curve: Array) -> float:
     return span
 
 
-def _exponents(case: Case, model: Model) -> list[set[float]]:
+def _exponents(run: Run, model: Model) -> list[set[float]]:
     """n of each joint, as the model sees it."""
-    return [{term.exponent for term in law.terms} for law in contact_laws(case, model)]
+    joints = joined(run.case, run.results.boom, model).boom.joints
+    return [{term.exponent for term in joint.contact.terms} for joint in joints]

@@ -20,7 +20,7 @@ from runs.case.pulled import pulled_by, with_pulled
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.at_rest import drawn_positions, instants, positions
-from runs.pipeline.statics import laws, statics
+from runs.pipeline.statics import statics, with_play_seen
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,7 +82,7 @@ def slippings(case: Case, boom: Boom) -> Iterator[Slipping]:
     joints = pulled_by(case, boom)
     if not joints or statics(case, boom) is None:
         return
-    system = with_pulled(drawn_out(boom, *laws(case, boom)), case, boom)
+    system = with_pulled(drawn_out(with_play_seen(case, boom)), case, boom)
     travels = (travel for travel in system.travels if travel.pulled is not None)
     for (number, pulled), travel in zip(joints.items(), travels, strict=True):
         joint = boom.joints[number]

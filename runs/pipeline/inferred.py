@@ -19,8 +19,7 @@ from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.typography import TO_KILO, TO_MEGA
 from runs.case import actions
-from runs.case.build import contact_laws
-from runs.case.contact import JointTable
+from runs.case.build import joined
 from runs.case.declared import Declared
 from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
@@ -53,7 +52,7 @@ def print_inferred(declared: Declared, console: Console) -> None:
     drives = list(slippings(case, boom))
     for line in (*drive_lines(boom, case.system), *slip_lines(drives, case.system)):
         console.print(line, markup=False, highlight=False)
-    console.print(_models(case))
+    console.print(_models(case, boom))
     if boom.compressed:
         print_axial_forces(declared, console)
     ratios = _damping_ratios(preview)
@@ -116,7 +115,7 @@ def _joints(case: Case, boom: Boom) -> Table:
     system, m = case.system, case.system.label("m")
     lengths = f"overlap ({m})", f"stations ({m})"
     table = Table("joint", *lengths, "clearance (mm)", "free (mm)", "friction")
-    for given, joint in zip(case.joints, boom.joints, strict=True):
+    for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         free = "unknown"
         if outer.section is not None and inner.section is not None:
@@ -126,20 +125,20 @@ def _joints(case: Case, boom: Boom) -> Table:
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
-            "tied" if joint.tied else ", ".join(_clearances(given)),
+            "tied" if joint.tied else ", ".join(_clearances(joint)),
             free,
             _friction(joint),
         )
     return table
 
 
-def _clearances(given: JointTable) -> Iterator[str]:
+def _clearances(joint: Joint) -> Iterator[str]:
     """In mm, along z, and in space along y."""
     sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
     for direction, names in sides.items():
-        if direction == "y" and given.lateral_play is None:
+        if direction == "y" and joint.lateral_play is None:
             return
-        both = [1e3 * clearance for clearance in given.clearances(direction)]
+        both = [1e3 * clearance for clearance in joint.clearances(direction)]
         parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
         alike = f"± {both[0]:g}" + (" to the sides" if direction == "y" else "")
         yield alike if both[0] == both[1] else ", ".join(parts)
@@ -152,10 +151,10 @@ def _friction(joint: Joint) -> str:
     return f"{joint.friction:g}, pressed by {f'{forces} N' if forces else 'the contacts'}"
 
 
-def _models(case: Case) -> Table:
+def _models(case: Case, boom: Boom) -> Table:
     table = Table("model", "kind", "", "contact (k in N/mⁿ)")
     for model in case.models:
-        laws = {str(law) for law in contact_laws(case, model)}
+        laws = {str(joint.contact) for joint in joined(case, boom, model).boom.joints}
         contact = "tied" if model.play_free else "; ".join(sorted(laws))
         table.add_row(model.name, model.kind, model.describe(), contact)
     return table

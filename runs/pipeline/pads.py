@@ -15,7 +15,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Direction, Joint
 from geometry.joint import SIDES
 from geometry.section import Side
-from runs.case.build import contact_laws
+from runs.case.build import joined
 from runs.case.contact import PADS_OF_SIDE, JointTable, PadTable, SlidePadTable
 from runs.case.schema import Case, Model
 
@@ -57,11 +57,12 @@ def pressed_pads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PressedPa
         return
     with_play = (model for model in case.models if not model.play_free)
     for model in (model for model in with_play if model.name in data["model"].values):
+        seen = joined(case, boom, model).boom
         station, own = count(), data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([own.min("time").values, own.max("time").values], axis=1)
         for direction in boom.directions:
-            laws = contact_laws(case, model, direction)
-            for table, joint, law in zip(case.joints, boom.joints, laws, strict=True):
+            for table, joint in zip(case.joints, seen.joints, strict=True):
+                law = joint.law(direction)
                 for x in () if joint.tied else joint.stations:
                     pushed = ends[next(station)]
                     if table.pad is not None:
@@ -112,7 +113,7 @@ def _of_each(joint: Joint, direction: Direction, law: ContactLaw, pushed: Array)
         there = law.one_sided(side)
         assert there is not None
         part = there.shared(pad.stiffness / whole)
-        laws.append(part.behind(part.clearance - pad.shim))
+        laws.append(part.behind(-pad.shim))
     if not laws:
         return []
 

@@ -15,7 +15,7 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.segment import Segment
 from runs.case.actions import STANDARD_GRAVITY, across
-from runs.case.build import contact_laws
+from runs.case.build import joined
 from runs.case.schema import Case
 from runs.case.usual import usual_numbers
 
@@ -88,12 +88,11 @@ def _in_vain(case: Case) -> Iterator[str]:
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
     """A contact that gives way more than the inner segment bends is none."""
     for model in (model for model in case.models if not model.play_free):
-        for number, law in enumerate(contact_laws(case, model)):
-            joint = boom.joints[number]
+        for joint in joined(case, boom, model).boom.joints:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * STANDARD_GRAVITY * inner.mass
-            stiffness = law.slope_at(force)
+            stiffness = joint.contact.slope_at(force)
             if stiffness < bending:
                 yield (
                     f"the contacts of {inner.name!r} in {model.name!r} give way by "

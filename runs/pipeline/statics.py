@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,7 +12,6 @@ from rich.console import Console
 from rich.table import Table
 
 from beam_model.statics import Elements, StaticState, handed_on, static_state
-from dynamics.contact import ContactLaw
 from dynamics.damping import pressed_modes
 from dynamics.failure import NUMERICS
 from geometry.axial import on_foot
@@ -69,19 +67,18 @@ def statics(case: Case, boom: Boom) -> Statics | None:
     try:
         with np.errstate(all="ignore"):
             elements = Elements(boom)
-            tied = static_state(boom.play_free, [], [], elements)
+            tied = static_state(boom.play_free, elements)
             if not with_play:
                 return Statics(tied, tied)
-            return Statics(static_state(boom, *laws(case, boom), elements), tied)
+            return Statics(static_state(with_play_seen(case, boom), elements), tied)
     except NUMERICS:
         return None
 
 
-def laws(case: Case, boom: Boom) -> tuple[Sequence[ContactLaw], Sequence[ContactLaw]]:
-    """Of the joints along z and along y, as the first model with play sees them."""
+def with_play_seen(case: Case, boom: Boom) -> Boom:
+    """The boom as the first model with play sees it."""
     with_play = next((model for model in case.models if not model.play_free), case.models[0])
-    seen = joined(case, boom, with_play)
-    return seen.laws, seen.lateral_laws
+    return joined(case, boom, with_play).boom
 
 
 def reactions(state: StaticState) -> list[Reaction]:

@@ -323,9 +323,9 @@ def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     """What has no sign."""
     loose = [joint for joint in boom.joints if not joint.tied]
     if loose:
-        yield f"play {_several(2e3 * joint.clearance for joint in loose)} mm"
+        yield f"play {_several(1e3 * joint.play for joint in loose)} mm"
     if boom.spatial:
-        sideways = (2e3 * (joint.lateral_clearance or 0.0) for joint in loose)
+        sideways = (1e3 * (joint.lateral_play or 0.0) for joint in loose)
         yield f"sideways {_several(sideways)} mm"
     if any(joint.friction for joint in loose):
         yield f"friction {_several(joint.friction for joint in loose)}"

@@ -191,11 +191,11 @@ def _ground_marks(boom: Boom) -> Iterator[Mark]:
                 meaning = f"elastic support, {amount(support.stiffness, 'N/m')}"
                 yield Mark("springs", index, place, edge, ELASTIC, meaning, **upright)
     for stop in boom.stops:
-        grey = {**upright, "color": theme.PLAY_FREE, "clearance": stop.clearance}
-        meaning = f"rest, {2e3 * stop.clearance:g} mm of play"
-        if stop.stiffness_below > 0.0:
+        grey = {**upright, "color": theme.PLAY_FREE, "clearance": 0.5 * stop.play}
+        meaning = f"rest, {1e3 * stop.play:g} mm of play"
+        if -1 in stop.sides:
             yield Mark("stops", stop.segment, (stop.x,), "bottom", REST_BELOW, meaning, **grey)
-        if stop.stiffness > 0.0:
+        if 1 in stop.sides:
             yield Mark("stops", stop.segment, (stop.x,), "top", REST_ABOVE, meaning, **grey)
 
 

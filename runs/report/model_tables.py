@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from dynamics.predictability.horizon import SHARES
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
-from runs.case.build import contact_laws, material_of
+from runs.case.build import joined, material_of
 from runs.case.schema import Case
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
@@ -135,10 +135,14 @@ def step_table(results: Results) -> Table:
 def law_table(results: Results) -> Table | None:
     """Return the contact law of each joint in each model, and the first peak it leads to."""
     found = [
-        (model.name, joint, law)
+        (model.name, joint, seen.contact)
         for model in results.ran
         if not model.play_free
-        for joint, law in zip(results.case.joints, contact_laws(results.case, model), strict=True)
+        for joint, seen in zip(
+            results.case.joints,
+            joined(results.case, results.boom, model).boom.joints,
+            strict=True,
+        )
         if not joint.tied
     ]
     if not found:

@@ -19,7 +19,7 @@ import numpy as np
 from beam_model.calibration import Calibration, stiffened
 from beam_model.component import Component
 from beam_model.finite_element import finite_element_segment
-from dynamics.contact import ContactLaw, PowerContact
+from dynamics.contact import ContactLaw
 from dynamics.excitation import Released, Thrown
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
@@ -133,7 +133,7 @@ def _check(case: Case, joined: Joined) -> None:
         ("segment.supports", any(s.dashpot > 0.0 for one in segments for s in one.supports)),
         ("segment.viscous_damping", any(segment.viscous_damping > 0.0 for segment in segments)),
         ("damping", any(case.damping.model_dump().values())),
-        ("joint.restitution", any(law.damping > 0.0 for law in joined.laws)),
+        ("joint.restitution", any(joint.law("z").damping > 0.0 for joint in boom.joints)),
         ("start", case.start.state != "rest" or bool(case.start.velocity)),
         ("load", any(isinstance(load.history, Released | Thrown) for load in boom.loads)),
         (
@@ -226,19 +226,16 @@ def _contacts(
             [number, _nearest(parts[number].x, x)] for number in (pad.joint.outer, pad.joint.inner)
         ]
         for side in (pad.side,) if pad.side else (1, -1):
-            law = joined.laws[pad.number].one_sided(side)
+            law = pad.joint.law(pad.direction).one_sided(side)
             if law is None:
                 continue
             law = law.shared(pad.weight)
-            law = law.behind(law.clearance - pad.raised) if pad.raised else law
+            law = law.behind(-pad.raised) if pad.raised else law
             yield {"outer": ends[0], "inner": ends[1], "points": points(law)}
     for _, stop in boom.numbered_stops:
         node = [stop.segment, _nearest(parts[stop.segment].x, stop.x)]
-        whole = PowerContact(stop.stiffness, stop.exponent, stop.clearance, stop.stiffness_below)
-        for side in (1, -1):
-            law = whole.one_sided(side)
-            if law is not None:
-                yield {"outer": None, "inner": node, "points": points(law)}
+        for stopped in stop.sides:
+            yield {"outer": None, "inner": node, "points": points(stop.law.one_sided(stopped))}
 
 
 def _points(law: ContactLaw, compliance: float) -> list[list[float]]:

@@ -199,9 +199,9 @@ class Scene:
                     continue
                 stations = list(range(begin, begin + len(joint.stations)))
                 begin += len(stations)
-                clearance = joint.clearance if direction == "z" else joint.lateral_clearance
-                if direction == self.direction and clearance is not None:
-                    found.append(Overlap(joint.outer, joint.inner, stations, clearance))
+                play = joint.play if direction == "z" else joint.lateral_play
+                if direction == self.direction and play is not None:
+                    found.append(Overlap(joint.outer, joint.inner, stations, 0.5 * play))
         return found
 
     def displacement(self, t: float) -> Array:

@@ -8,7 +8,6 @@ rest under its loads (:func:`dynamics.damping.pressed_modes`), and those with it
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,7 @@ from dynamics.failure import NUMERICS
 from dynamics.motion import initial_state
 from geometry.arrays import Array
 from runs.case.build import build_boom, joined
-from runs.case.kinds.model import Workshop
+from runs.case.kinds.model import Joined, Workshop
 from runs.case.schema import Case, Model
 from runs.folder.files import alone, changed_folder, whole
 from runs.pipeline.means import Progress, silent
@@ -54,9 +53,8 @@ def first_frequencies(
     """
     boom = build_boom(case)
     with_play = joined(case, boom, model)
-    tied = replace(boom, joints=tuple(joint.without_play for joint in boom.joints))
     found = np.full((len(JOINTS), MODES), np.nan)
-    for row, booms in enumerate((with_play, replace(with_play, boom=tied))):
+    for row, booms in enumerate((with_play, Joined(boom.play_free))):
         if row == 0 and model.play_free:
             continue
         tools = None if comm is None else Workshop(comm, cache=cache)

@@ -19,7 +19,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
 from dynamics.gap_builder import Contact, GapBuilder
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Direction
@@ -171,14 +170,12 @@ class Touching:
 
     Args:
         boom: its joints and stops.
-        laws: along each direction, one for each joint.
         line: where walls touch.
         corners, walls: of the segments; no walls where nothing reads them.
         points: of a surface; none unless walls touch there.
     """
 
     boom: Boom
-    laws: Mapping[Direction, Sequence[ContactLaw]]
     line: ContactLine
     corners: Sequence[CornerLines]
     walls: Sequence[WallPoints]
@@ -189,14 +186,13 @@ class Touching:
         cls,
         boom: Boom,
         shells: Sequence[SegmentShell],
-        laws: Mapping[Direction, Sequence[ContactLaw]],
         line: ContactLine,
         surface: SurfaceOptions,
     ) -> Touching:
         """Of shells. Collective.
 
         Args:
-            boom, laws, line: see above.
+            boom, line: see above.
             shells: of its segments.
             surface: how, where it is the whole overlap.
 
@@ -204,10 +200,10 @@ class Touching:
             BoomError: the contact line does not suit the boom.
         """
         _check_line(boom, line)
-        points = surface_points(boom, shells, laws, surface) if line == "surface" else []
+        points = surface_points(boom, shells, surface) if line == "surface" else []
         by_points = line == "across" or any(joint.padded for joint in boom.joints)
         walls = [WallPoints(shell) for shell in shells] if by_points else []
-        return cls(boom, laws, line, [CornerLines(shell) for shell in shells], walls, points)
+        return cls(boom, line, [CornerLines(shell) for shell in shells], walls, points)
 
     def rows(self, ways: Mapping[int, float]) -> GapBuilder[Reading]:
         """Rows of every pad, surface, stop and dashpot where joints are drawn out by ``ways`` in m.
@@ -223,7 +219,7 @@ class Touching:
             if self.line == "surface":
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
-                law = self.laws[pad.direction][pad.number]
+                law = pad.joint.law(pad.direction)
                 pressing = rows.press(pad.station, law, touch.points, pad.raised)
             rows.drag(pad.station, pad.joint.dashpot, touch.points)
             rows.rub(pad.station, pad.joint.friction, touch.slide, pad.normal_force, pressing)
@@ -231,7 +227,7 @@ class Touching:
             segment = rest.stop.segment
             way = sum(ways.get(number, 0.0) for number in drives_below(boom.joints, segment))
             rows.stop(
-                rest.station, rest.stop, flanges(rest.drawn(boom, way), self.corners[segment])
+                rest.station, rest.stop.law, flanges(rest.drawn(boom, way), self.corners[segment])
             )
         return rows
 
@@ -270,7 +266,7 @@ def _touch(
     """What a pad reads."""
     ends = pad.joint.inner, pad.joint.outer
     lines = [corners[number] for number in ends]
-    if pad.joint.lateral_clearance is not None:
+    if pad.joint.lateral_play is not None:
         touch = corner(pad, *lines)
         if pad.patch is None:
             return touch

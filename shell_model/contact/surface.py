@@ -9,7 +9,7 @@ touches comes from the joint, never from a facet's normal.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from mpi4py import MPI
 
 from dynamics.contact import ContactLaw
 from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint
+from geometry.boom import Boom, Joint
 from geometry.contact_places import Pad
 from shell_model.contact.wall_rows import Wall, WallPoints, gauss
 from shell_model.reduction.coordinates import exact_product
@@ -81,18 +81,17 @@ class SurfacePoint(NamedTuple):
 def surface_points(
     boom: Boom,
     shells: Sequence[SegmentShell],
-    laws: Mapping[Direction, Sequence[ContactLaw]],
     options: SurfaceOptions,
 ) -> list[SurfacePoint]:
-    """All points of all joints that are not tied; laws along each direction. Collective."""
+    """All points of all joints that are not tied. Collective."""
     walls = [WallPoints(shell) for shell in shells]
     found: list[SurfacePoint] = []
     first = 0
     for direction in boom.directions:
-        for number, joint in enumerate(boom.joints):
+        for joint in boom.joints:
             if joint.tied:
                 continue
-            law = laws[direction][number]
+            law = joint.law(direction)
             for side in (1, -1):
                 one_sided = law.one_sided(side)
                 if one_sided is not None:

@@ -224,7 +224,7 @@ def pressed_system(num_modes: int, num_rows: int) -> GapSystem:
         omega2=(2.0 * np.pi * 20.0 * np.maximum(order - 1, 0)) ** 2,
         load=1.0e4 * rows[0],
         rows=rows,
-        laws=[PowerContact(1.0e7, 1.0, 0.0)] * num_rows,
+        laws=[PowerContact(1.0e7, 1.0)] * num_rows,
         station_of_row=np.arange(num_rows),
         stations=place.tolist(),
         observers={},

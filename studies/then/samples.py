@@ -202,7 +202,7 @@ class Example:
     def as_printed(self, how: Numerics) -> list[Moved]:
         """The elements, whose contacts are linear, with their stiffness as the print has it."""
         system, put_in = self.systems[ELEMENTS], self.well[0].elements.put_in
-        laws = [PowerContact(LITERAL, 1.0, 0.5 * law.play) for law in system.laws]
+        laws = [PowerContact(LITERAL, 1.0).behind(0.5 * law.play) for law in system.laws]
         tasks = [(lowest(replace(system, laws=laws), few), put_in, 1.0) for few in MODES]
         return side_by_side(lambda one: _then(how, self.case.time.duration, *one), tasks)
 

@@ -16,6 +16,7 @@ from beam_model.kantorovich import Base, kantorovich_segments
 from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system, tied_system
 from beam_model.statics import static_state
+from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
@@ -91,11 +92,11 @@ def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
     weight = UNIFORM * segment.length**2 / 2.0 + TIP * segment.length
     assert expected[0] == pytest.approx(-weight / arm, rel=1e-12)
     models = finite_element_segments(boom, 1.0, "euler-bernoulli", rotary_inertia=True)
-    assert rest(gap_system(boom, models, [])) == pytest.approx(expected, rel=1e-6)
-    force, tip = rest(gap_system(boom, kantorovich_segments(boom, [24], "complete", True), []))
+    assert rest(gap_system(boom, models)) == pytest.approx(expected, rel=1e-6)
+    force, tip = rest(gap_system(boom, kantorovich_segments(boom, [24], "complete", True)))
     assert force == pytest.approx(expected[0], rel=1e-6)
     assert tip == pytest.approx(expected[1], rel=2e-3)
-    force, tip = rest(gap_system(boom, [rigid_segment(segment)], []))
+    force, tip = rest(gap_system(boom, [rigid_segment(segment)]))
     assert force == pytest.approx(expected[0], rel=1e-9)
     assert tip == pytest.approx(-force / stiffness * segment.length / arm, rel=1e-9)
 
@@ -112,7 +113,7 @@ def test_axial_forces_turn_a_boom_about_its_lowered_pin(
         kantorovich_segments(boom, [16], "complete", rotary_inertia=True),
         [rigid_segment(segment) for segment in boom.segments],
     ):
-        force, _ = rest(gap_system(boom, models, []))
+        force, _ = rest(gap_system(boom, models))
         assert force == pytest.approx(expected, rel=1e-3)
 
 
@@ -122,7 +123,7 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
     (segment,) = boom.segments
     rest_at = Support(5.0, stiffness=1.0e9)
     held = replace(segment, supports=(*segment.supports, rest_at))
-    pin, prop = static_state(replace(boom, segments=(held,), cylinders=()), [], []).holds
+    pin, prop = static_state(replace(boom, segments=(held,), cylinders=())).holds
     expected = (10.0e3 * 10.0 - 50.0e3 * 0.35) / 5.0
     assert prop.force == pytest.approx(expected, rel=1e-3)
     assert pin.force == pytest.approx(10.0e3 - expected, rel=1e-3)
@@ -137,7 +138,7 @@ def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, tied: bool) -> No
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
     parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))
-    joint = Joint(0, 1, stations=(6.0,), clearance=0.0, tied=True)
+    joint = Joint(0, 1, stations=(6.0,), play=0.0, tied=True)
     boom = Boom((whole,), (), cylinders=(CYLINDER,))
     if tied:
         over = replace(parts[1], start=5.5, mass_per_length=0.8 * whole.mass_per_length)
@@ -166,7 +167,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     """
     base = in_space(beam(supports=(Support(3.0, lateral_kind="clamped"),)))
     inner = in_space(beam(name="fly", start=7.0, end=9.0, section=SMALL))
-    joint = Joint(0, 1, (7.2, 7.8), clearance=0.0, lateral_clearance=0.0, tied=True)
+    joint = Joint(0, 1, (7.2, 7.8), play=0.0, lateral_play=0.0, tied=True)
     pair = replace(CYLINDER, spread=1.2)
     boom = Boom((base, inner), (joint,), cylinders=(pair,))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", rotary_inertia=True)
@@ -186,7 +187,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     at_rest = row / modes.omega2
     assert row @ at_rest == pytest.approx(twist, rel=1e-7)
     assert modes.displacement(0, 7.2, "y") @ at_rest == pytest.approx(aside, rel=1e-7)
-    system = gap_system(boom, models, [])
+    system = gap_system(boom, models)
     names = "cylinder_force", "cylinder_force_difference"
     found = [float(system.observers[name].row @ at_rest) for name in names]
     assert found == pytest.approx([0.0, -force], rel=1e-7, abs=1e-9 * force)
@@ -201,10 +202,10 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
 def test_a_boom_rests_on_a_hinge_and_a_stop(beam: Beam) -> None:
     """Reference: analytic, the lever rule; nothing else holds it, and the weight presses."""
     segment = beam(supports=(Support(3.0),), load=UNIFORM)
-    stop = Stop(0, 6.0, 1e-2, stiffness=0.0, stiffness_below=1e7, exponent=1.0)
+    stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
     boom = Boom((segment,), (), stops=(stop,))
     models = finite_element_segments(boom, 1.0, "euler-bernoulli", rotary_inertia=True)
-    system = gap_system(boom, models, [])
+    system = gap_system(boom, models)
     gap = float(system.rows[0] @ equilibrium(system, system.load))
     assert system.laws[0].force(gap) == pytest.approx(UNIFORM * 5.0 * 2.5 / 3.0, rel=1e-6)
 

@@ -19,14 +19,15 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom
+from tests.touching import touching
 
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
 
 
 @pytest.fixture(scope="module")
 def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSystem:
     """A series of 6 + 6 functions under its weight, which presses the joint."""
-    system = gap_system(paper_boom, series((6, 6), "complete"), [LINEAR])
+    system = gap_system(touching(paper_boom, LINEAR), series((6, 6), "complete"))
     return replace(system, load=9.81 * system.load)
 
 
@@ -77,9 +78,7 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
 
 def test_a_segment_that_flies_slows_down_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, exp(−ζω₁t)."""
-    wide = replace(
-        heavy, load=0.0 * heavy.load, laws=[replace(LINEAR, clearance=10.0)] * len(heavy.laws)
-    )
+    wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
     damped = with_ratio(wide, 0.05)
     tied = pressed_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)

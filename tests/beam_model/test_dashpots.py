@@ -22,12 +22,13 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, Segment, Support
+from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
 
 SPRING, DASHPOT = 2.0e6, 900.0
 # A spring both ways, since no play is between its sides.
-BOTH_WAYS = PowerContact(SPRING, exponent=1.0, clearance=0.0)
+BOTH_WAYS = PowerContact(SPRING, exponent=1.0).behind(0.0)
 
 
 def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
@@ -46,9 +47,9 @@ def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Seg
     """Reference: analytic. On two springs and two dashpots ζ = c/√(2km), δ = 2πζ/√(1 − ζ²)."""
     outer = beam(name="outer", start=0.0, end=4.0, supports=(Support(0.0, "clamped"),))
     inner = beam(name="inner", start=3.0, end=4.0, section=None)
-    joint = Joint(0, 1, stations=(3.25, 3.75), clearance=0.0, dashpot=DASHPOT)
+    joint = Joint(0, 1, stations=(3.25, 3.75), play=0.0, dashpot=DASHPOT)
     boom = Boom((outer, inner), (joint,))
-    system = gap_system(boom, [rigid_segment(one) for one in boom.segments], [BOTH_WAYS])
+    system = gap_system(touching(boom, BOTH_WAYS), [rigid_segment(one) for one in boom.segments])
     mass = inner.mass_per_length * inner.length
     ratio = DASHPOT / np.sqrt(2.0 * SPRING * mass)
     assert 0.01 < ratio < 0.1
@@ -78,7 +79,7 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
         cylinders.append(Cylinder(0, 6.0, 0.5, (1.4, -2.0), SPRING, dashpot=damping))
     segment = beam(supports=supports)
     boom = Boom((segment,), (), cylinders=tuple(cylinders))
-    system = gap_system(boom, [rigid_segment(segment)], [])
+    system = gap_system(boom, [rigid_segment(segment)])
     mass = segment.mass_per_length * segment.length
     inertia = mass * segment.length**2 / 3.0 + segment.rotary_inertia * segment.length
     omega = arm * np.sqrt(SPRING / inertia)
@@ -102,7 +103,7 @@ def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(
     supports = (Support(0.0), Support(arm, stiffness=spring, dashpot=damping))
     segment = replace(beam(start=0.0, end=arm, supports=supports), material=stiff)
     boom = Boom((segment,), ())
-    system = gap_system(boom, finite_element_segments(boom, 1.0, "timoshenko", True), [])
+    system = gap_system(boom, finite_element_segments(boom, 1.0, "timoshenko", True))
     mass = segment.mass_per_length * arm
     inertia = mass * arm**2 / 3.0 + segment.rotary_inertia * arm
     omega, ratio = arm * np.sqrt(spring / inertia), 0.5 * damping * arm / np.sqrt(spring * inertia)
@@ -122,7 +123,7 @@ def test_a_dashpot_reads_the_axis(
     (joint,) = boom.joints
     boom = replace(boom, joints=(replace(joint, dashpot=DASHPOT),))
     models = finite_element_segments(boom, 2.0, "euler-bernoulli", rotary_inertia=False)
-    system = gap_system(boom, models, [paper_law], [paper_law])
+    system = gap_system(touching(boom, paper_law, paper_law), models)
     modes = BoomModes(boom, models)
     expected = [
         np.sqrt(DASHPOT) * (modes.displacement(1, x, along) - modes.displacement(0, x, along))
@@ -136,8 +137,8 @@ def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
     """Reference: analytic, conservation of energy, while the play is crossed again and again."""
     (joint,) = paper_boom.joints
     boom = replace(paper_boom, joints=(replace(joint, dashpot=2.0e4),))
-    law = PowerContact(1.0e9, exponent=1.0, clearance=joint.clearance)
-    run = AdaptiveStep()(Motion(gap_system(boom, elements(1.0), [law]), 1.0))
+    law = PowerContact(1.0e9, exponent=1.0).behind(0.5 * joint.play)
+    run = AdaptiveStep()(Motion(gap_system(touching(boom, law), elements(1.0)), 1.0))
     loss = np.diff(run.data["damping_loss"].values)
     assert loss.min() >= 0.0
     assert loss.sum() > 0.1 * np.ptp(run.data["kinetic_energy"].values)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from beam_model.systems import finite_element_system, kantorovich_system
+from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve, Stroke, Together
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import History, Table
@@ -20,6 +21,7 @@ from dynamics.motion import Motion
 from geometry.boom import Boom, BoomError, Joint, Stop, Support
 from geometry.drive import Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, shifted, telescope, tips
+from tests.touching import touching
 
 
 def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None]) -> Boom:
@@ -27,22 +29,22 @@ def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None])
     outer, inner = boom.segments
     middle = shifted(inner, ways[0] - 3.0)
     last = replace(shifted(inner, sum(ways) + 3.0), name="last", section=None)
-    stops = (Stop(2, 16.0, 0.02, 0.0, stiffness_below=1.0e6, exponent=1.0),)
+    stops = (Stop(2, 16.0, 0.04, PowerContact(0.0, 1.0, stiffness_below=1.0e6)),)
     stations = (middle.start, outer.end), (last.start, middle.end)
     joints = (
-        Joint(0, 1, stations[0], 7.0e-3, dashpot=300.0, drive=drives[0]),
-        Joint(1, 2, stations[1], 7.0e-3, drive=drives[1]),
+        Joint(0, 1, stations[0], play=0.014, dashpot=300.0, drive=drives[0]),
+        Joint(1, 2, stations[1], play=0.014, drive=drives[1]),
     )
     plain = (replace(outer, section=None), replace(middle, section=None))
     return Boom((*plain, last), joints, stops=stops)
 
 
 SYSTEMS: dict[str, Callable[[Boom], GapSystem]] = {
-    "Euler-Bernoulli": lambda boom: finite_element_system(boom, [LAW], element_length=0.5),
+    "Euler-Bernoulli": lambda boom: finite_element_system(touching(boom, LAW), element_length=0.5),
     "Timoshenko": lambda boom: finite_element_system(
-        boom, [LAW], element_length=0.5, theory="timoshenko"
+        touching(boom, LAW), element_length=0.5, theory="timoshenko"
     ),
-    "series": lambda boom: kantorovich_system(boom, [LAW], (4, 6), base="complete"),
+    "series": lambda boom: kantorovich_system(touching(boom, LAW), (4, 6), base="complete"),
 }
 
 
@@ -63,7 +65,7 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRAWN.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
-        return finite_element_system(three(paper_boom, ways, drives), [LAW, LAW])
+        return finite_element_system(touching(three(paper_boom, ways, drives), [LAW, LAW]))
 
     system, there = built((0.0, 0.0), drives).standing(2.0), built((1.0, 2.0), (None, None))
     assert [type(t.history) for t in built((0.0, 0.0), drives).travels] == [
@@ -80,7 +82,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = telescope(spatial_boom, way, drive, friction=0.2)
-        return finite_element_system(boom, [LAW], [LAW], element_length=0.5)
+        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
 
     system, there = built(0.0, DRAWN).standing(5.0), built(4.0, None)
     for rows in ("rows", "friction_rows"):
@@ -95,7 +97,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
     """Reference: analytic, the rest of each position, within 0.1 % of the tip's deflection."""
     boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRAWN.carriers))
-    system = finite_element_system(boom, [LAW], element_length=1.0)
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
     run = FixedStep(1.0e-4)(Motion(system, 80.0, 0.1, position=rest))
@@ -122,7 +124,9 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     boom = telescope(paper_boom, 0.0, Drive(history, DRAWN.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
     boom = replace(boom, segments=segments)
-    system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
+    system = finite_element_system(
+        touching(boom, LAW), element_length=LONGEST, rotary_inertia=False
+    )
     runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time)
     assert runs[0].data.attrs["contact_changes"] > 2
@@ -141,7 +145,7 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
     joint = {"friction": 0.2, "normal_forces": (45.0, 50.0), "dashpot": 50.0}
     for changes in ({}, joint):
         boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRAWN.carriers), **changes)
-        system = finite_element_system(boom, [LAW], element_length=1.0)
+        system = finite_element_system(touching(boom, LAW), element_length=1.0)
         run = FixedStep(1.0e-5)(Motion(system, 1.5))
         put_in = float(np.abs(run.data["work"]).max())
         assert run.energy_residual < 1.0e-5
@@ -154,7 +158,7 @@ def test_out_and_in_again(paper_boom: Boom) -> None:
     there_and_back = Table([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
     boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRAWN.carriers))
     boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
-    system = finite_element_system(boom, [LAW], element_length=1.0)
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
     speeds = 1.0e-3 * np.cos(np.arange(system.num_modes))
     drawn, rest = (
         FixedStep(1.0e-4)(Motion(one, 0.4, 1.0e-2, velocity=speeds))
@@ -187,16 +191,16 @@ def drawn(history: History, least: float = 0.0) -> Drive:
          "joint[1].drive: draws 'inner' nowhere; leave it out"),
         (lambda boom: telescope(boom, 0.0, DRAWN, tied=True),
          "joint[1].drive: the joint is tied, and nothing slides; leave it out"),
-        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.3, 9.5), 7e-3,
+        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.3, 9.5), play=0.014,
             drive=Drive(SCurve(0.3, 1.0), ("inner", "outer"))),)),
          "joint[1].drive: stations pass one another as 'inner' is drawn by 0.3 m; make the travel "
          "shorter, or move them"),
-        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.5, 10.0), 7e-3,
+        (lambda boom: replace(boom, joints=(Joint(0, 1, (9.5, 10.0), play=0.014,
             drive=Drive(SCurve(0.6, 1.0), ("outer", "outer"))),)),
          "joint[1].drive: the station at 9.5 m leaves the overlap as 'inner' is drawn by 0.6 m; "
          "make the travel shorter, or move the station"),
         (lambda boom: replace(telescope(boom, 0.0, DRAWN),
-            stops=(Stop(1, 6.0, 0.1, 1e6, 1e6, 1.0),)),
+            stops=(Stop(1, 6.0, 0.2, PowerContact(1e6, 1.0, stiffness_below=1e6)),)),
          "stop[1].x: 'inner' is drawn past 6 m; it must be there all the way"),
         (lambda boom: replace(telescope(boom, 0.0, DRAWN), segments=(
             telescope(boom, 0.0).segments[0],

@@ -27,6 +27,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, PointMass
 from geometry.drive import Carrier, Drive
 from tests.beam_model.drawn import DRAWN, LAW, LONGEST, runge_kutta, telescope, tips
+from tests.touching import touching
 
 GRAVITY = 8.5
 THRUST = 1.5e4
@@ -78,12 +79,12 @@ def test_on_the_way_it_is_the_boom_built_there(
     """
     build, (carrier, x) = BUILDS[kind], lock
     boom = pressed(paper_boom, 0.0, replace(DRAWN, locked=carrier), x)
-    system = gap_system(boom, build(boom), [LAW])
+    system = gap_system(touching(boom, LAW), build(boom))
     factors = []
     for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
         along = x + way if x is not None and carrier == "inner" else x
         still = pressed(paper_boom, way, None, along)
-        there = gap_system(still, build(still), [LAW])
+        there = gap_system(touching(still, LAW), build(still))
         stands = system.standing(time)
         assert tips(stands) == pytest.approx(tips(there), rel=1e-6)
         assert frequencies(stands) == pytest.approx(frequencies(there), rel=1e-6)
@@ -103,7 +104,7 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = pressed(spatial_boom, way, drive)
-        return finite_element_system(boom, [LAW], [LAW], element_length=0.5)
+        return finite_element_system(touching(boom, LAW, LAW), element_length=0.5)
 
     here, there = built(0.0, DRAWN).standing(5.0), built(4.0, None)
     assert frequencies(here) == pytest.approx(frequencies(there), rel=1e-6)
@@ -115,16 +116,16 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None:
     """Reference: other code path, the rest of the boom that lies there, within 0.1 %."""
     boom = pressed(paper_boom, 2.0, Drive(SCurve(2.0, 60.0), DRAWN.carriers))
-    system = finite_element_system(boom, [LAW], element_length=1.0)
+    system = finite_element_system(touching(boom, LAW), element_length=1.0)
     system = replace(system, damping=0.2 * np.ones(system.num_modes))
     rest = equilibrium(system, system.load)
     run = FixedStep(1.0e-4)(Motion(system, 60.0, 0.1, position=rest))
     for way, time in ((2.0, 0.0), (3.0, 30.0), (4.0, 60.0)):
-        there = finite_element_system(pressed(paper_boom, way), [LAW], element_length=1.0)
+        there = finite_element_system(touching(pressed(paper_boom, way), LAW), element_length=1.0)
         found = float(run.data["tip"].sel(time=time, method="nearest"))
         assert found == pytest.approx(tips(there)[0], rel=1.0e-3)
         plain = telescope(paper_boom, way)
-        first = tips(finite_element_system(plain, [LAW], element_length=1.0))[0]
+        first = tips(finite_element_system(touching(plain, LAW), element_length=1.0))[0]
         assert abs(found / first - 1.0) > 0.01
 
 
@@ -139,7 +140,9 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     thrust = 1.0e5
     ropes = [Thrust(1, inner.end, thrust)]
     boom = replace(drawn, segments=with_compression((outer, inner), drawn.joints, ropes))
-    system = finite_element_system(boom, [LAW], element_length=LONGEST, rotary_inertia=False)
+    system = finite_element_system(
+        touching(boom, LAW), element_length=LONGEST, rotary_inertia=False
+    )
     runs = [FixedStep(step)(Motion(system, 0.6, 5.0e-3)) for step in (2.0e-5, 1.0e-5)]
     tip, work = runge_kutta(boom, history, runs[0].time, thrust)
     errors = [np.abs(run.data["tip"].values - tip).max() / np.ptp(tip) for run in runs]
@@ -160,7 +163,7 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
     for changes in ({}, joint):
         boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRAWN.carriers))
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))
-        system = finite_element_system(boom, [LAW], element_length=1.0)
+        system = finite_element_system(touching(boom, LAW), element_length=1.0)
         steps = (4.0e-5, 2.0e-5, 1.0e-5)
         runs = [FixedStep(step)(Motion(system, 1.5, 5.0e-3)) for step in steps]
         assert max(run.energy_residual for run in runs) < 1.0e-11

@@ -17,6 +17,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom
+from tests.touching import touching
 
 # Nearly three times the default step: what is shown here does not need that.
 STEP = 4.0e-6
@@ -27,7 +28,7 @@ def five_terms(
     paper_boom: Boom, series: Callable[..., list[SegmentModel]], paper_law: PowerContact
 ) -> GapSystem:
     """Five terms that rub at the tail with 4500 N and at the head with 5000 N, μ = 0.2."""
-    system = gap_system(paper_boom, series((2, 3)), [paper_law])
+    system = gap_system(touching(paper_boom, paper_law), series((2, 3)))
     return replace(
         system,
         friction_rows=system.rows,

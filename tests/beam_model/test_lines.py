@@ -20,6 +20,7 @@ from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Load, Segment, Support
+from tests.touching import touching
 
 MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
     "euler": lambda boom: finite_element_segments(boom, 0.25, "euler-bernoulli", False),
@@ -74,7 +75,7 @@ def test_a_joint_with_play_passes_what_the_lever_rule_says(paper_boom: Boom) -> 
     55.07 · 9²/2 N m at 10 m, pulling at the bottom, and its shear force jumps there by 2753.5 N.
     """
     models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
-    system = gap_system(paper_boom, models, [PowerContact(1e9, 1.0, clearance=7e-3)])
+    system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).behind(7e-3)), models)
     inner = lines(paper_boom, models)[1]
     found = inner.read(equilibrium(system, system.load))
     head = inner.x == 10.0

@@ -13,6 +13,7 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import SegmentModel, gap_system
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Segment
+from tests.touching import touching
 
 
 def chain(boom: Boom, count: int) -> Boom:
@@ -35,7 +36,7 @@ def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str)
     """Reference: the paper's 5.3. Every further segment adds the same number of equations, and the
     two forces of its joint; nothing that is square in them.
     """
-    law = PowerContact(1.0e9, 1.0, 7.0e-3)
+    law = PowerContact(1.0e9, 1.0).behind(7.0e-3)
 
     def model(boom: Boom, number: int, segment: Segment) -> SegmentModel:
         if kind == "series":
@@ -47,7 +48,7 @@ def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str)
     for count in (2, 3, 4, 5):
         boom = chain(paper_boom, count)
         models = [model(boom, number, segment) for number, segment in enumerate(boom.segments)]
-        system = gap_system(boom, models, [law] * len(boom.joints))
+        system = gap_system(touching(boom, law), models)
         sizes.append(system.num_modes)
         assert len(system.laws) == 2 * (count - 1)
     steps = [after - before for before, after in pairwise(sizes)]

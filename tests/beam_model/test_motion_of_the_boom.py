@@ -18,13 +18,14 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Segment, Support
+from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
 
 
 @pytest.fixture
 def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> GapSystem:
-    return gap_system(paper_boom, series((2, 3)), [paper_law])
+    return gap_system(touching(paper_boom, paper_law), series((2, 3)))
 
 
 def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
@@ -53,7 +54,7 @@ def test_four_and_five_terms_coincide_until_they_touch(
 ) -> None:
     """Statement 4.1 of the paper: until then the inner segment moves as a rigid body."""
     four, five = (
-        FixedStep(4.0e-6)(Motion(gap_system(paper_boom, series(terms), [paper_law]), 0.4))
+        FixedStep(4.0e-6)(Motion(gap_system(touching(paper_boom, paper_law), series(terms)), 0.4))
         for terms in ((2, 2), (2, 3))
     )
     assert 0.1 < five.first_contact < 0.2
@@ -88,9 +89,9 @@ def test_with_friction_the_complete_series_follows_the_elements(
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
-    law = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
+    law = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
     beams, complete, printed = (
-        FixedStep(4.0e-6)(Motion(gap_system(boom, models, [law]), 0.6))
+        FixedStep(4.0e-6)(Motion(gap_system(touching(boom, law), models), 0.6))
         for models in (elements(1.0), series((12, 12), "complete"), series((2, 3)))
     )
     assert 0.3 < beams.first_contact < 0.4
@@ -130,17 +131,17 @@ def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
     (joint,) = paper_boom.joints
     small = Boom(
         tuple(in_millimetres_and_tonnes(segment) for segment in paper_boom.segments),
-        (replace(joint, stations=(9.0e3, 10.0e3), clearance=7.0),),
+        (replace(joint, stations=(9.0e3, 10.0e3), play=14.0),),
     )
     runs = []
     for boom, unit in ((paper_boom, 1.0), (small, 1000.0)):
         if kind == "series":
             models = kantorovich_segments(boom, (2, 3), "as printed", True)
-            law = PowerContact(1.0e13 / unit**2, 2.0, 7.0e-3 * unit)
+            law = PowerContact(1.0e13 / unit**2, 2.0).behind(7.0e-3 * unit)
         else:
             models = finite_element_segments(boom, unit, "euler-bernoulli", True)
-            law = PowerContact(1.0e10 / unit, 1.0, 7.0e-3 * unit)
-        system = gap_system(boom, models, [law])
+            law = PowerContact(1.0e10 / unit, 1.0).behind(7.0e-3 * unit)
+        system = gap_system(touching(boom, law), models)
         runs.append(AdaptiveStep()(Motion(system, 0.122, output_step=1.0e-3)))
     metres, millimetres = runs
     assert metres.data.attrs["contact_changes"] >= 2

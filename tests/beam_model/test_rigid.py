@@ -17,12 +17,13 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, PointMass, Support
+from tests.touching import touching
 
-LAW = PowerContact(stiffness=2.0e6, exponent=1.0, clearance=7.0e-3)
+LAW = PowerContact(stiffness=2.0e6, exponent=1.0).behind(7.0e-3)
 
 
 def rigid(boom: Boom, laws: list[PowerContact]) -> GapSystem:
-    return gap_system(boom, [rigid_segment(segment) for segment in boom.segments], laws)
+    return gap_system(touching(boom, laws), [rigid_segment(segment) for segment in boom.segments])
 
 
 @pytest.fixture
@@ -44,17 +45,17 @@ def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
     assert system.num_modes == 2
     inner = inside.segments[1]
     mass, force = inner.mass_per_length * inner.length, -inner.load * inner.length
-    gravity, omega = force / mass, np.sqrt(2.0 * LAW.stiffness / mass)
-    fall = np.sqrt(2.0 * LAW.clearance / gravity)
-    speed, sag = gravity * fall, force / (2.0 * LAW.stiffness)
+    gravity, omega = force / mass, np.sqrt(2.0 * LAW.law.stiffness / mass)
+    fall = np.sqrt(LAW.play / gravity)
+    speed, sag = gravity * fall, force / (2.0 * LAW.law.stiffness)
     contact = 2.0 / omega * (np.pi - np.arctan(speed * omega / gravity))
-    lowest = -LAW.clearance - sag - np.hypot(sag, speed / omega)
+    lowest = -LAW.above - sag - np.hypot(sag, speed / omega)
     period = 2.0 * fall + contact
 
     found = FixedStep(2.0e-6)(Motion(system, 4.0 * period, period / 40.0))
     tip = found.data["tip"].values
     assert tip[20::40] == pytest.approx([lowest] * 4, rel=1e-6)
-    assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.clearance)
+    assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.above)
     assert found.data["tail"].values == pytest.approx(tip, abs=1e-12)
     assert found.data.attrs["energy_residual"] < 1e-7
 

@@ -20,6 +20,7 @@ from dynamics.second_order import buckling_factor
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from geometry.section import BoxSection
+from tests.touching import touching
 
 Build = Callable[[Boom], Sequence[SegmentModel]]
 
@@ -52,7 +53,7 @@ def telescope(thrust: float, tied: bool = False, **changes: object) -> Boom:
     """An arm, clamped, and a fly of which 2 m slide in it, with a force at its tip."""
     arm = Segment.of_section("arm", 0.0, 8.0, STEEL, OUTER, supports=CLAMP)
     fly = Segment.of_section("fly", 6.0, 14.0, STEEL, INNER, load=-500.0)
-    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3, tied=tied, **changes)
+    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, tied=tied, **changes)
     return Boom(with_compression((arm, fly), (joint,), [Thrust(1, 14.0, thrust)]), (joint,))
 
 
@@ -62,7 +63,7 @@ def test_a_segment_that_only_contacts_hold_tips_over(build: Build) -> None:
     """
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
-    system = gap_system(boom, build(boom), [PowerContact(1e9, 1.0, 5e-3)])
+    system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(5e-3)), build(boom))
     tipping = system.omega2[system.omega2 < 0.0]
     np.testing.assert_allclose(tipping, -12.0 * thrust / (fly.mass_per_length * 8.0**2), rtol=2e-3)
     # Its fall stays what it was, and the arm has none.
@@ -74,7 +75,8 @@ def test_a_rigid_segment_tips_over_too() -> None:
     boom = telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(
-        boom, [rigid_segment(s) for s in boom.segments], [PowerContact(1e9, 1.0, 5e-3)]
+        touching(boom, PowerContact(1e9, 1.0).behind(5e-3)),
+        [rigid_segment(s) for s in boom.segments],
     )
     inertia = fly.mass_per_length * 8.0**3 / 12.0 + fly.rotary_inertia * 8.0
     np.testing.assert_allclose(system.omega2.min(), -5.0e3 * 8.0 / inertia, rtol=1e-12)
@@ -129,7 +131,7 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
     its play lets it; the pressed boom's tip is the tied one's and that of the tilt by 2Δ over 2 m.
     """
     boom = telescope(2.0e4)
-    system = gap_system(boom, build(boom), [PowerContact(1e12, 1.0, 5e-3)])
+    system = gap_system(touching(boom, PowerContact(1e12, 1.0).behind(5e-3)), build(boom))
     tied = tied_system(boom, build(boom))
     tip = float(system.observers["tip"].row @ equilibrium(system, system.load))
     held = float(tied.observers["tip"].row @ equilibrium(tied, tied.load))
@@ -155,7 +157,7 @@ def test_no_force_leaves_every_number_as_it_was(build: Build) -> None:
     plain = telescope(0.0)
     assert not plain.compressed
     systems = [
-        gap_system(boom, build(boom), [PowerContact(1e9, 1.0, 5e-3)])
+        gap_system(touching(boom, PowerContact(1e9, 1.0).behind(5e-3)), build(boom))
         for boom in (plain, Boom(plain.segments, plain.joints))
     ]
     np.testing.assert_array_equal(systems[0].omega2, systems[1].omega2)

@@ -19,6 +19,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
 from tests.beam_model.exact import OverhangingBeam, tied_deflections, tied_frequencies
+from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
 
@@ -99,7 +100,7 @@ def test_apart_the_segments_move_as_if_alone(
 ) -> None:
     """Reference: analytic. The inner one falls freely, at q/m̄ = 1 m/s²; the outer one swings
     about its rest under q."""
-    system = gap_system(paper_boom, elements(0.5), [paper_law])
+    system = gap_system(touching(paper_boom, paper_law), elements(0.5))
     assert (np.sort(system.omega2)[:2] == 0.0).all()
     assert np.sort(system.omega2)[2] > 1.0
     rigid = system.omega2 == 0.0
@@ -118,7 +119,7 @@ def test_rows_read_the_inner_less_the_outer(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
     """Reference: analytic. The inner segment raised as a body, the outer one bent by a force."""
-    system = gap_system(paper_boom, elements(0.5), [paper_law])
+    system = gap_system(touching(paper_boom, paper_law), elements(0.5))
     assert system.rows.shape == (2, system.num_modes)
     assert list(system.stations) == [9.0, 10.0]
     assert list(system.station_of_row) == [0, 1]
@@ -145,9 +146,9 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
     boom = Boom((outer, middle, last), (joint, second))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    laws = [PowerContact(1e13, 2.0, 7e-3), PowerContact(1e10, 1.0, 5e-3)]
-    system = gap_system(boom, models, laws)
-    assert [law.exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
+    laws = [PowerContact(1e13, 2.0).behind(7e-3), PowerContact(1e10, 1.0).behind(5e-3)]
+    system = gap_system(touching(boom, laws), models)
+    assert [law.terms[0].exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
     assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
     assert (system.omega2 == 0.0).sum() == 4
     tied = tied_system(boom, models)
@@ -192,9 +193,9 @@ def test_tied_halves_have_the_frequencies_of_the_whole(
 ) -> None:
     """Reference: analytic. What both do alike is the whole segment; what they do against each
     other is zero at the ties."""
-    law = PowerContact(1e13, 2.0, 7e-3)
-    whole = gap_system(paper_boom, elements(1.0), [law])
-    halves = gap_system(*leaves, [law, law])
+    law = PowerContact(1e13, 2.0).behind(7e-3)
+    whole = gap_system(touching(paper_boom, law), elements(1.0))
+    halves = gap_system(touching(leaves[0], law), leaves[1])
     assert list(halves.stations) == [9.0, 10.0]
     assert len(halves.laws) == 2
     assert halves.num_modes == whole.num_modes + 22 - 2
@@ -212,10 +213,10 @@ def test_tied_halves_move_as_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic, until the rounding of the first presses has grown."""
-    law = PowerContact(1e9, 1.0, 7e-3)
+    law = PowerContact(1e9, 1.0).behind(7e-3)
     step = 2.0e-5
-    whole = FixedStep(step)(Motion(gap_system(paper_boom, elements(1.0), [law]), 0.2))
-    halves = FixedStep(step)(Motion(gap_system(*leaves, [law, law]), 0.2))
+    whole = FixedStep(step)(Motion(gap_system(touching(paper_boom, law), elements(1.0)), 0.2))
+    halves = FixedStep(step)(Motion(gap_system(touching(leaves[0], law), leaves[1]), 0.2))
     assert 0.1 < whole.first_contact < 0.15
     assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)
     assert halves.data.attrs["contact_changes"] == whole.data.attrs["contact_changes"] > 1
@@ -233,11 +234,11 @@ def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
     one = Segment("one", 0.0, 6.0, steel, 50.0, 2.0e-4, 1.0)
     two = replace(one, name="two", start=4.0, end=10.0)
     three = replace(one, name="three", start=8.0, end=14.0, supports=(Support(12.0), Support(14.0)))
-    tied = Joint(0, 1, (4.0, 5.0, 6.0), 0.0, tied=True)
-    loose = Joint(1, 2, (8.0, 10.0), 1e-3)
+    tied = Joint(0, 1, (4.0, 5.0, 6.0), play=0.0, tied=True)
+    loose = Joint(1, 2, (8.0, 10.0), play=0.002)
     boom = Boom((one, two, three), (tied, loose))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    system = gap_system(boom, models, [PowerContact(1e9, 1.0, 1e-3)] * 2)
+    system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(1e-3)), models)
     assert (system.omega2 == 0.0).sum() == 2
     assert np.sort(system.omega2)[2] > 1.0
     # Raised by 1 m at its tail and not tilted, "two" takes the end of "one" along.
@@ -261,7 +262,7 @@ def test_a_longer_chain_has_modes_in_proportion(paper_boom: Boom) -> None:
         ]
         boom = Boom((outer, *chain), tuple(joints))
         models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-        system = gap_system(boom, models, [PowerContact(1e9, 1.0, 7e-3)] * number)
+        system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(7e-3)), models)
         assert len(system.laws) == 2 * number
         counts.append(system.num_modes)
     assert np.diff(counts).tolist() == [42, 42, 42]
@@ -280,7 +281,7 @@ def test_viscous_damping_is_exact(paper_boom: Boom, kind: str, paper_law: PowerC
         else finite_element_segment(segment, 1.0, (9.0, 10.0), "euler-bernoulli", False)
         for segment in segments
     ]
-    system = gap_system(paper_boom, models, [paper_law])
+    system = gap_system(touching(paper_boom, paper_law), models)
     outer = len(models[0].components["z"].load)
     np.testing.assert_allclose(system.damping[:outer], 50.0 / 83.16, rtol=1e-9)
     np.testing.assert_allclose(system.damping[outer:], 20.0 / 55.07, rtol=1e-9)

@@ -23,11 +23,12 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment, Stop, Support
 from geometry.section import BoxSection
 from tests.space import in_space
+from tests.touching import touching
 
 Beam = Callable[..., Segment]
 
-LAW = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
-LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0, clearance=5.0e-3)
+LAW = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).behind(5.0e-3)
 
 
 def beams(
@@ -49,10 +50,8 @@ def rolled(boom: Boom) -> Boom:
     """What the boom has along y it has along z, and the other way round."""
     joints = []
     for joint in boom.joints:
-        assert joint.lateral_clearance is not None
-        joints.append(
-            replace(joint, clearance=joint.lateral_clearance, lateral_clearance=joint.clearance)
-        )
+        assert joint.lateral_play is not None
+        joints.append(replace(joint, play=joint.lateral_play, lateral_play=joint.play))
     return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=tuple(joints))
 
 
@@ -141,9 +140,9 @@ def test_lateral_bending_is_that_of_the_box_on_its_side(beam: Beam, kind: str) -
 
 
 def test_places_and_names(spatial_boom: Boom) -> None:
-    stop = Stop(1, 19.0, 1.0e-3, 1.0e8, 1.0e8, 1.0)
+    stop = Stop(1, 19.0, 0.002, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8))
     system = gap_system(
-        replace(spatial_boom, stops=(stop,)), beams(spatial_boom), [LAW], [LATERAL_LAW]
+        touching(replace(spatial_boom, stops=(stop,)), LAW, LATERAL_LAW), beams(spatial_boom)
     )
     assert list(zip(system.stations, system.station_directions, strict=True)) == [
         (9.0, "z"), (10.0, "z"), (9.0, "y"), (10.0, "y"), (19.0, "z")
@@ -161,7 +160,7 @@ def test_places_and_names(spatial_boom: Boom) -> None:
 def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
     """Reference: analytic. Raised as a body, and pushed aside as one, the inner segment feels
     the laws themselves at each station."""
-    system = gap_system(spatial_boom, beams(spatial_boom), [LAW], [LATERAL_LAW])
+    system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     for height, shift in ((8.0e-3, 0.0), (-9.0e-3, 5.5e-3), (7.5e-3, -6.0e-3)):
         gaps = system.rows @ (height * up + shift * aside)
@@ -191,7 +190,7 @@ def rigid_motion(system: GapSystem, suffix: str) -> Array:
 def test_pads_resist_roll(spatial_boom: Boom) -> None:
     """Reference: analytic. Pressed up all over, a segment that rolls by θ stores k b² θ²/8 at each
     station: half the law at each of ± b/2. Beside it, pressed in y, k h² θ²/8."""
-    system = gap_system(spatial_boom, beams(spatial_boom), [LAW], [LATERAL_LAW])
+    system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     inner = spatial_boom.segments[1]
     assert inner.section is not None
     assert inner.lateral is not None
@@ -214,7 +213,7 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
         (-6.0e-3 * aside, LATERAL_LAW, inner.section.height),
     ):
         more = stored(pressed + theta * roll) - stored(pressed)
-        assert more == pytest.approx(2.0 * law.stiffness * arm**2 * theta**2 / 8.0, rel=1e-6)
+        assert more == pytest.approx(2.0 * law.law.stiffness * arm**2 * theta**2 / 8.0, rel=1e-6)
         # As much to the other side.
         assert stored(pressed - theta * roll) - stored(pressed) == pytest.approx(more, rel=1e-6)
 
@@ -236,7 +235,7 @@ def test_the_vertical_plane_is_the_flat_boom(
     0.15 s, by 9e-11 after 0.4 s and by 3e-8 after 0.5 s.
     """
     (joint,) = spatial_boom.joints
-    flat = replace(spatial_boom, joints=(replace(joint, lateral_clearance=None),))
+    flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
     runs = []
     for boom, lateral in ((flat, ()), (spatial_boom, (LATERAL_LAW,))):
         models = (
@@ -244,7 +243,7 @@ def test_the_vertical_plane_is_the_flat_boom(
             if kind == "elements"
             else [kantorovich_segment(s, 6, "complete", True) for s in boom.segments]
         )
-        system = gap_system(boom, models, [LAW], lateral)
+        system = gap_system(touching(boom, LAW, lateral), models)
         runs.append(FixedStep(1.0e-4)(Motion(system, duration)))
     plane, space = runs
     assert plane.data.attrs["contact_changes"] > 10
@@ -258,9 +257,9 @@ def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> Non
     friction too, which couples the planes. The presses amplify round-off to 1e-13."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
-    upright = gap_system(boom, beams(boom), [LAW], [LATERAL_LAW])
+    upright = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
     side = rolled(boom)
-    lying = gap_system(side, beams(side), [LATERAL_LAW], [LAW])
+    lying = gap_system(touching(side, LATERAL_LAW, LAW), beams(side))
     assert len(upright.frictions) == 16
     one, other = (FixedStep(1.0e-4)(Motion(system, 0.25)) for system in (upright, lying))
     assert one.data["friction_loss"].values[-1] > 0.3
@@ -273,7 +272,7 @@ def test_friction_rows_rub_across_what_presses(spatial_boom: Boom) -> None:
     """Reference: analytic, (10) and (11): pressed along z a pad rubs along y, and back."""
     (joint,) = spatial_boom.joints
     boom = replace(spatial_boom, joints=(replace(joint, friction=0.3),))
-    system = gap_system(boom, beams(boom), [LAW], [LATERAL_LAW])
+    system = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     for row, friction in zip(system.friction_rows, system.frictions, strict=True):
         (contact,) = friction.pressed_by
@@ -293,7 +292,7 @@ def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
-    system = gap_system(boom, beams(boom), [LAW])
+    system = gap_system(touching(boom, LAW), beams(boom))
     np.testing.assert_array_equal(system.friction_rows, system.rows)
     assert [(f.coefficient, f.station, f.normal_force, f.pressed_by) for f in system.frictions] == [
         (0.2, 0, 4500.0, ()),
@@ -303,11 +302,11 @@ def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
     space = replace(
         boom,
         segments=tuple(in_space(segment) for segment in boom.segments),
-        joints=(replace(joint, lateral_clearance=5.0e-3),),
+        joints=(replace(joint, lateral_play=0.01),),
     )
     forces = [
         (friction.station, friction.normal_force)
-        for friction in gap_system(space, beams(space), [LAW], [LATERAL_LAW]).frictions
+        for friction in gap_system(touching(space, LAW, LATERAL_LAW), beams(space)).frictions
     ]
     assert forces == [
         (station, n) for station, n in enumerate((1125.0, 1250.0) * 2) for _ in "1234"
@@ -319,7 +318,7 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
     friction couples to the plane stays within what its load puts in."""
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.3),)), 60.0, 40.0)
-    run = AdaptiveStep()(Motion(gap_system(boom, beams(boom), [LAW], [LATERAL_LAW]), 1.0))
+    run = AdaptiveStep()(Motion(gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom)), 1.0))
     loss = run.data["friction_loss"].values
     assert loss[-1] > 0.05
     assert np.diff(loss).min() >= -1e-9 * loss[-1]
@@ -334,7 +333,7 @@ def test_tied_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) ->
     system = tied_system(boom, beams(boom))
     assert (system.omega2 > 1.0).all()
     assert not system.laws
-    joint = Joint(0, 1, (9.0, 10.0), 0.0)
+    joint = Joint(0, 1, (9.0, 10.0), play=0.0)
     flat = Boom(boom.segments, (joint,))
     side = Boom(tuple(s.turned() for s in boom.segments), (joint,))
     bending = [tied_system(b, beams(b)).omega2 for b in (flat, side)]

@@ -22,6 +22,7 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import CLAMPED_FREE, OverhangingBeam, angular_frequencies
+from tests.touching import touching
 
 Beam = Callable[..., Segment]
 Models = Callable[..., list[SegmentModel]]
@@ -224,7 +225,7 @@ def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: Po
         Load(1, "z", 55.07, None, Step()),
         Load(0, "z", -2.0e3, 10.0, Step()),
     )
-    system = gap_system(replace(paper_boom, loads=loads), elements(0.5), [paper_law])
+    system = gap_system(touching(replace(paper_boom, loads=loads), paper_law), elements(0.5))
     uniform, point = system.excitations
     own = np.where(system.observers["tip"].row != 0.0, system.load, 0.0)
     np.testing.assert_allclose(uniform.load, own, atol=1e-12 * np.abs(own).max())
@@ -236,9 +237,9 @@ def test_a_stop_holds_the_tip_up(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
     """Reference: analytic. A stop under the tip pushes up, one above it down, or not at all."""
-    stop = Stop(1, 19.0, 5.0e-3, stiffness=0.0, stiffness_below=2.0e8, exponent=1.0)
+    stop = Stop(1, 19.0, 0.01, PowerContact(0.0, 1.0, stiffness_below=2.0e8))
     boom = replace(paper_boom, stops=(stop,))
-    system = gap_system(boom, elements(0.5), [paper_law])
+    system = gap_system(touching(boom, paper_law), elements(0.5))
     assert list(system.stations) == [9.0, 10.0, 19.0]
     assert list(system.station_of_row) == [0, 1, 2]
     np.testing.assert_array_equal(system.rows[2], system.observers["tip"].row)

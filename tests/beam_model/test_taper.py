@@ -49,7 +49,7 @@ def test_default_elements_are_near_the_cone(theory: Theory) -> None:
     """
     boom = taper.arm(0.1 * taper.critical())
     plain = replace(boom, segments=taper.arm().segments)
-    system = gap_system(plain, elements(plain, theory), ())
+    system = gap_system(plain, elements(plain, theory))
     (load,) = system.excitations
     tip = system.observers["tip"].row @ system.static_response(load.load)
     assert tip == pytest.approx(taper.tip(theory == "timoshenko"), rel=1e-4)
@@ -79,7 +79,7 @@ def test_a_deep_arm_shears_as_it_should(direction: str) -> None:
             here = here.turned()
         bent = (8.0 - place) ** 2 / (STEEL.youngs_modulus * here.second_moment_of_area)
         found += weight * (bent + 1.0 / (STEEL.shear_modulus * here.shear_area))
-    system = gap_system(boom, elements(boom, "timoshenko"), ())
+    system = gap_system(boom, elements(boom, "timoshenko"))
     (load,) = system.excitations
     tip = system.observers["tip"].row @ system.static_response(load.load)
     assert tip == pytest.approx(found, rel=1e-4)
@@ -107,7 +107,7 @@ def test_it_weighs_what_its_plates_weigh() -> None:
         kantorovich_segments(boom, [10], "complete", rotary_inertia=True),
         [rigid_segment(segment)],
     ):
-        system = gap_system(boom, models, ())
+        system = gap_system(boom, models)
         resting = system.static_response(system.excitations[0].load)
         ends = [system.observers[name].row @ resting for name in system.observers]
         # 1 m/s² on springs of 1e6 N/m: the tip's carries m g x_m/8.
@@ -133,7 +133,7 @@ def test_section_forces_are_those_of_statics(kind: str) -> None:
         if kind == "timoshenko"
         else kantorovich_segments(boom, [16], "complete", rotary_inertia=False)
     )
-    system = gap_system(boom, models, ()).gathered()
+    system = gap_system(boom, models).gathered()
     (line,) = lines(boom, models)
     found = line.read(equilibrium(system, system.load))
     np.testing.assert_allclose(found["moment"], 1000.0 * (8.0 - line.x), atol=8.0)
@@ -146,7 +146,7 @@ def test_it_lies_on_its_side() -> None:
         "arm", 0.0, 8.0, STEEL, ROOT.turned(), head_section=HEAD.turned(), supports=(CLAMP,)
     )
     found, reference = (
-        gap_system(boom, elements(boom, "timoshenko"), ()).frequencies[:3]
+        gap_system(boom, elements(boom, "timoshenko")).frequencies[:3]
         for boom in (Boom((arm().turned(),), ()), Boom((rolled,), ()))
     )
     np.testing.assert_allclose(found, reference, rtol=1e-9)
@@ -182,7 +182,7 @@ def test_sections_fit_where_they_touch() -> None:
     fly = Segment.of_section(
         "fly", 6.0, 14.0, STEEL, inner, head_section=replace(inner, height=0.98), masses=()
     )
-    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3)
+    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01)
     with pytest.raises(ValueError, match=r"joint\[1\].play: 'fly' does not fit in 'arm': -0.05 m"):
         Boom((outer, fly), (joint,))
     slender = replace(fly, head_section=replace(inner, height=0.3))

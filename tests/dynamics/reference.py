@@ -26,7 +26,7 @@ def two_modes(exponent: float = 2.0) -> GapSystem:
         omega2=np.array([9.0, 60.0]),
         load=np.array([2.0, 5.0]),
         rows=np.array([[1.0, 0.6]]),
-        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent, clearance=0.05).upper()],
+        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().behind(0.05)],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"first": Observer(np.array([1.0, 0.0]))},

@@ -120,7 +120,7 @@ def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
 def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
     """Reference: analytic, the weight. A stiff floor is pressed at 32 rad a step: forces of single
     steps swing about their mean, means of pairs do not."""
-    system = one_mass(1.0, PowerContact(1.0e9, 1.0, 0.0).lower(), force=-1000.0)
+    system = one_mass(1.0, PowerContact(1.0e9, 1.0).lower(), force=-1000.0)
     start = np.array([-1.0e-6]), np.array([-0.028])
     pairs, single = (FixedStep(1e-3)(Motion(system, 0.1, h, *start)) for h in (2e-3, 1e-3))
     assert np.ptp(single.data["contact_force"].values[1:, 0]) > 80.0
@@ -139,7 +139,7 @@ def test_a_peak_that_no_step_resolves_is_marked(
     of √(m/F′(p))."""
     depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
     force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)
-    system = one_mass(2.0, PowerContact(stiffness, exponent, 1e-3))
+    system = one_mass(2.0, PowerContact(stiffness, exponent).behind(1e-3))
     motion = Motion(system, 0.02, 1e-3, velocity=np.array([speed]))
     coarse = FixedStep(1e-3)(motion)
     told = coarse.data.attrs["resolving_step"]

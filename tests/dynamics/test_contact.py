@@ -11,15 +11,16 @@ import pytest
 
 from dynamics.contact import PowerContact
 
-LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3, stiffness_below=4.0e12)
+POWER = PowerContact(stiffness=1.0e13, exponent=2.0, stiffness_below=4.0e12)
+LAW = POWER.behind(7.0e-3)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
 def test_force_is_the_gradient_of_the_energy(exponent: float) -> None:
     """Reference: analytic. A central difference of the potential, second order in its step."""
-    law = PowerContact(1.0e13, exponent, clearance=7.0e-3, stiffness_below=3.0e12)
+    law = PowerContact(1.0e13, exponent, stiffness_below=3.0e12).behind(7.0e-3)
     y = np.linspace(-8.0e-3, 8.0e-3, 41)
-    y = y[np.abs(np.abs(y) - law.clearance) > 1.0e-5]
+    y = y[np.abs(np.abs(y) - law.onset(1.0)) > 1.0e-5]
     errors = []
     for step in (2.0e-6, 1.0e-6):
         slope = (law.energy(y + step) - law.energy(y - step)) / (2.0 * step)
@@ -37,7 +38,7 @@ def test_each_side_has_its_own_stiffness() -> None:
 
 
 def test_below_is_as_above_unless_given() -> None:
-    law = PowerContact(stiffness=1.0e10, exponent=1.5, clearance=0.0)
+    law = PowerContact(stiffness=1.0e10, exponent=1.5)
     y = np.linspace(-1.0e-3, 1.0e-3, 7)
     assert law.below == 1.0e10
     np.testing.assert_array_equal(law.force(-y), -law.force(y))
@@ -51,20 +52,22 @@ def test_segments_that_do_not_touch_feel_nothing() -> None:
 
 def test_sides_add_up_to_the_whole() -> None:
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
-    upper, lower = LAW.upper(), LAW.lower()
+    upper, lower = POWER.upper(), POWER.lower()
     assert not upper.force(y[y < 0.0]).any()
     assert not lower.force(y[y > 0.0]).any()
-    np.testing.assert_array_equal(upper.force(y) + lower.force(y), LAW.force(y))
-    np.testing.assert_array_equal(upper.energy(y) + lower.energy(y), LAW.energy(y))
+    np.testing.assert_array_equal(upper.force(y) + lower.force(y), POWER.force(y))
+    np.testing.assert_array_equal(upper.energy(y) + lower.energy(y), POWER.energy(y))
 
 
 def test_parts_of_a_law_are_damped_as_it_is() -> None:
-    law = replace(LAW, damping=0.3)
+    law = replace(POWER, damping=0.3)
     assert {part.damping for part in (law.upper(), law.lower(), law.shared(0.25))} == {0.3}
-    assert LAW.damping == 0.0
+    assert POWER.damping == 0.0
 
 
-@pytest.mark.parametrize("law", [LAW, LAW.upper(), LAW.lower()], ids=["both", "upper", "lower"])
+@pytest.mark.parametrize(
+    "law", [POWER, POWER.upper(), POWER.lower()], ids=["both", "upper", "lower"]
+)
 def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
     total = sum(law.shared(weight).force(y) for weight in (0.125, 0.25, 0.625))
@@ -90,15 +93,13 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
         ),
         ({"exponent": 0.5}, "exponent must be at least 1, got 0.5"),
         ({"exponent": float("nan")}, "exponent must be at least 1, got nan"),
-        ({"clearance": -1e-3}, "exponent must be 1 where the clearance is negative, got 2.0"),
-        ({"clearance": float("nan")}, "clearance must be a finite number of m, got nan"),
         ({"damping": -1.0}, "damping must be finite and not negative, got -1.0 s/m"),
         ({"damping": float("nan")}, "damping must be finite and not negative, got nan s/m"),
     ],
 )
 def test_refuses_what_has_no_meaning(arguments: dict[str, float], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, "clearance": 7.0e-3, **arguments})
+        PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, **arguments})
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
@@ -108,11 +109,11 @@ def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
     than any number of a case among them.
     """
     n, k = exponent, 1.0e13
-    law = PowerContact(0.5 * k, n, clearance=7.0e-3, stiffness_below=k)
+    law = PowerContact(0.5 * k, n, stiffness_below=k).behind(7.0e-3)
     assert law.slope_at(force) == pytest.approx(n * k * (force / k) ** ((n - 1.0) / n), rel=1e-9)
 
 
 @pytest.mark.parametrize("force", [0.0, np.inf])
 def test_a_linear_law_has_its_slope_at_no_force_and_at_any(force: float) -> None:
     """Reference: analytic."""
-    assert PowerContact(1.0e9, 1.0, 0.0).slope_at(force) == pytest.approx(1.0e9)
+    assert PowerContact(1.0e9, 1.0).slope_at(force) == pytest.approx(1.0e9)

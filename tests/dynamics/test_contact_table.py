@@ -17,7 +17,7 @@ from dynamics.motion import Motion
 
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
 DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)
-LAW = TableContact(DEPTHS, FORCES, clearance=7.0e-3)
+LAW = TableContact(DEPTHS, FORCES).behind(7.0e-3)
 
 
 def test_the_force_is_the_table_and_its_last_line() -> None:
@@ -44,12 +44,15 @@ def test_parts_are_tables_again() -> None:
     assert above.one_sided(-1) is None
     np.testing.assert_allclose(above.force(y) + below.force(y), LAW.force(y), atol=1e-8)
     np.testing.assert_allclose(LAW.shared(0.25).force(y), 0.25 * LAW.force(y), atol=1e-8)
-    np.testing.assert_allclose(LAW.behind(14.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8)
+    np.testing.assert_allclose(LAW.behind(7.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8)
 
 
 def test_one_line_is_a_linear_stop() -> None:
     """Reference: other code, the linear law; stiffnesses for the step among it."""
-    table, power = TableContact((1.0e-3,), (2.0e3,), 5.0e-3), PowerContact(2.0e6, 1.0, 5.0e-3)
+    table, power = (
+        TableContact((1.0e-3,), (2.0e3,)).behind(5.0e-3),
+        PowerContact(2.0e6, 1.0).behind(5.0e-3),
+    )
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
     np.testing.assert_allclose(table.force(y), power.force(y), rtol=1e-14)
     assert table.slope_at(3.0) == pytest.approx(power.slope_at(3.0), rel=1e-12)
@@ -80,4 +83,4 @@ def test_refuses_what_has_no_meaning(
     depths: tuple[float, ...], forces: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(ValueError, match=f"^{message}$"):
-        TableContact(depths, forces, 0.0)
+        TableContact(depths, forces)

@@ -86,7 +86,7 @@ def rider(
 
 def lossy(history: History, **changes: Any) -> GapSystem:
     """A rider with friction, damping of every kind, a load that ramps, and play on both sides."""
-    law = PowerContact(1.0e6, 1.5, 1.0e-4, damping=0.5)
+    law = PowerContact(1.0e6, 1.5, damping=0.5).behind(1.0e-4)
     rubbing = DryFriction(0.3, 0, normal_force=400.0)
     system = rider(history, law, mass=20.0, weight=2.0e3, start=2.0, frictions=[rubbing], drag=50.0)
     load = Excitation(np.append(300.0 * sines(3.0, 8), 0.0), Ramp(0.1))
@@ -100,7 +100,7 @@ def test_a_moving_force_on_a_beam() -> None:
     A mass of 1e-5 of the beam's on a stiff contact is that force.
     """
     force, speed, count, stiffness, mass = 1.0e3, 20.0, 30, 1.0e7, 0.01
-    law = PowerContact(stiffness, 1.0, clearance=0.0).lower()
+    law = PowerContact(stiffness, 1.0).lower()
     assert law is not None
     system = rider(Stroke(LENGTH, speed), law, mass=mass, weight=force, count=count)
     pressed = np.append(np.zeros(count), -force / stiffness * np.sqrt(mass))
@@ -140,7 +140,7 @@ def test_a_drive_that_has_not_begun_moves_nothing(drawn: Drawn) -> None:
 def test_a_slow_drive_passes_through_places_of_rest() -> None:
     """Reference: analytic, statics. A mass that is carried slowly deflects the beam as it does at
     rest in each place, and the drive works against the slope that it makes."""
-    law = PowerContact(1.0e6, 1.0, clearance=0.0).lower()
+    law = PowerContact(1.0e6, 1.0).lower()
     damping = np.append(0.2 * frequencies(8), 20.0)
     slow = rider(SCurve(2.5, 20.0), law, mass=20.0, weight=2.0e3, start=2.5, damping=damping)
     run = FixedStep(2e-3)(Motion(slow, 20.0, 0.1, equilibrium(slow, slow.load)))
@@ -154,7 +154,7 @@ def test_a_slow_drive_passes_through_places_of_rest() -> None:
 
 def test_it_runs_back_as_it_came() -> None:
     """Reference: analytic, the symmetry of the step, in presses and by the drive."""
-    law = PowerContact(1.0e6, 1.5, 1.0e-4)
+    law = PowerContact(1.0e6, 1.5).behind(1.0e-4)
     there = rider(SCurve(5.0, 0.2), law, mass=20.0, weight=2.0e3, start=2.0)
     out = FixedStep(1.0e-4)(Motion(with_rates(there), 0.2, 1.0e-3))
     assert out.data.attrs["contact_changes"] > 0

@@ -28,7 +28,6 @@ from dynamics.predictability.ensemble import (
     perturbations,
     run_members,
 )
-from dynamics.sided_contact import SidedContact
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 THROWN = np.array([0.5, -1.0])
@@ -46,7 +45,7 @@ def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
         system = replace(
             CHAOTIC,
             load=factor["load"] * CHAOTIC.load,
-            laws=[replace(law, clearance=factor["clearance"] * law.clearance)],
+            laws=[law.law.behind(factor["clearance"] * law.above)],
         )
         run = FixedStep(1e-3)(Motion(system, 5.0, 1e-2, velocity=factor["velocity"] * THROWN))
         one = ensemble.isel(member=member)
@@ -79,13 +78,12 @@ def test_all_loads_vary_and_nothing_else() -> None:
 def test_plays_that_differ_vary_each_by_its_part(above: float, expected: float) -> None:
     """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm, and nothing stays so."""
     (law,) = CHAOTIC.laws
-    sided = SidedContact(law.behind(above), law.behind(0.012))
+    sided = law.law.behind(above, 0.012)
     motion = Motion(replace(CHAOTIC, laws=[sided]), 1.0)
     check_varied(motion, "clearance")
     (found,) = changed(motion, "clearance", 1.001).system.laws
-    assert isinstance(found, SidedContact)
-    assert found.above.clearance == pytest.approx(expected, rel=1e-12)
-    assert found.below.clearance == pytest.approx(0.012012, rel=1e-12)
+    assert found.above == pytest.approx(expected, rel=1e-12)
+    assert found.below == pytest.approx(0.012012, rel=1e-12)
 
 
 def test_members_make_the_steps_of_the_first() -> None:

@@ -17,6 +17,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom
+from tests.touching import touching
 
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
@@ -26,7 +27,7 @@ def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
         omega2=np.array([omega2]),
         load=np.zeros(1),
         rows=row[None],
-        laws=[PowerContact(3.0e6, exponent, 4.0e-3).upper()],
+        laws=[PowerContact(3.0e6, exponent).upper().behind(4.0e-3)],
         station_of_row=np.zeros(1, dtype=np.int64),
         stations=[0.0],
         observers={"tip": Observer(row)},
@@ -51,7 +52,7 @@ def test_a_spring_carries_what_does_not_reach_the_stop() -> None:
 @pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
 def test_what_shims_press_moves_without_a_load(weight: float, expected: float) -> None:
     """Reference: analytic. A shim 1 mm beyond the play below lifts a mass until it is free."""
-    below = PowerContact(3.0e6, 1.0, -1.0e-3).lower()
+    below = PowerContact(3.0e6, 1.0).lower().behind(-1.0e-3)
     above = mass_over_stop(1.0, 0.0)
     row, laws, places = above.rows[0], [*above.laws, below], np.zeros(2, dtype=np.int64)
     system = replace(above, rows=np.vstack([row, row]), laws=laws, station_of_row=places)
@@ -81,8 +82,8 @@ def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: flo
         finite_element_segment(segment, 0.5, (9.0, 10.0), "euler-bernoulli", False)
         for segment in paper_boom.segments
     ]
-    law = PowerContact(1.0e9 if exponent == 1.0 else 1.0e13, exponent, 7.0e-3)
-    system = gap_system(paper_boom, models, [law])
+    law = PowerContact(1.0e9 if exponent == 1.0 else 1.0e13, exponent).behind(7.0e-3)
+    system = gap_system(touching(paper_boom, law), models)
     at_rest = equilibrium(system, system.load)
     forces = [law.force(y) for law, y in zip(system.laws, system.rows @ at_rest, strict=True)]
     assert forces == pytest.approx([-4.0 * 550.7, 5.0 * 550.7], rel=1e-5)

@@ -54,7 +54,9 @@ def test_what_is_followed_has_both_ends() -> None:
 
 def test_a_step_is_a_load(one_mass: OneMass) -> None:
     """Reference: other code path, the same load as a constant."""
-    plain = one_mass(3.0, PowerContact(1.0e4, 2.0, 0.02), spring=40.0, force=7.0, dashpot=0.8)
+    plain = one_mass(
+        3.0, PowerContact(1.0e4, 2.0).behind(0.02), spring=40.0, force=7.0, dashpot=0.8
+    )
     stepped = driven(replace(plain, load=np.zeros(1)), 7.0, Step())
     one, two = (AdaptiveStep()(Motion(s, 2.0, output_step=0.01)) for s in (plain, stepped))
     assert one.data.attrs["contact_changes"] >= 4

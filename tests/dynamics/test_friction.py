@@ -228,7 +228,7 @@ def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.
         omega2=np.zeros(2),
         load=np.array([0.0, -10.0 * root]),
         rows=np.array([[0.0, 1.0 / root]]),
-        laws=[PowerContact(stiffness, 1.0, 0.0).lower()],
+        laws=[PowerContact(stiffness, 1.0).lower()],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"way": Observer(np.array([1.0 / root, 0.0]))},
@@ -272,7 +272,7 @@ def test_a_bounce_takes_its_impulse_times_friction() -> None:
 
 def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
     """Reference: the same system without rows. μ = 0 changes nothing but round-off."""
-    plain = one_mass(4.0, PowerContact(1.0e4, 1.0, 0.05), spring=100.0, force=30.0)
+    plain = one_mass(4.0, PowerContact(1.0e4, 1.0).behind(0.05), spring=100.0, force=30.0)
     one, two = (
         FixedStep(1e-4)(Motion(system, 2.0, output_step=0.01))
         for system in (plain, rubbing(plain, DryFriction(0.0, 0, 1e3)))

@@ -15,7 +15,7 @@ from dynamics.excitation import Excitation, Step, Table
 from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 
-LAW = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=1.0e-3)
+LAW = PowerContact(stiffness=1.0e6, exponent=1.0).behind(1.0e-3)
 RUB = DryFriction(0.2, station=1, normal_force=10.0, pressed_by=(0, 1))
 
 

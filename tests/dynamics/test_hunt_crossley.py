@@ -45,7 +45,7 @@ def test_a_mass_rebounds_as_it_should(
     mass, speed = 3.0, 2.0
     damping = restitution_damping(restitution, speed)
     stiffness = {1.0: 1.0e6, 1.5: 1.0e8, 2.0: 1.0e9}[exponent]
-    stop = PowerContact(stiffness, exponent, clearance=0.01, damping=damping).upper()
+    stop = PowerContact(stiffness, exponent, damping=damping).upper().behind(0.01)
     errors = []
     motion = Motion(one_mass(mass, stop), 0.05, 1.0e-3, velocity=np.array([speed * np.sqrt(mass)]))
     for step in (4.0e-5, 1.0e-5):
@@ -63,7 +63,7 @@ def test_a_mass_rebounds_as_it_should(
 def test_contact_never_pulls(one_mass: OneMass) -> None:
     """A load tears a mass off a stop faster than 1/d: the contact lets go, and what it still
     stored is lost."""
-    stop = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=0.0, damping=5.0).upper()
+    stop = PowerContact(stiffness=1.0e4, exponent=1.0, damping=5.0).upper()
     system = one_mass(1.0, stop, force=-2.0e3)
     run = FixedStep(1e-5)(Motion(system, 0.05, output_step=1e-4, position=np.array([0.1])))
     force = run.data["contact_force"].values

@@ -55,7 +55,7 @@ def pressed_along(history: SCurve | Table) -> GapSystem:
         omega2=np.array([200.0, 300.0, 900.0, 400.0, 2000.0, 5000.0]),
         load=np.array([1.0, -2.0, 0.5, 1.0, 0.2, 0.1]),
         rows=row,
-        laws=[PowerContact(1e4, 1.0, 1e-4)],
+        laws=[PowerContact(1e4, 1.0).behind(1e-4)],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"tip": Observer(row[0])},

@@ -25,7 +25,7 @@ def system(num_modes: int = MODES) -> GapSystem:
         omega2=omega**2,
         load=rows[3],
         rows=rows[:2],
-        laws=[PowerContact(1e7, 1.0, clearance=0.01)] * 2,
+        laws=[PowerContact(1e7, 1.0).behind(0.01)] * 2,
         station_of_row=np.array([0, 1]),
         stations=[0.0, 1.0],
         observers={"tip": Observer(rows[2])},
@@ -104,7 +104,7 @@ def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
         system(),
         omega2=system().omega2[::-1],
         rows=rows,
-        laws=[PowerContact(1e7, 1.0, clearance=0.01)] * 24,
+        laws=[PowerContact(1e7, 1.0).behind(0.01)] * 24,
         station_of_row=np.arange(24) % 2,
     )
     few, _ = condensed(whole, 24)

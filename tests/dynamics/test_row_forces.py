@@ -21,18 +21,17 @@ from dynamics.kernels import march
 from dynamics.kernels.row_forces import row_laws, row_problem, solve_rows
 from dynamics.kernels.terms import discrete_gradient
 from dynamics.motion import Motion
-from dynamics.sided_contact import SidedContact
 
 # What round-off leaves of a law, as a part of the largest force.
 TOLERANCE = 1.0e-10
 
 LAWS: list[ContactLaw] = [
-    PowerContact(1.0e4, 1.0, 1.0e-3),
-    PowerContact(1.0e7, 2.0, 1.0e-3, damping=0.3),
-    PowerContact(1.0e5, 1.5, 0.0).upper(),
-    TableContact((1.0e-4, 1.0e-3), (20.0, 300.0), 1.0e-3),
-    SidedContact(PowerContact(1.0e4, 1.0, 1.0e-3), PowerContact(1.0e9, 3.0, 2.0e-3)),
-    PowerContact(1.0e4, 1.0, -1.0e-3),
+    PowerContact(1.0e4, 1.0).behind(1.0e-3),
+    PowerContact(1.0e7, 2.0, damping=0.3).behind(1.0e-3),
+    PowerContact(1.0e5, 1.5).upper(),
+    TableContact((1.0e-4, 1.0e-3), (20.0, 300.0)).behind(1.0e-3),
+    PowerContact(1.0e9, 3.0, stiffness_below=1.0e4).behind(1.0e-3, 2.0e-3),
+    PowerContact(1.0e4, 1.0).behind(-1.0e-3),
 ]
 
 
@@ -121,7 +120,7 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
     """Reference: analytic, ΔV/Δy, and the force itself where nothing moves; its slope by central
     differences where it is exact."""
     term = np.array([(0, -1.0, 1.0e6, 1.0e-3, exponent)], TERM)[0]
-    law = PowerContact(1.0e6, exponent, 1.0e-3).lower()
+    law = PowerContact(1.0e6, exponent).lower().behind(1.0e-3)
     mean, slope = discrete_gradient(term, -before, -after)
     if abs(after - before) > 1e-4:
         gained = law.energy(np.array([-before, -after])) @ [-1.0, 1.0]
@@ -142,7 +141,7 @@ def wedge(friction: float) -> GapSystem:
         omega2=np.array([0.0, 100.0]),
         load=np.array([30.0, 50.0]),
         rows=rows,
-        laws=[PowerContact(1.0e9, 1.0, 1.0e-4)] * 2,
+        laws=[PowerContact(1.0e9, 1.0).behind(1.0e-4)] * 2,
         station_of_row=np.array([0, 0]),
         stations=[0.0],
         observers={"tip": Observer(np.ones(2))},
@@ -182,7 +181,7 @@ def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
         omega2=np.zeros(1),
         load=np.zeros(1),
         rows=np.ones((1, 1)),
-        laws=[PowerContact(1.0e9, 1.0, 0.0).lower()],
+        laws=[PowerContact(1.0e9, 1.0).lower()],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={},

@@ -19,7 +19,7 @@ from dynamics.second_order import buckling_factor, softened
 
 MASS, NEGATIVE, STIFFNESS, CLEARANCE = 3.0, -48.0, 1.0e6, 0.01
 GROWTH = np.sqrt(-NEGATIVE / MASS)
-STOPS = PowerContact(STIFFNESS, 1.0, clearance=CLEARANCE)
+STOPS = PowerContact(STIFFNESS, 1.0).behind(CLEARANCE)
 
 
 @pytest.fixture(name="tipping")

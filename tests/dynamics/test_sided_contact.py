@@ -5,28 +5,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from dynamics.contact import ContactLaw, PowerContact, contact_limits
+from dynamics.contact import PowerContact, contact_limits
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from dynamics.sided_contact import SidedContact
 
 OneMass = Callable[..., GapSystem]
 
-NEAR = PowerContact(1.0e6, 1.0, clearance=4.0e-3)
-FAR = PowerContact(2.0e9, 2.0, clearance=10.0e-3)
-LAW = SidedContact(NEAR, FAR)
+POWER = PowerContact(1.0e6, 2.0, stiffness_below=2.0e9)
+LAW = POWER.behind(4.0e-3, 10.0e-3)
 
 
-def test_each_side_follows_its_own_law() -> None:
-    """Reference: analytic, 1 mm beyond either play: 1e6 · 1e-3 and 2e9 · 1e-6."""
+def test_each_side_has_its_own_clearance() -> None:
+    """Reference: analytic, 1 mm beyond either: 1e6 · 1e-6 and 2e9 · 1e-6."""
     y = np.array([-11.0e-3, -9.0e-3, 3.0e-3, 5.0e-3])
-    assert LAW.force(y) == pytest.approx([-2000.0, 0.0, 0.0, 1000.0], rel=1e-9)
+    assert LAW.force(y) == pytest.approx([-2000.0, 0.0, 0.0, 1.0], rel=1e-9)
     (limits,) = contact_limits([LAW])
     assert (limits["low"], limits["high"]) == (-10.0e-3, 4.0e-3)
 
@@ -34,41 +31,40 @@ def test_each_side_follows_its_own_law() -> None:
 def test_the_play_is_that_of_both_sides() -> None:
     """Reference: by hand; a rigid segment falls across all of it."""
     assert pytest.approx(14.0e-3) == LAW.play
-    assert NEAR.play == NEAR.upper().play == 8.0e-3
-    assert replace(NEAR, clearance=-1.0e-3).play == 0.0
+    near = POWER.behind(4.0e-3)
+    assert near.play == POWER.upper().behind(4.0e-3).play == 8.0e-3
+    assert PowerContact(1.0e6, 1.0).behind(-1.0e-3).play == 0.0
 
 
-def test_parts_are_those_of_its_laws() -> None:
+def test_parts_are_those_of_its_law() -> None:
     y = np.linspace(-0.02, 0.02, 41)
-    above, below = LAW.one_sided(1), LAW.one_sided(-1)
-    assert above == NEAR.upper()
-    assert below == FAR.lower()
+    assert LAW.one_sided(1) == POWER.upper().behind(4.0e-3, 10.0e-3)
+    assert POWER.upper().behind(4.0e-3).one_sided(-1) is None
     np.testing.assert_allclose(LAW.shared(0.25).force(y), 0.25 * LAW.force(y), rtol=1e-12)
-    moved = LAW.behind(5.0e-3)
-    assert (moved.above.clearance, moved.below.clearance) == pytest.approx((5.0e-3, 11.0e-3))
+    moved = LAW.behind(1.0e-3)
+    assert (moved.above, moved.below) == pytest.approx((5.0e-3, 11.0e-3))
 
 
 @pytest.mark.parametrize(
-    ("above", "below", "message"),
+    ("clearance", "message"),
     [
-        (NEAR.lower(), FAR, "each law must touch on its own side"),
         (
-            NEAR,
-            replace(FAR, damping=0.5),
-            "both laws must have the same damping, got 0.0 and 0.5 s/m",
+            -1.0e-3,
+            "a law must be linear behind a negative clearance, got k 1e+06, 2e+09 below, n 2",
         ),
+        (np.nan, "clearance must be a finite number of m, got nan and nan"),
     ],
 )
-def test_refuses_what_is_no_contact(above: ContactLaw, below: ContactLaw, message: str) -> None:
+def test_refuses_what_is_no_gap(clearance: float, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        SidedContact(above, below)
+        POWER.behind(clearance)
 
 
 def test_a_mass_leaves_one_side_of_what_presses_it(one_mass: OneMass) -> None:
     """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
     k, pressed, load = 1.0e4, 2.0e-3, 60.0
     both, one = np.sqrt([2.0 * k, k])
-    system = one_mass(1.0, PowerContact(k, 1.0, clearance=-pressed), force=load)
+    system = one_mass(1.0, PowerContact(k, 1.0).behind(-pressed), force=load)
     leaves = np.arccos(1.0 - 2.0 * k * pressed / load) / both
     speed = load / (2.0 * k) * both * np.sin(both * leaves)
     middle = load / k - pressed

@@ -14,7 +14,7 @@ from dynamics.excitation import Excitation, Step
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.reduction import tied_system
 
-LAW = PowerContact(1e6, 1.0, clearance=0.01)
+LAW = PowerContact(1e6, 1.0).behind(0.01)
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def pair() -> GapSystem:
         omega2=np.array([100.0, 0.0]),
         load=np.array([0.0, -5.0]),
         rows=np.array([[-1.0, 1.0], [0.0, 1.0]]),
-        laws=[LAW, PowerContact(1e5, 1.0, clearance=0.5)],
+        laws=[LAW, PowerContact(1e5, 1.0).behind(0.5)],
         station_of_row=np.array([0, 1]),
         stations=[1.0, 2.0],
         station_directions=("z", "z"),

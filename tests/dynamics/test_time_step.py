@@ -25,7 +25,6 @@ from dynamics.friction import DryFriction
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
-from dynamics.sided_contact import SidedContact
 from tests.dynamics.reference import (
     end_of,
     errors_in_the_step,
@@ -40,7 +39,7 @@ from tests.dynamics.test_moving_thrust import pressed_along
 OneMass = Callable[..., GapSystem]
 
 THROWN = np.array([0.8, -0.5, 0.3, 0.4])
-POWER = PowerContact(1.0e6, 1.0, 1.0e-3)
+POWER = PowerContact(1.0e6, 1.0).behind(1.0e-3)
 ROWS = np.array([[0.9, 0.5, -0.3, 0.2], [0.4, -0.8, 0.5, 0.3]])
 ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
 
@@ -73,16 +72,16 @@ PRESSED = DryFriction(0.4, 0, 0.0, (0, 1)), DryFriction(0.3, 1, 5.0, (1,))
 # What moves, and the energy that it has to exchange.
 MOVED: dict[str, tuple[GapSystem, str]] = {
     "linear": (boom(), "contact_energy"),
-    "Hertz": (boom(PowerContact(1.0e8, 1.5, 1.0e-3)), "contact_energy"),
-    "quadratic": (boom(PowerContact(1.0e10, 2.0, 1.0e-3)), "contact_energy"),
-    "cubic": (boom(PowerContact(1.0e13, 3.0, 1.0e-3)), "contact_energy"),
-    "table": (boom(TableContact((1e-4, 1e-3), (200.0, 500.0), 1e-3)), "contact_energy"),
+    "Hertz": (boom(PowerContact(1.0e8, 1.5).behind(1.0e-3)), "contact_energy"),
+    "quadratic": (boom(PowerContact(1.0e10, 2.0).behind(1.0e-3)), "contact_energy"),
+    "cubic": (boom(PowerContact(1.0e13, 3.0).behind(1.0e-3)), "contact_energy"),
+    "table": (boom(TableContact((1e-4, 1e-3), (200.0, 500.0)).behind(1e-3)), "contact_energy"),
     "unlike sides": (
-        boom(SidedContact(PowerContact(1e6, 1.0, 4e-4), PowerContact(2e9, 2.0, 1e-3))),
+        boom(PowerContact(1e9, 2.0, stiffness_below=2e9).behind(4e-4, 1e-3)),
         "contact_energy",
     ),
-    "shims": (boom(PowerContact(1.0e6, 1.0, -1.0e-4)), "contact_energy"),
-    "Hunt-Crossley": (boom(PowerContact(1e8, 1.5, 1e-3, damping=0.5)), "contact_loss"),
+    "shims": (boom(PowerContact(1.0e6, 1.0).behind(-1.0e-4)), "contact_energy"),
+    "Hunt-Crossley": (boom(PowerContact(1e8, 1.5, damping=0.5).behind(1e-3)), "contact_loss"),
     "prescribed friction": (
         rubbing(DryFriction(0.2, 0, 20.0), DryFriction(0.3, 1, 10.0)),
         "friction_loss",
@@ -121,7 +120,7 @@ def test_energy_balances_at_every_step(what: str, step: float, duration: float) 
 
 def pressed(exponent: float, **changes: Any) -> Motion:
     """A boom pressed to its stops, thrown so gently that it stays there."""
-    law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent, 1.0e-3)
+    law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent).behind(1.0e-3)
     system = boom(law, load=np.array([-80.0, 30.0, 2.0, 1.0]), **changes)
     held = replace(system, omega2=np.maximum(system.omega2, [0.0, 1.0, 1.0, 1.0]))
     return Motion(system, 0.4, 0.04, equilibrium(held, system.load), 0.02 * THROWN)
@@ -136,7 +135,7 @@ def sliding() -> Motion:
 
 
 def telescoping() -> Motion:
-    law = PowerContact(1.0e6, 2.0, 0.0).lower()
+    law = PowerContact(1.0e6, 2.0).lower()
     system = rider(SCurve(5.0, 0.4), law, mass=20.0, weight=2.0e3, start=2.0, count=4, drag=30.0)
     return Motion(system, 0.4, 0.04)
 
@@ -149,7 +148,7 @@ def driven() -> Motion:
 
 def lossy_press() -> Motion:
     motion = pressed(2.0, damping=np.array([0.5, 1.0, 2.0, 20.0]), **DRAGGED)
-    laws = [replace(POWER, stiffness=1e4, damping=5.0)] * 2
+    laws = [PowerContact(1e4, 1.0, damping=5.0).behind(1e-3)] * 2
     return replace(motion, system=replace(motion.system, laws=laws), velocity=0.05 * THROWN)
 
 
@@ -220,7 +219,7 @@ def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
 
     100 kg on 1e4 N/m meet a stop of 1e6 N/m without gap at 1 m/s; analytic, the impulse.
     """
-    stop = PowerContact(stiffness=1.0e6, exponent=1.0, clearance=0.0).upper()
+    stop = PowerContact(stiffness=1.0e6, exponent=1.0).upper()
     system = one_mass(100.0, stop, spring=1.0e4)
     run = FixedStep(1e-4)(Motion(system, 0.04, 1.0e-3, velocity=np.array([10.0])))
     assert float(run.data["contact_force_peak"].max()) == pytest.approx(9950.372, rel=1e-4)
@@ -240,7 +239,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
 
     1 kg falls from 0 at −1 m/s under 10 m/s² on a stop of 100 N/m at −2 m.
     """
-    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
+    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().behind(2.0)
     system = one_mass(1.0, stop, force=-10.0)
     run = FixedStep(1e-3)(Motion(system, 1.2, 1.0e-3, velocity=np.array([-1.0])))
     assert run.first_contact == pytest.approx(0.5403124, rel=1e-4)
@@ -252,7 +251,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
 
 def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     """Reference: analytic. Flights of 2Δ/v and presses of π √(m/k) on either side."""
-    law = PowerContact(stiffness=4.0e4, exponent=1.0, clearance=0.1, stiffness_below=9.0e4)
+    law = PowerContact(stiffness=4.0e4, exponent=1.0, stiffness_below=9.0e4).behind(0.1)
     period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
     motion = Motion(one_mass(1.0, law), 3.0 * period, period / 1e3, velocity=np.array([2.0]))
     run = FixedStep(2e-5)(motion)
@@ -270,7 +269,7 @@ def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
 def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
     """Reference: analytic. A mass m at v sinks in by p = (3 m v² / 2 k)^⅓ under F = k p², after
     Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, from energy and a Beta integral."""
-    stop = PowerContact(stiffness=1.0e6, exponent=2.0, clearance=0.0).upper()
+    stop = PowerContact(stiffness=1.0e6, exponent=2.0).upper()
     depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
     half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
     motion = Motion(one_mass(100.0, stop), 2.0 * half, half, velocity=np.array([20.0]))
@@ -287,7 +286,7 @@ def test_bouncing_ball_keeps_its_height(
 ) -> None:
     """Reference: analytic. 1 kg falls 1 mm again and again on a hard floor, and comes up to where
     it was, whether or not the step resolves the blow of 10 to 100 µs."""
-    floor = PowerContact(stiffness, exponent, clearance=1.0e-3).lower()
+    floor = PowerContact(stiffness, exponent).lower().behind(1.0e-3)
     run = FixedStep(step)(Motion(one_mass(1.0, floor, force=-10.0), 3.0, 1e-3))
     assert run.data.attrs["contact_changes"] > 60
     tip = run.data["tip"].values
@@ -301,7 +300,7 @@ def test_bouncing_ball_keeps_its_height(
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
 def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
     """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
-    stop = PowerContact(stiffness=100.0, exponent=1.0, clearance=2.0).lower()
+    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().behind(2.0)
     motion = Motion(one_mass(1.0, stop, force=-10.0), 1.0, 2.0e-2, velocity=np.array([-1.0]))
     exact = (np.sqrt(41.0) - 1.0) / 10.0
     found = FixedStep(step)(motion).first_contact
@@ -311,7 +310,7 @@ def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: floa
 def test_first_contact_is_that_of_the_first_row() -> None:
     """Reference: analytic. Two rows close within one step; the second in the list does so first."""
     system = replace(
-        boom(), laws=[POWER.behind(0.0105), POWER.behind(0.0102)], rows=np.eye(4)[[0, 0]],
+        boom(), laws=[POWER.law.behind(0.0105), POWER.law.behind(0.0102)], rows=np.eye(4)[[0, 0]],
         load=np.zeros(4),
     )  # fmt: skip
     run = FixedStep(0.01)(Motion(system, 0.1, 0.01, velocity=np.eye(4)[0]))
@@ -325,7 +324,7 @@ def test_first_contact_late_at_once_or_never(
     one_mass: OneMass, place: float, speed: float, first: float
 ) -> None:
     """Reference: analytic. A mass comes to a stop at 0.1 m, lets go of it, or stays away."""
-    system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0, clearance=0.1).upper())
+    system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0).upper().behind(0.1))
     run = FixedStep(3e-4)(Motion(system, 0.5, 0.01, np.array([place]), np.array([speed])))
     assert run.first_contact == pytest.approx(first, rel=1e-6, nan_ok=True)
     assert run.data.attrs["contact_changes"] == (0 if np.isnan(first) else 1)
@@ -337,9 +336,9 @@ def test_units_do_not_matter() -> None:
     √t·mm are √1000 times as many as √kg·m; forces in N stay what they are.
     """
     si, scale = two_modes(), np.sqrt(1000.0)
-    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0, 1e3 * si.laws[0].clearance)
+    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).behind(1e3 * si.laws[0].above)
     small = replace(
-        si, load=si.load * scale, rows=si.rows * scale, laws=[law.upper()],
+        si, load=si.load * scale, rows=si.rows * scale, laws=[law.one_sided(1)],
         observers={"first": Observer(np.array([scale, 0.0]))},
     )  # fmt: skip
     metres, millimetres = (AdaptiveStep()(Motion(s, 1.5, 0.01)) for s in (si, small))
@@ -361,7 +360,7 @@ def test_a_closed_contact_is_a_spring() -> None:
         omega2=np.zeros(1),
         load=np.array([-weight]),
         rows=np.ones((1, 1)),
-        laws=[PowerContact(stiffness, 1.0, clearance=2.0e-3)],
+        laws=[PowerContact(stiffness, 1.0).behind(2.0e-3)],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)},
@@ -405,6 +404,6 @@ def test_complains_of_what_the_ledger_misses() -> None:
 
 def test_what_nothing_moves_stays(one_mass: OneMass) -> None:
     """Reference: analytic. A boom may have segments without load, whose gaps close at no speed."""
-    run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0, clearance=0.1)), 0.1))
+    run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).behind(0.1)), 0.1))
     assert not run.states.any()
     assert np.isnan(run.first_contact)

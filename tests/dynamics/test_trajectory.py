@@ -19,7 +19,7 @@ from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 
-STOP = PowerContact(stiffness=1.0e4, exponent=1.0, clearance=1.0e-2)
+STOP = PowerContact(stiffness=1.0e4, exponent=1.0).behind(1.0e-2)
 
 
 def deflections(tip: Array, end: float) -> Trajectory:
@@ -73,7 +73,7 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
         omega2=np.array([10.0]),
         load=np.array([2.0]),
         rows=row,
-        laws=[STOP, replace(STOP, clearance=5.0e-3)],
+        laws=[STOP, STOP.law.behind(5.0e-3)],
         station_of_row=np.array([0, 1]),
         stations=[9.0, 10.0],
         observers={},
@@ -98,7 +98,7 @@ def test_stations_have_directions_and_friction_forces() -> None:
         omega2=np.array([10.0]),
         load=np.array([2.0]),
         rows=np.array([[0.8]]),
-        laws=[replace(STOP, clearance=1.0)],
+        laws=[STOP.law.behind(1.0)],
         station_of_row=np.array([0]),
         stations=[9.0, 9.0],
         station_directions=["z", "y"],
@@ -120,7 +120,7 @@ def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
         omega2=np.array([4.0, 9.0]),
         load=np.array([1.0, 1.0]),
         rows=np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]),
-        laws=[replace(STOP, clearance=10.0)] * 3,
+        laws=[STOP.law.behind(10.0)] * 3,
         station_of_row=np.array([1, 1, 0]),
         stations=[9.0, 10.0],
         observers={},

@@ -22,7 +22,7 @@ CHAOTIC = GapSystem(
     omega2=LINEAR.omega2,
     load=LINEAR.load,
     rows=np.array([[0.8, -0.6]]),
-    laws=[PowerContact(stiffness=1.0e6, exponent=2.0, clearance=0.02)],
+    laws=[PowerContact(stiffness=1.0e6, exponent=2.0).behind(0.02)],
     station_of_row=np.array([0]),
     stations=[0.0],
     observers=LINEAR.observers,

@@ -63,8 +63,8 @@ def test_a_changed_case_is_that_of_a_changed_file(example: ModuleType, tmp_path:
 def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
     """Reference: analytic. A uniform load q moves a free uniform beam by q t²/2m, unbent."""
     mass = example.boom().segments[1].mass_per_length
-    expected = np.sqrt(2.0 * example.CLEARANCE * mass / -example.LOAD)
-    motion = pt.BeamElements(example.boom(), [example.LAW], element_length=1.0).simulate(1.0)
+    expected = np.sqrt(example.PLAY * mass / -example.LOAD)
+    motion = pt.BeamElements(example.boom(), element_length=1.0).simulate(1.0)
     assert motion.first_contact == pytest.approx(expected, rel=1e-4)
     assert motion.energy_residual < 1e-3
 
@@ -80,7 +80,7 @@ def test_play_turns_the_fly(example: ModuleType) -> None:
 @of("own_contact_law")
 def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
     """Reference: analytic. ½ m v² = ½ k p² + ¼ c p⁴ at the deepest."""
-    law, speed = example.RubberStop(1.0e5, 1.0e9, 0.01), 3.0
+    law, speed = example.RubberStop(1.0e5, 1.0e9), 3.0
     depth = np.sqrt((np.sqrt(law.linear**2 + 2.0 * law.cubic * speed**2) - law.linear) / law.cubic)
     motion = example.strike(law, speed)
     peak = float(motion.data["contact_force_peak"].max())
@@ -95,7 +95,7 @@ def test_another_integrator_finds_the_same(example: ModuleType) -> None:
         omega2=np.array([4.0, 31.0]),
         load=np.array([2.0, 3.0]),
         rows=np.array([[0.8, -0.6]]),
-        laws=[pt.PowerContact(1.0e4, 2.0, clearance=0.02)],
+        laws=[pt.PowerContact(1.0e4, 2.0).behind(0.02)],
         station_of_row=np.array([0]),
         stations=[0.0],
         observers={"tip": Observer(np.array([1.0, 0.4]))},
@@ -124,9 +124,9 @@ def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
 def test_beams_and_shells_are_one_boom(example: ModuleType) -> None:
     """Reference: other code, the one to the other; both fly freely at first."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
-    boom, laws = example.boom(), [example.LAW]
-    shell = pt.Shell(boom, laws, mesh_size=0.4).simulate(0.5)
-    beam = pt.BeamElements(boom, laws, theory="timoshenko").simulate(0.5)
+    boom = example.boom()
+    shell = pt.Shell(boom, mesh_size=0.4).simulate(0.5)
+    beam = pt.BeamElements(boom, theory="timoshenko").simulate(0.5)
     assert shell.first_contact == pytest.approx(beam.first_contact, rel=1e-6)
     assert shell.first_peak()[1] == pytest.approx(beam.first_peak()[1], rel=0.02)
     assert shell.compare(beam, until=beam.first_contact).largest < 1e-3

@@ -30,7 +30,7 @@ OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 INNER = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
 # Of both segments in kg/m.
 HEAVY, LIGHT = 7850.0 * OUTER.area, 7850.0 * INNER.area
-JOINT = Joint(outer=0, inner=1, stations=(6.0, 8.0), clearance=5e-3)
+JOINT = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01)
 
 
 def segments() -> tuple[Segment, Segment]:
@@ -96,7 +96,7 @@ def test_of_three_segments_each_carries_all_that_is_beyond_it() -> None:
     """Reference: analytic, the sum of the thrusts outboard; a tension pulls."""
     arm, fly = segments()
     jib = Segment.of_section("jib", 12.0, 20.0, STEEL, INNER)
-    second = Joint(outer=1, inner=2, stations=(12.0, 14.0), clearance=5e-3)
+    second = Joint(outer=1, inner=2, stations=(12.0, 14.0), play=0.01)
     thrusts = [Thrust(2, 20.0, 700.0), Thrust(1, 13.0, -100.0), Thrust(0, 7.0, 10.0)]
     arm, fly, jib = with_compression((arm, fly, jib), [JOINT, second], thrusts)
     assert at(jib, 13.0, 19.0) == [700.0, 700.0]

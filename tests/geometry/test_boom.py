@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dynamics.contact import PowerContact
 from geometry.boom import (
     Boom,
     BoomError,
@@ -91,7 +92,7 @@ def test_places_of_three_segments(paper_boom: Boom) -> None:
 def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> None:
     """Stations of the joints along z and along y, then stops; nodes wherever a force may be."""
     loads = (Load(0, "z", 5.0, 4.0, np.ones_like), Load(0, "z", 5.0, None, np.ones_like))
-    stop = Stop(1, 14.0, 1.0e-3, 1.0e9, 0.0, 1.0)
+    stop = Stop(1, 14.0, 0.002, PowerContact(1.0e9, 1.0, stiffness_below=0.0))
     outer, inner = paper_boom.segments
     heavy = replace(inner, masses=(PointMass(19.0, 80.0),))
     boom = Boom((outer, heavy), paper_boom.joints, loads, (stop,))
@@ -232,7 +233,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
         "joint[1].play",
         "'inner' does not fit in 'outer': 0.014 m of height and 0.0399939 m of width are free, "
         "and a play of 0.028 m is asked for; make the inner section or the play smaller",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, clearance=14.0e-3),)),
+        lambda outer, inner, joint: ((outer, inner), (replace(joint, play=0.028),)),
     ),
     "friction without what presses": (
         "joint[1].normal_forces",
@@ -251,7 +252,7 @@ FAULTS: dict[str, tuple[str, str, Fault]] = {
     "in space without lateral numbers": (
         "segment[1].lateral",
         "missing; with lateral play the segments bend along y and twist",
-        lambda outer, inner, joint: ((outer, inner), (replace(joint, lateral_clearance=1e-3),)),
+        lambda outer, inner, joint: ((outer, inner), (replace(joint, lateral_play=0.002),)),
     ),
     "outer not held": (
         "segment[1]",
@@ -277,13 +278,13 @@ def test_refuses_what_is_no_boom(paper_boom: Boom, where: str, what: str, fault:
 
 
 Change = Callable[[Boom], Boom]
-STOP = Stop(1, 14.0, 1.0e-3, 1.0e9, 0.0, 1.0)
+STOP = Stop(1, 14.0, 0.002, PowerContact(1.0e9, 1.0, stiffness_below=0.0))
 
 
 def _another_joint(boom: Boom) -> Boom:
     (joint,) = boom.joints
     last = replace(boom.segments[1], name="last", start=18.0, end=27.0, section=None)
-    flat = replace(joint, outer=1, inner=2, stations=(18.0, 19.0), lateral_clearance=None)
+    flat = replace(joint, outer=1, inner=2, stations=(18.0, 19.0), lateral_play=None)
     return replace(boom, segments=(*boom.segments, last), joints=(joint, flat))
 
 
@@ -304,7 +305,7 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
         "joint[1].lateral_play",
         "'inner' does not fit in 'outer': 0.0399939 m of width are free, and a lateral play of "
         "0.042 m is asked for; make the inner section or the lateral play smaller",
-        lambda boom: replace(boom, joints=(replace(boom.joints[0], lateral_clearance=21.0e-3),)),
+        lambda boom: replace(boom, joints=(replace(boom.joints[0], lateral_play=0.042),)),
     ),
     "load outside": (
         "load[2].x",
@@ -322,7 +323,7 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
         "the boom is flat, and nothing moves along 'y'; give 'z', or the joints lateral_play",
         lambda boom: replace(
             boom,
-            joints=(replace(boom.joints[0], lateral_clearance=None),),
+            joints=(replace(boom.joints[0], lateral_play=None),),
             loads=(Load(1, "y", 5.0, None, np.ones_like),),
         ),
     ),

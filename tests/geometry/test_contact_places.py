@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dynamics.contact import PowerContact
 from geometry.boom import Boom, PadSize, Stop
 from geometry.contact_places import Pad, Patch, Stretch, pads
 
@@ -90,7 +91,7 @@ def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
                 replace(joint, tied=tied),
                 replace(joint, outer=1, inner=2, stations=(17.0, 18.0, 19.0)),
             ),
-            stops=(Stop(2, 26.0, 1.0e-2, 1.0e8, 1.0e8, 1.0),),
+            stops=(Stop(2, 26.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),),
         )
         found = pads(boom)
         assert len(boom.stations) == (7 if tied else 11)

@@ -45,7 +45,7 @@ def drawn(
         Segment.of_section("fly", start, end, steel, FLY, **(fly or {})),
     )
     drive = Drive(SCurve(travel, 2.0), ("inner", "outer"), least)
-    joint = {"clearance": 1.5e-3, "stations": (start, 6.5), **joint}
+    joint = {"play": 3.0e-3, "stations": (start, 6.5), **joint}
     return Boom(segments, (Joint(0, 1, drive=drive, **joint),))
 
 
@@ -88,12 +88,12 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
     held = (Support(0.0, "clamped"),)
     base = Segment.of_section("base", 0.0, 10.0, steel, tail, supports=held, head_section=head)
     fly = Segment.of_section("fly", 5.0, 15.0, steel, inner[0], head_section=inner[1])
-    joint = Joint(0, 1, (5.0, 10.0), clearance=0.007)
+    joint = Joint(0, 1, (5.0, 10.0), play=0.014)
     assert room(joint, base, fly)[0] == pytest.approx(0.026)
     assert room(joint, base, fly, 4.0)[0] == pytest.approx(0.010)
     for travel, clearance in ((3.0, 0.007), (4.0, 0.005)):
         drive = Drive(SCurve(travel, 2.0), ("inner", "outer"))
-        assert Boom((base, fly), (replace(joint, clearance=clearance, drive=drive),)).driven
+        assert Boom((base, fly), (replace(joint, play=2.0 * clearance, drive=drive),)).driven
     drive = Drive(SCurve(4.0, 2.0), ("inner", "outer"))
     with pytest.raises(BoomError) as caught:
         Boom((base, fly), (replace(joint, drive=drive),))

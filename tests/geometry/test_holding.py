@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from dynamics.contact import PowerContact
 from dynamics.excitation import Ramp, Released, Step
 from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
 from geometry.holding import check_pressed
@@ -20,9 +21,9 @@ HINGE = Support(0.0)
 ACROSS = Support(0.0, lateral_kind="clamped")
 ARM = Cylinder(0, x=4.0, depth=0.3, ground=(1.0, -2.0), stiffness=1.0e7)
 # Holds from below what is pressed down, from above what is pressed up.
-BELOW = Stop(0, 6.0, 0.01, stiffness=0.0, stiffness_below=1.0e7, exponent=1.0)
-ABOVE = replace(BELOW, stiffness=1.0e7, stiffness_below=0.0)
-BOTH = replace(BELOW, stiffness=1.0e7)
+BELOW = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1.0e7))
+ABOVE = replace(BELOW, contact=PowerContact(1.0e7, 1.0).upper())
+BOTH = replace(BELOW, contact=PowerContact(1.0e7, 1.0))
 
 
 def held(boom: Boom, *supports: Support, stations: tuple[float, ...] = (), **others: Any) -> Boom:

@@ -23,7 +23,7 @@ def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
     base = Segment.of_section("base", 0.0, 6.0, steel, BASE, supports=held)
     fly = Segment.of_section("fly", 5.0, 11.0, steel, FLY)
     pads = tuple(SlidePad(0.1, width, side=side) for side, width in widths.items())
-    return Boom((base, fly), (Joint(0, 1, (5.0, 6.0), 0.005, 0.005, pads=pads),))
+    return Boom((base, fly), (Joint(0, 1, (5.0, 6.0), play=0.01, lateral_play=0.01, pads=pads),))
 
 
 def test_a_pad_has_the_room_of_its_own_wall(steel: Material) -> None:

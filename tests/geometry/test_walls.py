@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dynamics.contact import PowerContact
 from geometry.boom import Boom, BoomError, Stop
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
@@ -103,7 +104,7 @@ def test_sections_that_touch_have_flats(paper_boom: Boom, spatial_boom: Boom) ->
     joint = replace(paper_boom.joints[0], tied=True)
     tied = _in(replace(paper_boom, joints=(joint,)), outer, folded)
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
-        replace(tied, stops=(Stop(1, 15.0, 0.1, 1e7, 1e7, 1.0),))
+        replace(tied, stops=(Stop(1, 15.0, 0.2, PowerContact(1e7, 1.0, stiffness_below=1e7)),))
 
 
 def test_a_flat_lies_on_one_as_wide(paper_boom: Boom) -> None:

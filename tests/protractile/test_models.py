@@ -38,7 +38,7 @@ play = 0.010
 stiffness = 1e9
 exponent = 1.0
 """)
-LAW = pt.PowerContact(1.0e9, exponent=1.0, clearance=5.0e-3)
+LAW = pt.PowerContact(1.0e9, exponent=1.0)
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def boom() -> pt.Boom:
         "fly", 6.0, 14.0, steel,
         pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005), load=-500.0,
     )  # fmt: skip
-    return pt.Boom((arm, fly), (pt.Joint(0, 1, stations=(6.0, 8.0), clearance=5.0e-3),))
+    return pt.Boom((arm, fly), (pt.Joint(0, 1, stations=(6.0, 8.0), play=0.010, contact=LAW),))
 
 
 def declared(model: ModelTable, **tables: Any) -> pt.Case:
@@ -82,7 +82,7 @@ def test_a_model_moves_as_that_of_a_case_file(
         pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     if "calibrated_by" in keys:
         keys = {"calibrated_by": pt.Shell(mesh_size=keys["calibrated_by"])}
-    model = getattr(pt, kind)(boom, [LAW], **keys)
+    model = getattr(pt, kind)(boom, **keys)
     results = pt.run_case(declared(model))
     motion = model.simulate(0.2)
     np.testing.assert_array_equal(motion.tip, results.trajectories["tip"].sel(model=model.name))
@@ -91,7 +91,7 @@ def test_a_model_moves_as_that_of_a_case_file(
 
 def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:
     """Reference: other way to say it, to the bit."""
-    model = pt.BeamElements(pt.with_weight(boom, angle=30.0), [LAW], element_length=1.0)
+    model = pt.BeamElements(pt.with_weight(boom, angle=30.0), element_length=1.0)
     results = pt.run_case(declared(model, gravity={"angle": 30.0}))
     tip = results.trajectories["tip"].sel(model=model.name)
     np.testing.assert_array_equal(model.simulate(0.2).tip, tip)
@@ -99,7 +99,7 @@ def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:
 
 def test_a_motion_starts_and_is_damped_as_that_of_a_case_file(boom: pt.Boom) -> None:
     """Reference: other way to say it, to the bit."""
-    model = pt.BeamElements(boom, [LAW], element_length=1.0)
+    model = pt.BeamElements(boom, element_length=1.0)
     results = pt.run_case(
         declared(
             model,

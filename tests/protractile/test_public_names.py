@@ -62,9 +62,7 @@ def at_hand() -> dict[str, Any]:
         example = examples_of(described)[0]
         example.globs |= names
         doctest.DocTestRunner().run(example, clear_globs=False)
-        names |= {
-            name: example.globs[name] for name in ("ball", "boom", "laws") if name in example.globs
-        }
+        names |= {name: example.globs[name] for name in ("ball", "boom") if name in example.globs}
     return names
 
 

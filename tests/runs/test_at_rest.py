@@ -82,7 +82,7 @@ def test_supports_bear_what_the_lever_rule_says(answers: Answers) -> None:
 
 def ball(*histories: History) -> GapSystem:
     """1 kg under its weight on a floor of 1e6 N/m, and 20 N upwards by each history."""
-    floor, one = PowerContact(1e6, 1.0, clearance=0.0).lower(), np.ones(1)
+    floor, one = PowerContact(1e6, 1.0).lower(), np.ones(1)
     lifted = [Excitation(20.0 * one, history) for history in histories]
     system = GapSystem(0.0 * one, -9.81 * one, one[None], [floor], np.array([0]), [0.0], {})
     return replace(system, excitations=lifted)

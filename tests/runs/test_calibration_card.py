@@ -13,14 +13,15 @@ from dynamics.contact import PowerContact
 from runs.case.build import build_boom
 from runs.pipeline.model_run import calibration_card
 from studies.motions import friction_case
+from tests.touching import touching
 
 
 def test_it_tells_stiffness_and_springs() -> None:
     """Reference: analytic, 1/D of a diagonal residual compliance, and the factors given."""
     boom = build_boom(friction_case())
-    law = PowerContact(1.0e9, 1.0, clearance=0.007)
+    law = PowerContact(1.0e9, 1.0).behind(0.007)
     system = gap_system(
-        boom, finite_element_segments(boom, 2.0, "timoshenko", True), [law], (), AT_PADS
+        touching(boom, law, ()), finite_element_segments(boom, 2.0, "timoshenko", True), AT_PADS
     )
     assert len(system.laws) == 4
     residual = np.diag([2.0e-9, 4.0e-9, 5.0e-9, -1.0e-12, 1.0e-9, 1.0e-9])

@@ -12,12 +12,13 @@ from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
 from runs.case import reading as case_file
 from runs.case import toml
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom
 from runs.case.contact import JointTable
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.models import Plan, build
 from tests.runs.coarse_case import COARSE
+from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
 # Penetrations of up to 0.5 mm, by 5 µm.
@@ -40,7 +41,7 @@ def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
     """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most."""
     case = case_with(tmp_path, f"force_table = {POINTS}\n")
     (law,) = contact_laws(case, case.models[0])
-    power = PowerContact(1e13, 2.0, 7.0e-3)
+    power = PowerContact(1e13, 2.0).behind(7.0e-3)
     y = np.concatenate([[-1.0], [1.0]]) * (7.0e-3 + np.linspace(0.0, 5.0e-4, 999)[:, None])
     above = np.abs(law.force(y)) - np.abs(power.force(y))
     assert -1e-6 < above.min() < 1e-6
@@ -87,8 +88,8 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
         {"outer": "a", "inner": "b", "stations": (1.0,), "play": 0.0, **to_the_sides}
         | {"force_table": ((1.0e-3, 2.0),)}
     )
-    assert joint.law("y") == PowerContact(1.0e9, 1.5, 5.0e-3)
-    assert joint.law("z") == TableContact((1.0e-3,), (2.0,), 0.0)
+    assert joint.law("y") == PowerContact(1.0e9, 1.5)
+    assert joint.law("z") == TableContact((1.0e-3,), (2.0,))
 
 
 @pytest.mark.parametrize(

@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
 import pytest
 
+from dynamics.contact import PowerContact
+from geometry.boom import Boom
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.kinds import KINDS
+from runs.case.kinds.rigid import Rigid
 from runs.case.messages import BadInput
 from tests.runs.coarse_case import COARSE
 from tests.runs.test_actions import CANTILEVER
@@ -34,6 +38,18 @@ def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
     assert summary.energy_residual < 1e-5
     # A uniform load on a free body turns it nowhere.
     assert summary.first_contact == pytest.approx(np.sqrt(2.0 * 7.0e-3 / 1.0), abs=1e-5)
+
+
+def test_a_joint_s_play_is_that_of_its_contacts(paper_boom: Boom) -> None:
+    """Reference: analytic, free fall q/m of the inner segment across the clearance Δ."""
+    peaks = []
+    for play in (0.014, 0.004):
+        (joint,) = paper_boom.joints
+        joint = replace(joint, play=play, contact=PowerContact(1.0e9, 1.0))
+        motion = Rigid(replace(paper_boom, joints=(joint,))).simulate(0.3)
+        assert motion.first_contact == pytest.approx(np.sqrt(play), abs=1e-5)
+        peaks.append(np.abs(motion.data["tip"].values).max())
+    assert peaks[0] > peaks[1] + 4.0e-3
 
 
 def test_rigid_segments_that_cannot_move_are_refused(tmp_path: Path) -> None:

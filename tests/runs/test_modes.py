@@ -98,7 +98,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
 
 def test_what_nothing_bends_has_modes_of_its_contacts() -> None:
     """Reference: analytic. A ball of 1 kg on a spring of 1e6 N/m, with no frequency of its own."""
-    law = PowerContact(1e6, 1.0, clearance=0.0).lower()
+    law = PowerContact(1e6, 1.0).lower()
     one = np.ones(1)
     ball = GapSystem(0.0 * one, -9.81 * one, one[None], [law], np.array([0]), [0.0], {})
     omega, _ = pressed_modes(ball)

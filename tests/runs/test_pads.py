@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from dynamics.contact import PowerContact
 from dynamics.motion import initial_state
 from protractile.cases import run_case
 from runs.case import reading as case_file
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom
 from runs.case.declared import Declared
 from runs.case.schema import Case
 from runs.pipeline.at_rest import positions, pressed
@@ -24,6 +23,7 @@ from runs.pipeline.summary import Summary
 from runs.report.answer_tables import pad_table
 from runs.report.first_look import first_table
 from tests.runs.coarse_case import COARSE
+from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
 PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure = 2e7 }\n"
@@ -44,8 +44,8 @@ def test_pads_are_as_stiff_as_they_are_thick(tmp_path: Path) -> None:
     """Reference: analytic, two pads of E A/t = 1.9e9 · 0.01/0.02 on a side."""
     case = case_with(tmp_path, PAD)
     (law,) = contact_laws(case, case.models[0])
-    assert isinstance(law, PowerContact)
-    assert (law.stiffness, law.exponent, law.clearance) == pytest.approx((1.9e9, 1.0, 7.0e-3))
+    assert (law.above, law.law.exponent) == (7.0e-3, 1.0)
+    assert law.law.stiffness == pytest.approx(1.9e9)
 
 
 def test_pads_of_another_modulus(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
     case = case_with(tmp_path, several(pad_on("above", 0.05, 0.02), *below))
     system = build(case, build_boom(case), case.models[0]).system
     tail = [law for law, k in zip(system.laws, system.station_of_row, strict=True) if k == 0]
-    assert [law.clearance for law in tail] == pytest.approx([0.007, 0.007, 0.005])
+    assert [law.terms[0].onset for law in tail] == pytest.approx([0.007, 0.007, 0.005])
     pressed = [float(law.force(np.array(0.008))) for law in tail[:1]]
     pressed += [float(law.force(np.array(-0.008))) for law in tail[1:]]
     stiff = 2.0 * 1.9e9 * 0.01 / 0.02

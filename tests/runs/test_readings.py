@@ -13,13 +13,14 @@ from rich.console import Console
 
 from dynamics.contact import PowerContact
 from runs.case import reading as case_file
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
 from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
 from runs.paper.verdicts import Judgement
+from tests.touching import contact_laws
 
 LITERAL = Reading(0.007, "literal", "as printed", 2.0)
 RESTORED = Reading(0.007, "restored", "as printed", 2.0)
@@ -44,7 +45,7 @@ def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) ->
     difference of forces, good to 1e-6.
     """
     stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
-    law = PowerContact(stiffness, exponent, 0.0)
+    law = PowerContact(stiffness, exponent)
     depth = (2.5e4 / stiffness) ** (1.0 / exponent)
     assert float(law.force(depth)) == pytest.approx(2.5e4)
     slope = (law.force(depth * 1.001) - law.force(depth * 0.999)) / (0.002 * depth)
@@ -68,7 +69,7 @@ def test_a_reading_is_in_every_model_of_its_case(paper: Case) -> None:
     assert [model.name for model in case.models] == list(MODELS)
     for model in case.models:
         (law,) = contact_laws(case, model)
-        assert (law.clearance, law.stiffness, law.exponent) == (0.014, 1.01e6, 1.5)
+        assert law == PowerContact(1.01e6, 1.5).behind(0.014)
         assert not isinstance(model, Kantorovich) or model.base == "pinned"
     assert [segment.load for segment in boom.segments] == [1.5 * 83.16, 1.5 * 55.07]
 

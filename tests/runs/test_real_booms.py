@@ -96,7 +96,7 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
         inner, virtual = dict(real[joint.inner].forces), dict(unit[joint.inner].forces)
         for x in joint.stations:
             # The inner segment gives way against what pushes it, by the clearance and by F/k.
-            way = np.sign(inner[x]) * joint.clearance + inner[x] / k
+            way = np.sign(inner[x]) * 0.5 * joint.play + inner[x] / k
             found += virtual[x] * way
     for jack, press, one in zip(boom.cylinders, presses, ones, strict=True):
         found += press * one / jack.stiffness
@@ -115,8 +115,8 @@ def rest_of(case: Case, boom: Boom) -> tuple[StaticState, list[float]]:
     """At rest, and the stiffness of each joint's contacts along z."""
     model = next(model for model in case.models if not model.play_free)
     found = joined(case, boom, model)
-    stiffness = [law.terms[0].stiffness for law in found.laws]
-    return static_state(boom, found.laws, found.lateral_laws), stiffness
+    stiffness = [joint.contact.terms[0].stiffness for joint in found.boom.joints]
+    return static_state(found.boom), stiffness
 
 
 # Those that ship with the depth of a lug, and may have one of their pin.

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from dynamics.contact import PowerContact
 from dynamics.drive.travel import SCurve
 from dynamics.line import Line
 from dynamics.trajectory import Trajectory
@@ -111,7 +112,9 @@ def test_contact_in_the_run_is_contact_in_the_picture(
 def in_space(shell: Scene) -> list[Scene]:
     """Two joints along z and y, and a stop, which is no contact of segments; side and above."""
     boom = build_boom(load(str(CASES / "inspection-arm.toml")))
-    boom = replace(boom, stops=(Stop(1, boom.joints[0].stations[0], 0.02, 1e9, 0.0, 1.0),))
+    boom = replace(
+        boom, stops=(Stop(1, boom.joints[0].stations[0], 0.04, PowerContact(1e9, 1.0).upper()),)
+    )
     motion = shell.motion.isel(station=[0] * len(boom.stations))
     motion = motion.assign_coords(station=[x for x, _ in boom.stations])
     side = replace(shell, boom=boom, motion=motion)
@@ -121,10 +124,10 @@ def in_space(shell: Scene) -> list[Scene]:
 def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
     side, above = in_space
     one, two = side.boom.joints
-    assert side.overlaps == [(0, 1, [0, 1], one.clearance), (1, 2, [2, 3], two.clearance)]
+    assert side.overlaps == [(0, 1, [0, 1], 0.5 * one.play), (1, 2, [2, 3], 0.5 * two.play)]
     assert above.overlaps == [
-        (0, 1, [4, 5], one.lateral_clearance),
-        (1, 2, [6, 7], two.lateral_clearance),
+        (0, 1, [4, 5], 0.5 * one.lateral_play),
+        (1, 2, [6, 7], 0.5 * two.lateral_play),
     ]
 
 
@@ -261,7 +264,7 @@ def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
     scene, _ = still(paper_boom, bent(paper_boom))
     drawn = scene.drawn(np.zeros_like(scene.points), 10.0)
     outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
-    assert outer - inner > 10.0 * paper_boom.joints[0].clearance
+    assert outer - inner > 5.0 * paper_boom.joints[0].play
 
 
 def test_what_jumps_is_read_beyond() -> None:

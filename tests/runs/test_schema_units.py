@@ -17,7 +17,7 @@ from rich.console import Console
 
 from protractile.cases import change
 from runs.case import reading, toml
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import in_si
 from runs.case.declared import Declared
@@ -27,6 +27,7 @@ from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
 from runs.pipeline.inferred import print_inferred
 from runs.sweep.points import plan
+from tests.touching import contact_laws
 
 IN_SI = """
 title = "A crane"

@@ -24,6 +24,7 @@ from runs.pipeline.means import Means
 from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
 from studies.drawn_column import END, LAW, LENGTH, STIFFNESS, column
+from tests.touching import touching
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 
@@ -78,7 +79,7 @@ def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
     force = 0.2 * np.pi**2 * STIFFNESS / (4.0 * LENGTH**2)
     boom = replace(column(force), loads=(Load(0, "z", -1.0e3, LENGTH, Step()),))
     models = finite_element_segments(boom, 0.25, "euler-bernoulli", False)
-    system = gap_system(boom, models, [LAW]).gathered()
+    system = gap_system(touching(boom, LAW), models).gathered()
     outer = lines(boom, models)[0]
     found = section_forces(boom, 0, outer, rest_at(system, 1.0), np.array(1.0))
     before = outer.x < END

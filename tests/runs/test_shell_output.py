@@ -13,6 +13,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from dynamics.contact import PowerContact
 from dynamics.excitation import Step
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Cylinder, Load, PointMass, Stop
@@ -20,13 +21,14 @@ from runs.pipeline.model_output import ShellOutput
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
+from tests.touching import touching
 
 pytestmark = pytest.mark.slow
 
 
 def output(boom: Boom) -> ShellOutput:
     """Of a shell that rests for one second."""
-    shell = reduce_boom(boom, [LAW], ShellOptions(0.5), MPI.COMM_SELF, lateral_laws=[LATERAL_LAW])
+    shell = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), MPI.COMM_SELF)
     time = np.array([0.0, 1.0])
     data = xr.Dataset(coords={"time": time})
     still = Trajectory(data, np.zeros((time.size, shell.system.omega2.size)))
@@ -35,7 +37,7 @@ def output(boom: Boom) -> ShellOutput:
 
 def test_stresses_are_kept_beside_all_that_presses() -> None:
     """Reference: the boom. Supports, masses, a lug, stations, a stop inside the overlap, loads."""
-    stop = Stop(1, 9.5, 0.02, 1.0e9, 0.0, 1.0)
+    stop = Stop(1, 9.5, 0.04, PowerContact(1.0e9, 1.0).upper())
     cylinder = Cylinder(0, x=4.0, depth=0.25, ground=(1.0, -4.25), stiffness=1.0e7)
     boom = boom_in_space()
     outer = replace(boom.segments[0], masses=(PointMass(4.0, 50.0),))

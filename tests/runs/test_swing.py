@@ -58,7 +58,7 @@ def lifted(travel: float, time: float) -> GapSystem:
     """A mass on a spring of 1 N/m, and one of 3 N/m that a drive moves to where it reads half."""
     one = np.ones(1)
     table = RowTable.of(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
-    spring = PowerContact(3.0, exponent=1.0, clearance=0.0)
+    spring = PowerContact(3.0, exponent=1.0)
     system = GapSystem(one, one, one[None], [spring], np.array([0]), [0.0], {"tip": Observer(one)})
     return replace(system, travels=[Travel(SCurve(travel, time), table, (("rows", 0),), "")])
 

@@ -17,7 +17,7 @@ import pytest
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
+from dynamics.contact import Gap, PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
@@ -25,6 +25,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
 from geometry.section import BoxSection
 from tests.shell_model.booms import flat_boom
+from tests.touching import touching
 
 pytestmark = pytest.mark.slow
 
@@ -33,19 +34,20 @@ pytestmark = pytest.mark.slow
 MM, T = 1.0e3, 1.0e-3
 
 # n = 1, so that the shell's contacts are no stiffer than a run's.
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0, clearance=7.0e-3)
-QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
+QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
 
 
-def law_in_mm(law: PowerContact) -> PowerContact:
+def law_in_mm(law: Gap) -> Gap:
     """k in N/mmⁿ, Δ in mm, d in s/mm."""
+    power = law.law
+    assert isinstance(power, PowerContact)
     return replace(
-        law,
-        stiffness=law.stiffness / MM**law.exponent,
-        stiffness_below=law.below / MM**law.exponent,
-        clearance=law.clearance * MM,
-        damping=law.damping / MM,
-    )
+        power,
+        stiffness=power.stiffness / MM**power.exponent,
+        stiffness_below=power.below / MM**power.exponent,
+        damping=power.damping / MM,
+    ).behind(law.above * MM)
 
 
 def boom_in_mm(boom: Boom) -> Boom:
@@ -92,21 +94,21 @@ def _joint(joint: Joint) -> Joint:
     return replace(
         joint,
         stations=tuple(x * MM for x in joint.stations),
-        clearance=joint.clearance * MM,
-        lateral_clearance=joint.lateral_clearance and joint.lateral_clearance * MM,
+        play=joint.play * MM,
+        lateral_play=joint.lateral_play and joint.lateral_play * MM,
         pad=joint.pad and PadSize(joint.pad.length * MM, joint.pad.width * MM),
     )
 
 
 def series(boom: Boom, law: PowerContact) -> GapSystem:
     models = [kantorovich_segment(s, 3, "complete", rotary_inertia=True) for s in boom.segments]
-    return gap_system(boom, models, [law])
+    return gap_system(touching(boom, law), models)
 
 
 def elements(boom: Boom, law: PowerContact) -> GapSystem:
     longest = 0.05 * max(segment.length for segment in boom.segments)
     models = finite_element_segments(boom, longest, "timoshenko", True)
-    return gap_system(boom, models, [law])
+    return gap_system(touching(boom, law), models)
 
 
 def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
@@ -123,7 +125,7 @@ def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
             contact_line="surface" if line == "surface" else "near webs",
             surface=SurfaceOptions(points=(4, 2)),
         )
-        return reduce_boom(boom, [law], options, MPI.COMM_SELF).system
+        return reduce_boom(touching(boom, law), options, MPI.COMM_SELF).system
 
     return shell
 
@@ -157,7 +159,7 @@ def test_beams_do_not_know_the_units(
 def test_steps_by_tolerance_do_not_know_the_units() -> None:
     """Reference: this model in SI, without play and without friction, until chaos takes over."""
     boom = flat_boom()
-    law = replace(LINEAR, clearance=0.0)
+    law = LINEAR.law.behind(0.0)
     runs = [
         AdaptiveStep()(Motion(series(*data), 0.3))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))

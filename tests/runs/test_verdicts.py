@@ -17,7 +17,7 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from protractile.cases import run_case
 from runs.case import reading as case_file
-from runs.case.build import build_boom, contact_laws
+from runs.case.build import build_boom
 from runs.case.contact import ContactTable
 from runs.case.schema import Case
 from runs.paper.rules import PEAK_SCATTER, judge
@@ -33,6 +33,7 @@ from tests.runs.paper_curves import (
     verdicts,
 )
 from tests.runs.summaries import steps_for_peaks
+from tests.touching import contact_laws, touching
 
 TIME = np.arange(10_001) / 1000
 Tips = dict[str, np.ndarray]
@@ -175,7 +176,7 @@ def test_s4_knows_how_far_a_first_peak_can_be_trusted(case: Case) -> None:
     """Reference: non-regression, of the five-term series under a load changed by 1e-4."""
     boom = build_boom(case)
     segments = kantorovich_segments(boom, (2, 3), "as printed", False)
-    system = gap_system(boom, segments, contact_laws(case, case.models[1]))
+    system = gap_system(touching(boom, contact_laws(case, case.models[1])), segments)
     loads = [system.load * (1.0 + change) for change in (0.0, 1.0e-4, -1.0e-4)]
     motions = [AdaptiveStep()(Motion(replace(system, load=load), 0.7)) for load in loads]
     peaks = np.array([motion.first_peak()[1] for motion in motions])

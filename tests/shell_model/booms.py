@@ -11,8 +11,8 @@ from geometry.section import BoxSection, Section, infer_inner_section, infer_out
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 HELD = (Support(0.0), Support(2.0))
-LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=7.0e-3)
-LATERAL_LAW = PowerContact(stiffness=1.0e13, exponent=2.0, clearance=5.0e-3)
+LAW = PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=1.0e13, exponent=2.0).behind(5.0e-3)
 
 
 def box_segment(
@@ -50,7 +50,7 @@ def box_segment(
 def flat_boom(friction: float = 0.0) -> Boom:
     """The paper's two segments in their plane, with its normal forces where there is friction."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
-    inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.clearance)
+    inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
     return Boom(
         (
             box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
@@ -61,7 +61,7 @@ def flat_boom(friction: float = 0.0) -> Boom:
                 outer=0,
                 inner=1,
                 stations=(9.0, 10.0),
-                clearance=LAW.clearance,
+                play=LAW.play,
                 friction=friction,
                 normal_forces=(4500.0, 5000.0) if friction > 0.0 else (),
             ),
@@ -82,7 +82,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
         for segment in flat.segments
         if segment.lateral is not None
     )
-    joint = replace(flat.joints[0], lateral_clearance=LATERAL_LAW.clearance, friction=friction)
+    joint = replace(flat.joints[0], lateral_play=LATERAL_LAW.play, friction=friction)
     return Boom(segments, (joint,))
 
 

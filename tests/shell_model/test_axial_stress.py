@@ -22,7 +22,7 @@ from studies.taper import arm
 
 def stressed(boom: Boom) -> ShellStress:
     """Where it has not moved."""
-    fields = reduce_boom(boom, [], ShellOptions(mesh_size=0.4), MPI.COMM_SELF).fields
+    fields = reduce_boom(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF).fields
     assert fields is not None
     still = np.zeros((1, fields.sizes["mode"]))
     moving = fields.assign(state=(("time", "mode"), still), time=("time", np.zeros(1)))

@@ -22,6 +22,7 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
+from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
 SHIFTS = (10.0, 1.0e4, 1.0e6)
@@ -31,7 +32,7 @@ SHIFTS = (10.0, 1.0e4, 1.0e6)
 def _system(boom: Boom, moments: int = 1) -> GapSystem:
     options = ShellOptions(0.5, krylov=KrylovOptions(moments=moments))
     lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(boom, [LAW], options, MPI.COMM_WORLD, lateral_laws=lateral).system
+    return reduce_boom(touching(boom, LAW, lateral), options, MPI.COMM_WORLD).system
 
 
 def _compliance(system: GapSystem, rows: Array, sigma: float) -> Array:
@@ -77,14 +78,14 @@ def test_a_boom_on_its_side_is_the_same_boom() -> None:
     """
     upright = boom_in_space(sideways=0.3)
     joint = upright.joints[0]
-    assert joint.lateral_clearance is not None
+    assert joint.lateral_play is not None
     lying = Boom(
         tuple(segment.turned() for segment in upright.segments),
-        (replace(joint, clearance=joint.lateral_clearance, lateral_clearance=joint.clearance),),
+        (replace(joint, play=joint.lateral_play, lateral_play=joint.play),),
     )
     options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
     first, second = (
-        reduce_boom(boom, [laws[0]], options, MPI.COMM_WORLD, lateral_laws=[laws[1]]).system
+        reduce_boom(touching(boom, [laws[0]], [laws[1]]), options, MPI.COMM_WORLD).system
         for boom, laws in ((upright, (LAW, LATERAL_LAW)), (lying, (LATERAL_LAW, LAW)))
     )
     assert second.frequencies == pytest.approx(first.frequencies, rel=1.0e-6, abs=1.0e-9)
@@ -120,7 +121,7 @@ def test_corners_that_roll_together_do_not_part() -> None:
     assert np.abs(gaps[~along_z]) == pytest.approx(0.5e-3 * section.height, rel=1.0e-9)
     # A flange's pad slides sideways by its height: the outer one's inner face less the play.
     slides = system.friction_rows @ state
-    arm = 0.5 * (outer.height - outer.flange) - LAW.clearance
+    arm = 0.5 * (outer.height - outer.flange) - LAW.above
     assert np.abs(slides[along_z]) == pytest.approx(1.0e-3 * arm, rel=1.0e-9)
 
 
@@ -172,7 +173,7 @@ def test_lateral_motion_is_that_of_beams() -> None:
     )
     boom = replace(flat, segments=segments)
     elements = finite_element_segments(boom, 0.5, "timoshenko", True)
-    systems = [_system(boom), gap_system(boom, elements, [LAW], [LATERAL_LAW])]
+    systems = [_system(boom), gap_system(touching(boom, LAW, LATERAL_LAW), elements)]
     shell, beam = (AdaptiveStep()(Motion(system, 0.25)) for system in systems)
     assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
     tips = [motion.data["tip_lateral"].values for motion in (shell, beam)]
@@ -208,4 +209,4 @@ def test_contact_across_the_flanges_is_for_flat_booms() -> None:
     )
     options = ShellOptions(0.5, contact_line="across")
     with pytest.raises(BoomError, match=f"^{message}$"):
-        reduce_boom(boom_in_space(), [LAW], options, MPI.COMM_WORLD, lateral_laws=[LATERAL_LAW])
+        reduce_boom(touching(boom_in_space(), LAW, LATERAL_LAW), options, MPI.COMM_WORLD)

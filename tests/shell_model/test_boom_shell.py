@@ -18,12 +18,13 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom
+from tests.touching import touching
 
 
 @cache
 def _shell(line: ContactLine) -> ReducedShell:
     options = ShellOptions(0.25, contact_line=line, krylov=KrylovOptions(moments=2))
-    return reduce_boom(flat_boom(), [LAW], options, MPI.COMM_WORLD)
+    return reduce_boom(touching(flat_boom(), LAW), options, MPI.COMM_WORLD)
 
 
 @pytest.mark.slow
@@ -89,16 +90,16 @@ def test_a_shell_needs_a_section() -> None:
         "section"
     )
     with pytest.raises(BoomError, match=message):
-        reduce_boom(bare, [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
+        reduce_boom(touching(bare, LAW), ShellOptions(0.5), MPI.COMM_WORLD)
 
 
 def test_a_side_without_stiffness_never_touches() -> None:
     """One station, pressing up alone: one row, one-sided, above."""
-    law = replace(LAW, stiffness_below=0.0)
+    law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
     options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
-    system = reduce_boom(flat_boom(), [law], options, MPI.COMM_WORLD).system
+    system = reduce_boom(touching(flat_boom(), law), options, MPI.COMM_WORLD).system
     assert system.station_of_row.tolist() == [0, 1]
-    assert all(row.below == 0.0 for row in system.laws)
+    assert all(row.one_sided(-1) is None for row in system.laws)
 
 
 def test_a_segment_without_load_is_reduced_like_any_other() -> None:
@@ -107,7 +108,7 @@ def test_a_segment_without_load_is_reduced_like_any_other() -> None:
     bare = replace(boom, segments=(boom.segments[0], replace(boom.segments[1], load=0.0)))
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     error, expected = (
-        reduce_boom(one, [LAW], options, MPI.COMM_WORLD).errors["contact_compliance"]
+        reduce_boom(touching(one, LAW), options, MPI.COMM_WORLD).errors["contact_compliance"]
         for one in (bare, boom)
     )
     assert error == pytest.approx(expected, rel=0.5)

@@ -26,6 +26,7 @@ from shell_model.reduction.segment import KrylovOptions
 from shell_model.stress.stresses import ShellStress, wall_forces
 from tests.lowered_pin import level, raised
 from tests.shell_model.booms import boom_in_space, box_segment
+from tests.touching import touching
 
 # Thick walls: the section hardly distorts.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
@@ -40,15 +41,15 @@ def luffed(cylinder: Cylinder = CYLINDER) -> Boom:
 
 @cache
 def shell(boom: Boom, size: float = 0.2) -> GapSystem:
-    laws = [PowerContact(1.0e9, 1.0, joint.clearance) for joint in boom.joints]
+    laws = [PowerContact(1.0e9, 1.0).behind(0.5 * joint.play) for joint in boom.joints]
     options = ShellOptions(size, krylov=KrylovOptions(moments=2))
-    return reduce_boom(boom, laws, options, MPI.COMM_WORLD, lateral_laws=laws).system
+    return reduce_boom(touching(boom, laws, laws), options, MPI.COMM_WORLD).system
 
 
 def beam(boom: Boom) -> GapSystem:
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    laws = [PowerContact(1.0e9, 1.0, joint.clearance) for joint in boom.joints]
-    return gap_system(boom, models, laws, laws)
+    laws = [PowerContact(1.0e9, 1.0).behind(0.5 * joint.play) for joint in boom.joints]
+    return gap_system(touching(boom, laws, laws), models)
 
 
 def at_rest(system: GapSystem) -> dict[str, float]:
@@ -62,7 +63,7 @@ def at_rest(system: GapSystem) -> dict[str, float]:
 def test_walls_carry_what_the_cylinder_pushes_along() -> None:
     """Reference: by hand, its force times the slope of its line, from its lug to the hinge."""
     boom = luffed()
-    made = reduce_boom(boom, [], ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)
+    made = reduce_boom(boom, ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)
     position = equilibrium(made.system, made.system.gathered().load)
     force = float(made.system.observers["cylinder_force"].row @ position)
     assert made.fields is not None
@@ -151,7 +152,7 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
 @pytest.mark.slow
 def test_a_shell_rests_on_a_hinge_and_a_stop() -> None:
     """Reference: analytic, the lever rule; nothing else holds the shell, and its weight presses."""
-    stop = Stop(0, 6.0, 1e-2, stiffness=0.0, stiffness_below=1e7, exponent=1.0)
+    stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
     segment = replace(luffed().segments[0], supports=(Support(0.0),))
     boom = replace(luffed(), segments=(segment,), stops=(stop,), cylinders=())
     system = shell(boom)

@@ -30,8 +30,9 @@ from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.generalised_alpha import GeneralisedAlpha
 from studies.reference_models.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
+from tests.touching import touching
 
-_SOFT = replace(LAW, stiffness=1.0e9, exponent=1.0)
+_SOFT = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
 
 
 def _dense(matrix: PETSc.Mat) -> Array:
@@ -80,7 +81,7 @@ def loaded() -> _Loaded:
 @cache
 def _full(boom: Boom, size: float = 0.5) -> BoomShell:
     laws = {"z": [_SOFT] * len(boom.joints)}
-    return assemble_boom(boom, laws, ShellOptions(size), MPI.COMM_SELF)
+    return assemble_boom(touching(boom, laws), ShellOptions(size), MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
@@ -135,10 +136,10 @@ def test_an_impact_is_that_of_the_reduced_shell(exponent: float, stiffness: floa
     """Reference: other code. A segment swings up against a stop at its tip and back; the reduced
     one has many moments and moves in short steps of exact flow.
     """
-    stop = Stop(0, 10.0, 1.0e-3, stiffness, 0.0, exponent)
+    stop = Stop(0, 10.0, 0.002, PowerContact(stiffness, exponent, stiffness_below=0.0))
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
-    reduced = reduce_boom(boom, [], ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
+    reduced = reduce_boom(boom, ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
     reference = FixedStep(1.0e-6)(Motion(reduced.system, 0.15))
     motion = integrate_directly(_full(boom), 0.15, 5.0e-5)
     tip, exact = motion.observed["tip"], reference.data["tip"].values
@@ -178,7 +179,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     whose hangs on how the last slip ended.
     """
     boom = flat_boom(friction=0.2)
-    system = reduce_boom(boom, [_SOFT], ShellOptions(0.5), MPI.COMM_SELF).system
+    system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
     reference = FixedStep(2.5e-6)(Motion(system, 0.4))
     full = _full(boom)
     motion = integrate_directly(full, 0.4, 2.5e-4)
@@ -209,7 +210,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
         ),
         (
             flat_boom(),
-            replace(LAW, damping=0.5),
+            replace(LAW.law, damping=0.5).behind(LAW.above),
             "the unreduced shell takes contacts without damping",
         ),
         (
@@ -228,7 +229,7 @@ def test_what_it_does_not_take_is_refused(boom: Boom, law: PowerContact, message
     laws: Mapping[Direction, list[PowerContact]] = dict.fromkeys(
         boom.directions, [law] * len(boom.joints)
     )
-    full = assemble_boom(boom, laws, ShellOptions(2.0), MPI.COMM_SELF)
+    full = assemble_boom(touching(boom, laws), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
         integrate_directly(full, 1.0e-3, 1.0e-3)
 

@@ -23,8 +23,9 @@ from geometry.drive import Drive
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from tests.shell_model.booms import flat_boom
+from tests.touching import touching
 
-LAW = PowerContact(1.0e8, 1.0, clearance=7.0e-3)
+LAW = PowerContact(1.0e8, 1.0).behind(7.0e-3)
 DRAWN = Drive(Stroke(2.0, 4.0, 0.1), ("inner", "outer"))
 SIZE = 0.3  # of which rings do not lie at round places
 
@@ -42,7 +43,9 @@ def telescope(way: float, drive: Drive | None = None) -> Boom:
 
 
 def reduced(way: float, drive: Drive | None = None) -> GapSystem:
-    return reduce_boom(telescope(way, drive), [LAW], ShellOptions(SIZE), MPI.COMM_WORLD).system
+    return reduce_boom(
+        touching(telescope(way, drive), LAW), ShellOptions(SIZE), MPI.COMM_WORLD
+    ).system
 
 
 def told(system: GapSystem) -> Array:

@@ -26,8 +26,9 @@ from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.pad_springs import SLOW, springs, squared
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
+from tests.touching import touching
 
-LAW = PowerContact(1.0e8, 1.0, clearance=7.0e-3)
+LAW = PowerContact(1.0e8, 1.0).behind(7.0e-3)
 DRAWN = Drive(SCurve(2.0, 1.0), ("inner", "outer"))
 SIZE = 0.25
 
@@ -48,7 +49,7 @@ def telescope(way: float, drive: Drive | None = None) -> Boom:
 
 @cache
 def shell(way: float, drive: Drive | None = None) -> ReducedShell:
-    return reduce_boom(telescope(way, drive), [LAW], ShellOptions(SIZE), MPI.COMM_WORLD)
+    return reduce_boom(touching(telescope(way, drive), LAW), ShellOptions(SIZE), MPI.COMM_WORLD)
 
 
 def local(system: GapSystem) -> Array:
@@ -114,11 +115,11 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
         flat = telescope(way, drive)
         outer, inner = boom.segments
         inner = replace(inner, start=6.0 + way, end=16.0 + way)
-        lateral = {"lateral_clearance": LATERAL_LAW.clearance, "friction": 0.2}
+        lateral = {"lateral_play": LATERAL_LAW.play, "friction": 0.2}
         joint = replace(flat.joints[0], dashpot=0.0, **lateral)
         boom = replace(boom, segments=(outer, inner), joints=(joint,))
         options = ShellOptions(2.0 * SIZE)
-        return reduce_boom(boom, [LAW], options, MPI.COMM_WORLD, lateral_laws=[LAW]).system
+        return reduce_boom(touching(boom, LAW, LAW), options, MPI.COMM_WORLD).system
 
     here, there = built(0.0, DRAWN).standing(1.0), built(2.0, None)
     rests = [(one, equilibrium(one, one.load)) for one in (here, there)]
@@ -180,7 +181,7 @@ def test_beams_are_as_near_as_where_it_rests() -> None:
     """
     apart = []
     for drive in (None, DRAWN):
-        beam = finite_element_system(telescope(0.0, drive), [LAW], theory="timoshenko")
+        beam = finite_element_system(touching(telescope(0.0, drive), LAW), theory="timoshenko")
         runs = [moved(system, 0.5) for system in (beam, shell(0.0, drive).system)]
         assert max(run.energy_residual for run in runs) < 1.0e-4
         tips = [run.data["tip"].values for run in runs]

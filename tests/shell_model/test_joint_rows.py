@@ -26,12 +26,13 @@ from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from shell_model.segment.cross_section import Reading, Row
 from tests.shell_model.booms import LAW, STEEL, flat_boom, three_segments
+from tests.touching import touching
 
 
 @cache
 def _system(boom: Boom, size: float = 0.5, line: ContactLine = "near webs") -> GapSystem:
     options = ShellOptions(size, contact_line=line, krylov=KrylovOptions(moments=1))
-    return reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_WORLD).system
+    return reduce_boom(touching(boom, LAW), options, MPI.COMM_WORLD).system
 
 
 DASHPOT = 2.0e3
@@ -81,7 +82,7 @@ def test_dashpots_take_of_the_shell_what_they_take_of_beams(line: ContactLine) -
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     beam, shell = (
         AdaptiveStep()(Motion(system, 0.4))
-        for system in (gap_system(boom, models, [LAW]), _system(boom, line=line))
+        for system in (gap_system(touching(boom, LAW), models), _system(boom, line=line))
     )
     taken, expected = (float(run.data["damping_loss"][-1]) for run in (shell, beam))
     assert expected > 0.02 * float(beam.data["work"][-1])
@@ -141,11 +142,11 @@ def test_readings_add_up_over_the_segments_of_either() -> None:
 
 def test_a_stop_reads_the_flange_that_it_meets() -> None:
     """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
-    stop = Stop(0, 8.0, 0.01, 0.0, 1.0e8, 1.0)
+    stop = Stop(0, 8.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1.0e8))
     system = _system(replace(flat_boom(), stops=(stop,)))
     assert list(system.stations) == [9.0, 10.0, 8.0]
     assert system.station_of_row.tolist() == [0, 0, 1, 1, 2]
-    assert system.laws[-1] == PowerContact(0.0, 1.0, 0.01, stiffness_below=1.0e8)
+    assert system.laws[-1] == PowerContact(0.0, 1.0, stiffness_below=1.0e8).behind(0.01)
     rest = _rest(system, [2])
     observed = system.observers["head"].row @ rest
     # From the support at 2 m the outer segment rises in a line that bends a little.
@@ -186,7 +187,7 @@ def test_a_tied_joint_has_no_play() -> None:
     """
     boom = three_segments(tied=True)
     options = ShellOptions(0.25, krylov=KrylovOptions(moments=1))
-    shell = reduce_boom(boom, [], options, MPI.COMM_WORLD)
+    shell = reduce_boom(boom, options, MPI.COMM_WORLD)
     system = shell.system
     assert system.rows.shape == (0, system.num_modes)
     assert not (system.omega2 == 0.0).any()

@@ -24,12 +24,13 @@ from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.lines import cuts_around, lines
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment, flat_boom
+from tests.touching import touching
 
 
 def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
     """Along each segment of a shell, with its modal coordinates at rest."""
     lateral = [LATERAL_LAW] if boom.spatial else []
-    shell = reduce_boom(boom, [LAW], options, MPI.COMM_SELF, lateral_laws=lateral)
+    shell = reduce_boom(touching(boom, LAW, lateral), options, MPI.COMM_SELF)
     assert shell.fields is not None
     position = equilibrium(shell.system, shell.system.load)
     return [(line, position) for line in lines(shell.fields, boom)]
@@ -63,7 +64,7 @@ def test_a_pressed_shell_bears_its_loads_across() -> None:
     force = 0.5 * np.pi**2 * free.bending_stiffness / (4.0 * 10.0**2)
     pressed = with_compression([free], [], [Thrust(0, 10.0, force)])
     boom = Boom(pressed, (), (Load(0, "z", -44049.0, 10.0, Step()),))
-    shell = reduce_boom(boom, [], ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
+    shell = reduce_boom(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
     assert shell.fields is not None
     system = shell.system.gathered()
     (line,) = lines(shell.fields, boom)
@@ -80,7 +81,7 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
     """
     boom = boom_in_space(sideways=0.4)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    system = gap_system(boom, models, [LAW], [LATERAL_LAW])
+    system = gap_system(touching(boom, LAW, LATERAL_LAW), models)
     position = equilibrium(system, system.load)
     beams = lines_of_beams(boom, models)
     shells = at_rest(boom, ShellOptions(mesh_size=0.25))

@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from dynamics.contact import PowerContact
 from geometry.boom import Boom, Stop
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import SLOW, compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.segment import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom, three_segments
+from tests.touching import touching
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +29,7 @@ SIZES = (0.8, 0.4, 0.2)
 @cache
 def _reduced(boom: Boom, size: float, moments: int = 2) -> ReducedShell:
     options = ShellOptions(size, krylov=KrylovOptions(moments=moments))
-    return reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_WORLD)
+    return reduce_boom(touching(boom, LAW), options, MPI.COMM_WORLD)
 
 
 def test_no_rigid_motion_fills_it() -> None:
@@ -74,9 +76,7 @@ def test_a_tied_joint_leaves_the_others_their_measure() -> None:
 
 
 def test_what_has_no_other_side_has_none() -> None:
-    rest = Stop(
-        segment=1, x=19.0, clearance=0.1, stiffness=0.0, stiffness_below=1.0e7, exponent=1.0
-    )
+    rest = Stop(1, 19.0, 0.2, PowerContact(0.0, 1.0, stiffness_below=1.0e7))
     boom = replace(flat_boom(), stops=(rest,))
     reduced = _reduced(boom, 0.8, 1)
     assert np.isnan(reduced.local_compliance).tolist() == [False] * 4 + [True]

@@ -23,6 +23,7 @@ from tests.conftest import ranks_in
 from tests.shell_model.booms import HELD, LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import box_shell
 from tests.shell_model.test_surface_contact import compliances
+from tests.touching import touching
 
 pytestmark = pytest.mark.slow
 
@@ -60,16 +61,16 @@ def frequencies(comm: MPI.Comm) -> list[float]:
 def spatial(comm: MPI.Comm) -> dict[str, Any]:
     """The reduced boom in space."""
     boom = boom_in_space(friction=0.2, sideways=0.3)
-    system = reduce_boom(boom, [LAW], ShellOptions(0.5), comm, lateral_laws=[LATERAL_LAW]).system
+    system = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), comm).system
     parts = {"omega2": system.omega2, "rows": system.rows, "load": system.load}
     return {name: part.tolist() for name, part in parts.items()}
 
 
 def rubbing(comm: MPI.Comm) -> dict[str, Any]:
     """All that decides how the paper's friction case moves, on a coarse mesh."""
-    law = replace(LAW, stiffness=1.0e8, exponent=1.0)
+    law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).behind(LAW.above)
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
-    system = reduce_boom(flat_boom(friction=0.2), [law], options, comm).system
+    system = reduce_boom(touching(flat_boom(friction=0.2), law), options, comm).system
     parts = {
         "omega2": system.omega2,
         "rows": system.rows,
@@ -83,7 +84,7 @@ def rubbing(comm: MPI.Comm) -> dict[str, Any]:
 
 def stresses(comm: MPI.Comm) -> list[Any]:
     """Of the outer segment at rest under its load, on rank 0."""
-    shell = reduce_boom(flat_boom(), [LAW], ShellOptions(0.5), comm)
+    shell = reduce_boom(touching(flat_boom(), LAW), ShellOptions(0.5), comm)
     if shell.fields is None:
         return []
     own = shell.fields["coordinates_1"].values
@@ -94,8 +95,8 @@ def stresses(comm: MPI.Comm) -> list[Any]:
 
 def moved(comm: MPI.Comm) -> dict[str, Any]:
     """The unreduced shell with friction."""
-    law = replace(LAW, stiffness=1.0e9, exponent=1.0)
-    full = assemble_boom(flat_boom(friction=0.2), {"z": [law]}, ShellOptions(1.0), comm)
+    law = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
+    full = assemble_boom(touching(flat_boom(friction=0.2), {"z": [law]}), ShellOptions(1.0), comm)
     motion = integrate_directly(full, 0.04, 5.0e-4)
     return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}
 

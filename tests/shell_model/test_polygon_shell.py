@@ -13,6 +13,7 @@ from mpi4py import MPI
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
+from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
@@ -42,6 +43,7 @@ from shell_model.segment.segment_shell import SegmentShell
 from studies import sections
 from tests.shell_model.booms import HELD, LATERAL_LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import UNEQUAL
+from tests.touching import touching
 
 Shells = Callable[..., SegmentShell]
 
@@ -53,7 +55,7 @@ SECTIONS = {"hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
 def reduced(boom: Boom, size: float, line: ContactLine = "near webs") -> ReducedShell:
     options = ShellOptions(size, contact_line=line, krylov=KrylovOptions(moments=1))
     lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(boom, [LINEAR], options, MPI.COMM_WORLD, lateral_laws=lateral)
+    return reduce_boom(touching(boom, LINEAR, lateral), options, MPI.COMM_WORLD)
 
 
 def _read(row: Row, field: Array) -> float:
@@ -208,7 +210,7 @@ def _spatial(outer: Section, inner: Section) -> Boom:
         for s in boom.segments
         if s.lateral
     ]
-    joint = replace(boom.joints[0], lateral_clearance=LATERAL_LAW.clearance)
+    joint = replace(boom.joints[0], lateral_play=LATERAL_LAW.play)
     return replace(boom, segments=tuple(segments), joints=(joint,))
 
 
@@ -219,18 +221,16 @@ def test_octagons_on_their_side_are_the_same_boom() -> None:
     """
     upright = _spatial(OCTAGON, INNER_OCTAGON)
     joint = upright.joints[0]
-    assert joint.lateral_clearance is not None
+    assert joint.lateral_play is not None
     lying = replace(
         upright,
         segments=tuple(segment.turned() for segment in upright.segments),
-        joints=(
-            replace(joint, clearance=joint.lateral_clearance, lateral_clearance=joint.clearance),
-        ),
+        joints=(replace(joint, play=joint.lateral_play, lateral_play=joint.play),),
     )
     laws = LINEAR, LATERAL_LAW
     options = ShellOptions(0.5, krylov=KrylovOptions(moments=1))
     first, second = (
-        reduce_boom(boom, [one], options, MPI.COMM_WORLD, lateral_laws=[other]).system
+        reduce_boom(touching(boom, one, other), options, MPI.COMM_WORLD).system
         for boom, (one, other) in ((upright, laws), (lying, laws[::-1]))
     )
     assert second.frequencies == pytest.approx(first.frequencies, rel=1e-6, abs=1e-9)
@@ -311,7 +311,7 @@ def test_all_that_a_segment_may_have(pair: tuple[Section, Section], line: Contac
     options = ShellOptions(
         0.5, contact_line=line, contact_tolerance=1.0, krylov=KrylovOptions(moments=1)
     )
-    found = reduce_boom(boom, [LINEAR], options, MPI.COMM_WORLD)
+    found = reduce_boom(touching(boom, LINEAR), options, MPI.COMM_WORLD)
     assert np.isfinite(found.local_compliance[:-2]).all() or line == "surface"
     inner = boom.segments[1]
     section = inner.section
@@ -336,5 +336,5 @@ def _laden(boom: Boom, line: ContactLine) -> Boom:
     )
     pads = PadSize(0.1, 0.03, 0.01) if line == "near webs" else None
     joints = (replace(boom.joints[0], pad=pads),)
-    stops = (Stop(1, 18.0, 0.01, 1.0e8, 1.0e8, 1.0),)
+    stops = (Stop(1, 18.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),)
     return replace(boom, segments=(outer, inner), joints=joints, stops=stops)

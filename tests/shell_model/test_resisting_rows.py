@@ -18,8 +18,8 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
     moves its way. Rows depend on one another as those of a station do: it slides by their mean.
     """
     random = np.random.default_rng(1)
-    law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent, 1.0e-3)
-    laws = [law.upper(), law.lower(), law.upper(), law.lower()]
+    law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).behind(1.0e-3)
+    laws = [law.one_sided(side) for side in (1, -1, 1, -1)]
     mean = np.array([[0.5, 0.5, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5]])
     states = set()
     for _ in range(200):
@@ -35,13 +35,13 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
         noise = 1.0e-12 * np.abs(compliance).max() * np.abs(force).sum() + 1.0e-15
         for reading, one, pushed in zip(read[:4], laws, force[:4], strict=True):
             # By the reading that the force belongs to, as a stiff law multiplies round-off.
-            k = max(one.stiffness, one.below)
+            k = max(one.law.stiffness, one.law.below)
             depth = (abs(pushed) / k) ** (1.0 / exponent)
-            side = 1.0 if one.stiffness else -1.0
+            side = 1.0 if one.law.stiffness else -1.0
             if pushed:
-                assert side * reading - one.clearance == pytest.approx(depth, abs=noise)
+                assert side * reading - one.onset(side) == pytest.approx(depth, abs=noise)
             else:
-                assert side * reading <= one.clearance + noise
+                assert side * reading <= one.onset(side) + noise
         for reading, at, most, rubbed in zip(read[4:], place, bound, force[4:], strict=True):
             held = abs(rubbed) < most
             assert abs(rubbed) <= most

@@ -24,12 +24,13 @@ from shell_model.boom_shell import ShellOptions, segment_mesh
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.segment.segment_shell import assemble_segment
 from tests.shell_model.booms import STEEL
+from tests.touching import touching
 
 # Walls so thick that they do not buckle by themselves.
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.016, web=0.012)
 INNER = BoxSection(height=0.33, width=0.23, flange=0.012, web=0.010)
 HELD = (Support(4.5), Support(10.5))
-LAW = PowerContact(1e9, 1.0, clearance=5e-3)
+LAW = PowerContact(1e9, 1.0).behind(5e-3)
 OPTIONS = ShellOptions(mesh_size=0.4)
 THRUST = 1.0e5
 
@@ -37,15 +38,17 @@ THRUST = 1.0e5
 def telescope(thrust: float, lateral: float | None = None) -> Boom:
     arm = Segment.of_section("arm", 0.0, 6.0, STEEL, OUTER, supports=(Support(0.0, "clamped"),))
     fly = Segment.of_section("fly", 4.5, 10.5, STEEL, INNER, load=-300.0)
-    joint = Joint(0, 1, stations=(4.5, 6.0), clearance=5e-3, lateral_clearance=lateral)
+    joint = Joint(0, 1, stations=(4.5, 6.0), play=0.01, lateral_play=2.0 * lateral)
     pressed = with_compression((arm, fly), (joint,), [Thrust(1, 10.5, thrust)], gravity=5.0)
     return Boom(pressed, (joint,))
 
 
 @cache
 def shell(lateral: float | None = None) -> ReducedShell:
-    laws = [PowerContact(1e9, 1.0, lateral)] if lateral is not None else []
-    return reduce_boom(telescope(THRUST, lateral), [LAW], OPTIONS, MPI.COMM_SELF, None, laws)
+    laws = [PowerContact(1e9, 1.0).behind(lateral)] if lateral is not None else []
+    return reduce_boom(
+        touching(telescope(THRUST, lateral), LAW, laws), OPTIONS, MPI.COMM_SELF, None
+    )
 
 
 def sparse(matrix: PETSc.Mat) -> csr_array:
@@ -91,7 +94,7 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     boom = column(0.4)
     full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
     assert full.geometric is not None
-    reduced = reduce_boom(boom, [], OPTIONS, MPI.COMM_SELF)
+    reduced = reduce_boom(boom, OPTIONS, MPI.COMM_SELF)
     assert reduced.critical_factor == pytest.approx(2.5, rel=5e-3)
     system = reduced.system
     found = system.observers["tip"].row @ system.static_response(system.load)
@@ -133,7 +136,7 @@ def test_a_tied_shell_buckles_where_its_beam_does(lateral: float | None) -> None
 
 def test_a_shell_that_buckles_says_so() -> None:
     with pytest.raises(NumericsError) as caught:
-        reduce_boom(column(1.25), [], OPTIONS, MPI.COMM_SELF)
+        reduce_boom(column(1.25), OPTIONS, MPI.COMM_SELF)
     assert str(caught.value) == (
         "the shell of the boom buckles under 0.798 times its axial forces; make these smaller, or "
         "the sections larger"

@@ -30,6 +30,7 @@ from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.eigenmodes import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance
+from tests.touching import touching
 
 # At both ends, on a support, within a collar, and free.
 PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
@@ -113,7 +114,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
     momentum = 0.1 * inner.mass_per_length
     thrown = Load(1, "z", momentum, None, Step(), inertial)
     stiff = replace(boom, segments=(boom.segments[0], inner), loads=(thrown,))
-    system = reduce_boom(stiff, [LAW], ShellOptions(0.5), MPI.COMM_WORLD).system
+    system = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD).system
     velocity = system.excitations[0].load
     speeds = [system.observers[name].row @ velocity for name in ("tail", "tip")]
     if inertial:
@@ -219,7 +220,7 @@ def test_pictures_know_walls_from_diaphragms() -> None:
     outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar(9.7, 10.0, 0.01),))
     inner = replace(boom.segments[1], diaphragms=(Diaphragm(9.0, 0.008),))
     stiff = replace(boom, segments=(outer, inner))
-    reduced = reduce_boom(stiff, [LAW], ShellOptions(0.5), MPI.COMM_WORLD)
+    reduced = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD)
     assert reduced.fields is not None
     state = np.eye(2, reduced.system.num_modes)
     fields = reduced.fields.assign(state=(("time", "mode"), state)).assign_coords(time=[0.0, 1.0])

@@ -23,6 +23,7 @@ from shell_model.stress.fields import gather_stress_modes
 from shell_model.stress.stresses import Modes, ShellStress, Stress, wall_forces
 from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
+from tests.touching import touching
 
 E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
 Field = Callable[[Array], Array]
@@ -134,7 +135,7 @@ def at_rest(
 ) -> tuple[xr.Dataset, ShellStress]:
     """The boom under its constant load; nothing touches."""
     options = ShellOptions(size, contact_tolerance=tolerance)
-    shell = reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_SELF)
+    shell = reduce_boom(touching(boom, LAW), options, MPI.COMM_SELF)
     omega2 = shell.system.omega2
     state = np.divide(shell.system.load, omega2, out=np.zeros_like(omega2), where=omega2 > 0.0)
     assert shell.fields is not None

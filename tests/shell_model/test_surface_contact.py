@@ -30,6 +30,7 @@ from shell_model.segment.cross_section import COMPONENT
 from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX
+from tests.touching import touching
 
 PAD = PadSize(length=0.1, width=0.06)
 FEW = SurfaceOptions(points=(4, 2))
@@ -44,7 +45,7 @@ def _system(
 ) -> GapSystem:
     options = ShellOptions(0.5, line, surface, krylov=KrylovOptions(moments=1))
     lateral = [LATERAL_LAW] if boom.spatial else ()
-    return reduce_boom(boom, [law], options, MPI.COMM_WORLD, lateral_laws=lateral).system
+    return reduce_boom(touching(boom, law, lateral), options, MPI.COMM_WORLD).system
 
 
 def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
@@ -107,7 +108,7 @@ def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
     """Reference: analytic, (4) at both stations; the pressure's middle is that of the overlap."""
     system = _system(flat_boom())
     depth = 2.0e-3
-    heave = side * (LAW.clearance + depth)
+    heave = side * (LAW.above + depth)
     state = _rigid(system, {"tip": heave, "tail": heave})
     force = _forces(system, state)
     assert np.count_nonzero(force) == 8
@@ -123,7 +124,7 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
     given = 3.0e14
     system = _system(flat_boom(), surface=SurfaceOptions((4, 2), stiffness=given))
     tilt = 1.0e-3
-    state = _rigid(system, {"tip": LAW.clearance + 10.0 * tilt, "tail": LAW.clearance})
+    state = _rigid(system, {"tip": LAW.above + 10.0 * tilt, "tail": LAW.above})
     section = flat_boom().segments[1].section
     assert section is not None
     expected = given * section.width * tilt**2 / 3.0
@@ -135,7 +136,7 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
     """Reference: analytic. The area's weights are positive and add up, on either side; points
     belong to the nearest station.
     """
-    law = replace(LAW, stiffness_below=0.5e13)
+    law = replace(LAW.law, stiffness_below=0.5e13).behind(LAW.above)
     system = _system(flat_boom(), law=law)
     above = np.array([one.stiffness for one in system.laws])
     below = np.array([one.below for one in system.laws])
@@ -147,7 +148,7 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
 
 @pytest.mark.slow
 def test_a_law_that_never_touches_below_has_no_points_there() -> None:
-    law = replace(LAW, stiffness_below=0.0)
+    law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
     assert len(_system(flat_boom(), law=law).laws) == 8
 
 
@@ -212,7 +213,7 @@ def compliances(comm: MPI.Comm) -> list[float]:
             FEW,
             krylov=KrylovOptions(moments=1),
         )
-        system = reduce_boom(boom, [LAW], options, comm).system
+        system = reduce_boom(touching(boom, LAW), options, comm).system
         slow = (2.0 * np.pi * 10.0) ** 2
         found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()
     return found

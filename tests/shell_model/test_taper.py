@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,6 +25,7 @@ from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduced_shell import reduce_boom
 from shell_model.stress.lines import lines
 from studies.sections import LAW, STEEL
+from tests.touching import touching
 
 ENDS: Mapping[str, tuple[Section, Section]] = {
     "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
@@ -71,8 +71,8 @@ def test_it_bends_as_its_beam(shape: str) -> None:
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     tips = []
     for system in (
-        gap_system(boom, models, ()),
-        reduce_boom(boom, [], ShellOptions(mesh_size=0.15), MPI.COMM_SELF).system,
+        gap_system(boom, models),
+        reduce_boom(boom, ShellOptions(mesh_size=0.15), MPI.COMM_SELF).system,
     ):
         (load,) = system.excitations
         tips.append(float(system.observers["tip"].row @ system.static_response(load.load)))
@@ -125,7 +125,7 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
                 head_section=BoxSection(0.18, 0.14, 0.004, 0.004), load=loads[1],
             ),
         ),
-        (Joint(0, 1, (5.0, 6.0), clearance=4e-3, pad=pad, lateral_clearance=lateral),),
+        (Joint(0, 1, (5.0, 6.0), play=0.008, pad=pad, lateral_play=lateral and 2.0 * lateral),),
     )  # fmt: skip
 
 
@@ -134,17 +134,17 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 def test_a_boom_that_tapers_moves_as_its_beam(lateral: float | None) -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
     boom = tapered_boom(None, lateral)
-    law = [replace(LAW, clearance=4e-3)]
-    sides = [replace(LAW, clearance=5e-3)] if lateral else []
+    law = [LAW.law.behind(4e-3)]
+    sides = [LAW.law.behind(5e-3)] if lateral else []
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
-        boom, law, ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF, lateral_laws=sides
+        touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF
     )
     beam, found = (
         float(
             np.abs(AdaptiveStep()(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max()
         )
-        for system in (gap_system(boom, models, law, sides), shell.system)
+        for system in (gap_system(touching(boom, law, sides), models), shell.system)
     )
     assert found == pytest.approx(beam, rel=0.02)
 
@@ -155,7 +155,7 @@ def test_its_section_forces_are_those_of_statics() -> None:
     flanges carry across, the shear force of the webs would be 60 % of it.
     """
     boom = cantilever("box")
-    shell = reduce_boom(boom, [], ShellOptions(mesh_size=0.1), MPI.COMM_SELF)
+    shell = reduce_boom(boom, ShellOptions(mesh_size=0.1), MPI.COMM_SELF)
     assert shell.fields is not None
     (line,) = lines(shell.fields, boom)
     (load,) = shell.system.excitations
@@ -195,4 +195,4 @@ def test_surfaces_are_parallel() -> None:
     boom = tapered_boom(None, None)
     options = ShellOptions(mesh_size=0.4, contact_line="surface")
     with pytest.raises(BoomError, match="'surface' lets parallel walls touch, and 'outer' tapers"):
-        reduce_boom(boom, [LAW], options, MPI.COMM_SELF)
+        reduce_boom(touching(boom, LAW), options, MPI.COMM_SELF)

@@ -13,6 +13,7 @@ from mpi4py import MPI
 from beam_model.component import natural_modes
 from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.segment_model import tied_system
+from dynamics.contact import PowerContact
 from geometry.arrays import Array
 from geometry.boom import Boom, Collar, Diaphragm, PadSize, PointMass, Stop, Support
 from geometry.section import BoxSection, Section
@@ -23,6 +24,7 @@ from shell_model.reduction.symmetry import Folding
 from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import HELD, LAW, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, UNEQUAL
+from tests.touching import touching
 
 Shells = Callable[..., SegmentShell]
 
@@ -70,7 +72,7 @@ INNER = BoxSection(0.46, 0.28, flange=0.008, web=0.005, bottom_flange=0.005)
 
 
 def _reduced(boom: Boom, options: ShellOptions) -> ReducedShell:
-    return reduce_boom(boom, [LAW] * len(boom.joints), options, MPI.COMM_WORLD)
+    return reduce_boom(touching(boom, LAW), options, MPI.COMM_WORLD)
 
 
 @pytest.mark.slow
@@ -107,7 +109,7 @@ def _laden(boom: Boom) -> Boom:
     masses, plates = (PointMass(19.0, 50.0),), (Diaphragm(18.5, 0.005),)
     inner = replace(inner, masses=masses, diaphragms=plates)
     pads = (replace(boom.joints[0], pad=PadSize(0.1, 0.06)),)
-    stops = (Stop(1, 18.0, 0.01, 1.0e8, 1.0e8, 1.0),)
+    stops = (Stop(1, 18.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),)
     return replace(boom, segments=(outer, inner), joints=pads, stops=stops)
 
 

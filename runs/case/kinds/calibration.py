@@ -112,10 +112,8 @@ class CalibratedTable(BeamTable):
         made = self.calibrated_by.build(joined, workshop)
         assert made.shell is not None
         begin = perf_counter()
-        boom, laws, lateral = joined.boom, joined.laws, joined.lateral_laws
-        beam, calibration = calibrate(
-            boom, laws, lateral, made.shell.system, made.shell.far_fields, self.segments
-        )
+        boom = joined.boom
+        beam, calibration = calibrate(boom, made.shell.system, made.shell.far_fields, self.segments)
         built = Built(
             beam,
             beam.num_modes,

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from beam_model.calibration import Calibration
-    from dynamics.contact import ContactLaw
     from dynamics.gap_system import GapSystem
     from dynamics.line import Line
     from dynamics.trajectory import Trajectory
@@ -59,11 +58,9 @@ class Beams:
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """The boom of a case, and the contact laws of its joints as one model sees them."""
+    """The boom of a case as one model sees it, and its beams."""
 
-    boom: Boom  #: of the case
-    laws: Sequence[ContactLaw]  #: one for each joint, along z
-    lateral_laws: Sequence[ContactLaw]  #: one for each joint, along y; none for a flat boom
+    boom: Boom  #: of the case, with the model's contact in its joints
     _beams: list[Beams] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def beams(self, model: BeamTable) -> Beams:
@@ -137,14 +134,7 @@ class ModelTable(Table):
     """the kind of model"""
     _joined: Joined | None = PrivateAttr(None)
 
-    def __init__(
-        self,
-        boom: Boom | None = None,
-        /,
-        laws: Sequence[ContactLaw] = (),
-        lateral_laws: Sequence[ContactLaw] = (),
-        **keys: Any,
-    ) -> None:
+    def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None:
         """Make a model of a boom.
 
         Args:
@@ -156,7 +146,7 @@ class ModelTable(Table):
         """
         kind = get_args(type(self).model_fields["kind"].annotation)[0]
         super().__init__(**{"name": kind, "kind": kind, **keys})
-        self._joined = None if boom is None else Joined(boom, laws, lateral_laws)
+        self._joined = None if boom is None else Joined(boom)
 
     # Case files are read past it: they must give name and kind.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
@@ -259,7 +249,7 @@ class ModelTable(Table):
     def system(self) -> GapSystem:
         """Return the gap system of its boom.
 
-        >>> pt.BeamElements(boom, laws).system().num_modes
+        >>> pt.BeamElements(boom).system().num_modes
         66
 
         Raises:
@@ -288,7 +278,7 @@ class ModelTable(Table):
     ) -> Trajectory:
         """Return the motion of its boom, as a case file's run moves it.
 
-        >>> motion = pt.BeamElements(boom, laws).simulate(0.5)
+        >>> motion = pt.BeamElements(boom).simulate(0.5)
         >>> print(f"{motion.first_contact:.3f} s")
         0.032 s
 
@@ -345,7 +335,7 @@ class BeamTable(ModelTable):
         if self.play_free:
             system = tied_system(joined.boom, beams.segments)
         else:
-            system = gap_system(joined.boom, beams.segments, joined.laws, joined.lateral_laws)
+            system = gap_system(joined.boom, beams.segments)
         factor, seconds = beams.critical_factor, {"build": perf_counter() - start}
         return Built(system, system.num_modes, seconds, factor)
 

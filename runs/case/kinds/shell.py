@@ -119,19 +119,14 @@ class Shell(ModelTable):
 
     def build(self, joined: Joined, workshop: Workshop | None = None) -> Built:
         from shell_model.reduced_shell import reduce_boom
-        from shell_model.standard import standard_boom, standard_laws, with_plays_and_loads
+        from shell_model.standard import standard_boom, with_plays_and_loads
 
         assert workshop is not None
-        boom, of_joints = standard_boom(joined.boom), (joined.laws, joined.lateral_laws)
-        laws, lateral = (standard_laws(boom, own) for own in of_joints)
-        options = self.options()
+        boom, options = standard_boom(joined.boom), self.options()
         made = workshop.remember(
-            (boom, laws, lateral, options),
-            partial(reduce_boom, boom, laws, options, workshop.comm, workshop.tell, lateral),
+            (boom, options), partial(reduce_boom, boom, options, workshop.comm, workshop.tell)
         )
-        shell = with_plays_and_loads(
-            made, joined.boom, dict(zip(("z", "y"), of_joints, strict=True))
-        )
+        shell = with_plays_and_loads(made, joined.boom)
         factor = shell.critical_factor
         if boom.driven and factor is not None:
             # On the way it is known of beams alone.
@@ -237,7 +232,8 @@ class Shell(ModelTable):
                     f"{along} times {across} points on half a wall are more than {MOST_POINTS}, "
                     "which a reduced model can bear; give fewer",
                 )
-        laws = [*joined.laws, *joined.lateral_laws]
+        boom = joined.boom
+        laws = [joint.law(along) for along in boom.directions for joint in boom.joints]
         exponents = sorted({term.exponent for law in laws for term in law.terms})
         if self.surface_stiffness is not None and len(exponents) > 1:
             raise BoomError(

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Booms whose joints get a contact law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from dynamics.contact import ContactLaw, Gap
+from geometry.boom import Boom, Direction
+from runs.case.build import build_boom, joined
+from runs.case.schema import Case, Model
+
+Laws = ContactLaw | Sequence[ContactLaw]
+
+
+def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
+    """The boom with a law in all joints, or one in each; that of a gap brings its play along."""
+    changes: list[dict[str, Any]] = [{} for _ in boom.joints]
+    for prefix, given in (("", laws), ("lateral_", lateral_laws if boom.spatial else ())):
+        each = [given] * len(boom.joints) if isinstance(given, ContactLaw) else given
+        for change, law in zip(changes, each, strict=False):
+            change[f"{prefix}contact"] = law.law if isinstance(law, Gap) else law
+            if isinstance(law, Gap):
+                change[f"{prefix}play"] = law.above + law.below
+    joints = (replace(one, **change) for one, change in zip(boom.joints, changes, strict=True))
+    return replace(boom, joints=tuple(joints))
+
+
+def contact_laws(case: Case, model: Model, direction: Direction = "z") -> list[Gap]:
+    """The law of each joint of a case as a model sees it."""
+    return [joint.law(direction) for joint in joined(case, build_boom(case), model).boom.joints]
