@@ -137,7 +137,7 @@ def run(
         folder = output.prepare(out or f"runs/out/{Path(case).stem}", case)
         with (
             whole_folder(folder) as part,
-            progress.told([model.name for model in effective.models]) as tell,
+            progress.display([model.name for model in effective.models]) as tell,
         ):
             finished = run_case(effective, case, Means(comm, tell, cache, cache))
             assert finished is not None
@@ -233,7 +233,7 @@ def sweep(
         with members.workers(comm) if several else workers.workers(None) as pool:
             if pool is None:
                 return 0
-            with progress.told() as tell:
+            with progress.display() as tell:
                 cache = None if no_cache else Cache.of_user()
                 outcomes = sweep_runs.run_points(plan, folder, pool, tell, cache)
         data = charts.write(plan, outcomes, folder)
@@ -268,7 +268,7 @@ def frequencies(
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
-        with progress.told() as tell:
+        with progress.display() as tell:
             data = charts.gather(plan, charts.measure(cases, comm, cache, tell))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
@@ -348,7 +348,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _explain(error: Exception) -> tuple[str, int] | None:
-    """The line and the exit status for what is not a fault of the program."""
+    """Return the line and the exit status for what is not a fault of the program."""
     # Without memory nothing more can be imported; the loader of libraries has an error of its own.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
@@ -371,7 +371,7 @@ def _explain(error: Exception) -> tuple[str, int] | None:
 
 @contextmanager
 def _all_ranks_end_together(comm: MPI.Comm | None) -> Iterator[None]:
-    """A rank that fails alone takes the others, who would wait for it for ever, with it."""
+    """End all ranks when one fails alone, for which the others would wait for ever."""
     try:
         yield
     except Exception as error:
@@ -404,14 +404,14 @@ def _rendered_again(folder: str) -> Iterator[tuple[Results, Addition, Path]]:
 
 
 def _names(models: str | None) -> list[str] | None:
-    """The elements of a comma-separated list."""
+    """Return the elements of a comma-separated list."""
     return None if models is None else [name.strip() for name in models.split(",")]
 
 
 def _enter_mpi(
     case: Case, file: str, without: str = "run the other models with --models"
 ) -> MPI.Intracomm | None:
-    """The ranks that share the shells, None for a case without one.
+    """Return the ranks that share the shells, None for a case without one.
 
     Raises:
         BadInput: a shell is asked for, and what it takes is not installed.
@@ -472,7 +472,7 @@ def _show(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
 
 
 def _show_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
-    """A line for each model that failed at a point; the exit status, 3 if nothing else is left."""
+    """Print a line for each model that failed at a point; return 3 if nothing else is left."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
             say(message(f"{shown(plan.file)}: --vary {point.label}: {model}: {why}"))

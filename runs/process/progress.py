@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far a command is: bars on a terminal, elsewhere a line now and then."""
+"""The progress of a command: bars on a terminal, elsewhere a line now and then."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ EVERY = 5.0
 
 
 @contextmanager
-def told(models: Sequence[str] = ()) -> Iterator[Tell]:
-    """Tells how far each stage is, on stderr.
+def display(models: Sequence[str] = ()) -> Iterator[Tell]:
+    """Give what displays how far each stage is, on stderr.
 
     Args:
         models: names of those that run, in their order.
@@ -44,7 +44,7 @@ def told(models: Sequence[str] = ()) -> Iterator[Tell]:
 
 
 class Lines:
-    """Tells which model is at which stage, and how long that goes on.
+    """Prints which model is at which stage, and how long that goes on.
 
     Args:
         models: names, in their order.
@@ -63,7 +63,7 @@ class Lines:
         self._begun: dict[tuple[str, str], float] = {}
 
     def __call__(self, model: str, stage: str, part: float) -> None:
-        """A :data:`Tell`."""
+        """Print how far a stage is."""
         now = self._clock()
         passed = now - self._begun.setdefault((model, stage), now)
         if now - self._said < EVERY:
@@ -76,9 +76,7 @@ class Lines:
         elif part > 0.0:
             left = passed * (1.0 - part) / part
             how_far = f"{stage} {100.0 * part:.0f} %, {left:.0f} s left"
-        self._say(printable(f"{model}{self._place(model)}: {how_far}"))
-
-    def _place(self, model: str) -> str:
-        if model not in self._models:
-            return ""
-        return f" ({self._models.index(model) + 1} of {len(self._models)})"
+        place = ""
+        if model in self._models:
+            place = f" ({self._models.index(model) + 1} of {len(self._models)})"
+        self._say(printable(f"{model}{place}: {how_far}"))

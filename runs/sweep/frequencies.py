@@ -104,7 +104,7 @@ def gather(plan: Plan, found: Array) -> xr.Dataset:
 
 
 def table(data: xr.Dataset) -> Table:
-    """The lowest frequencies of each point and model."""
+    """Return the lowest frequencies of each point and model."""
     stacked = data["frequency"].stack(
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )

@@ -86,8 +86,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def show(data: xr.Dataset, reference: str | None, console: Console) -> None:
-    """Print from where to where each model goes, where its tip goes farthest, and how far it is
-    off the reference.
+    """Print the ranges of each model, where its tip goes farthest, and distances from a reference.
 
     The energy residual is the largest of all points. How fast it may be drawn out is said below.
     """

@@ -136,7 +136,7 @@ def plan(
 
 
 def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
-    """The case with some of its numbers set, as its author would write it."""
+    """Return the case with some of its numbers set, as its author would write it."""
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
@@ -155,7 +155,7 @@ def _written(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
 
 
 def _checked(file: str, label: str, case: Case, held: bool = False) -> Case:
-    """The case, which passes all checks that a case file goes through."""
+    """Return the case, which passes all checks that a case file goes through."""
     try:
         case_file.check(case, file)
     except BadInput as fault:
@@ -177,7 +177,7 @@ def _inferred(case: Case) -> Plates:
 
 
 def _hold(case: Case, plates: Plates) -> Case:
-    """The case with inferred plates written into it, or with none to infer where none matter."""
+    """Return the case with inferred plates in it, or with none to infer where none matter."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
     matter = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(

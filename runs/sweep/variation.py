@@ -119,7 +119,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def unit_of(place: Place, case: Case) -> str:
-    """The SI unit of a number that a case has, '' for none."""
+    """Return the SI unit of a number that a case has, '' for none."""
     here: Any = case
     units: tuple[str, ...] = ()
     for step in place.steps:
@@ -139,7 +139,7 @@ class Unplaced(Exception):
 
 
 def find(key: str, tables: Tables) -> tuple[Place, ...]:
-    """The places of a case that a key means.
+    """Return the places of a case that a key means.
 
     Raises:
         Unplaced: there are none.
@@ -154,7 +154,7 @@ def find(key: str, tables: Tables) -> tuple[Place, ...]:
 def _places(
     here: Any, path: Sequence[tuple[str, int | str | None]], before: Place
 ) -> Iterator[Place]:
-    """All numbers that a path leads to, whether they are there yet or not."""
+    """Yield all numbers that a path leads to, whether they are there yet or not."""
     if not path:
         yield before
         return

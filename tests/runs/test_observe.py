@@ -19,58 +19,32 @@ from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 
-TURNED = """
-[start]
-velocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }
 
-[[observe]]
-name = "seat"
-segment = "inner"
-x = 14.2
+def observe(name: str, x: float, quantity: str = "", segment: str = "inner") -> str:
+    """A table of a case; a deflection unless another quantity is given."""
+    text = f'\n[[observe]]\nname = "{name}"\nsegment = "{segment}"\nx = {x}\n'
+    return f'{text}quantity = "{quantity}"\n' if quantity else text
 
-[[observe]]
-name = "seat rate"
-segment = "inner"
-x = 14.2
-quantity = "velocity"
 
-[[observe]]
-name = "seat_push"
-segment = "inner"
-x = 14.2
-quantity = "acceleration"
-
-[[observe]]
-name = "seat_slope"
-segment = "inner"
-x = 14.2
-quantity = "rotation"
-"""
-
-SIDEWAYS = """
-[start.velocity]
-inner = { z = 0.03, y = -0.02, turn = 0.004, lateral_turn = 0.005, x = 12.0 }
-outer = -0.01
-
-[[observe]]
-name = "sideways"
-segment = "inner"
-x = 14.0
-quantity = "lateral"
-
-[[observe]]
-name = "roll"
-segment = "inner"
-x = 14.0
-quantity = "twist"
-
-[[observe]]
-name = "slope"
-segment = "inner"
-x = 14.0
-quantity = "rotation"
-"""
-
+TURNED = "".join(
+    [
+        "[start]\nvelocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }\n",
+        observe("seat", 14.2),
+        observe("seat rate", 14.2, "velocity"),
+        observe("seat_push", 14.2, "acceleration"),
+        observe("seat_slope", 14.2, "rotation"),
+    ]
+)
+SIDEWAYS = "".join(
+    [
+        "[start.velocity]\n",
+        "inner = { z = 0.03, y = -0.02, turn = 0.004, lateral_turn = 0.005, x = 12.0 }\n",
+        "outer = -0.01\n",
+        observe("sideways", 14.0, "lateral"),
+        observe("roll", 14.0, "twist"),
+        observe("slope", 14.0, "rotation"),
+    ]
+)
 UNLOADED = (
     COARSE.replace("load = 83.16\n", "").replace("load = 55.07\n", "").replace("0.6", "0.2", 1)
 )
@@ -189,34 +163,33 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
     ("text", "line"),
     [
         (
-            '[[observe]]\nname = "a"\nsegment = "jib"\nx = 1.0',
+            observe("a", 1.0, segment="jib"),
             "observe[1].segment: 'jib' is no segment; give 'outer' or 'inner'",
         ),
         (
-            '[[observe]]\nname = "a"\nsegment = "inner"\nx = 1.0',
+            observe("a", 1.0),
             "observe[1].x: 1 m lies outside 'inner'; it must be between 9 and 19 m",
         ),
         (
-            '[[observe]]\nname = "tip"\nsegment = "inner"\nx = 11.0',
+            observe("tip", 11.0),
             "observe[1].name: 'tip' is the name of another output already; give it its own",
         ),
         (
-            '[[observe]]\nname = "contact_force"\nsegment = "inner"\nx = 11.0',
+            observe("contact_force", 11.0),
             "observe[1].name: 'contact_force' is the name of another output already; give it its "
             "own",
         ),
         (
-            '[[observe]]\nname = "a"\nsegment = "inner"\nx = 11.0\n'
-            '[[observe]]\nname = "a"\nsegment = "inner"\nx = 12.0',
+            observe("a", 11.0) + observe("a", 12.0),
             "observe[2].name: 'a' is the name of observe[1] already; give each its own",
         ),
         (
-            '[[observe]]\nname = "a"\nsegment = "inner"\nx = 11.0\nquantity = "twist"',
+            observe("a", 11.0, "twist"),
             "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
             "another quantity, or the joints lateral_play",
         ),
         (
-            '[[observe]]\nname = "a"\nsegment = "inner"\nx = 11.0\nquantity = "speed"',
+            observe("a", 11.0, "speed"),
             "observe[1].quantity: must be 'deflection', 'rotation', 'velocity', 'acceleration', "
             "'lateral' or 'twist', got 'speed'",
         ),
