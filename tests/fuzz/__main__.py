@@ -10,33 +10,11 @@ from __future__ import annotations
 import argparse
 import shlex
 import sys
-from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from rich.console import Console
-from rich.table import Table
+import pandas as pd
 
-from tests.fuzz.campaign import KINDS, kind_of, prepare, run
-from tests.fuzz.contract import Ending
-
-
-@dataclass(slots=True)
-class Tally:
-    """What became of the slips of one kind."""
-
-    statuses: Counter[int] = field(default_factory=Counter)
-    breaches: int = 0
-    seconds: float = 0.0
-    memory: float = 0.0
-
-    def add(self, ending: Ending) -> None:
-        """Count one."""
-        self.statuses[ending.status] += 1
-        self.breaches += bool(ending.breach())
-        self.seconds = max(self.seconds, ending.seconds)
-        self.memory = max(self.memory, ending.memory)
+from tests.fuzz.campaign import kind_of, prepare, run
 
 
 def main() -> int:
@@ -50,24 +28,20 @@ def main() -> int:
         folder.mkdir(parents=True, exist_ok=True)
         print(f"cd {folder} && protractile {shlex.join(prepare(number, folder))}")
         return 0
-    tallies = {kind: Tally() for kind in KINDS}
+    rows = []
     for seed, ending in run(range(given.first, given.first + given.count)):
-        tallies[kind_of(seed)].add(ending)
-        if breach := ending.breach():
+        breach = ending.breach()
+        if breach:
             print(f"{seed}: {breach}", flush=True)
-    _show(tallies)
-    kept = given.count - sum(tally.breaches for tally in tallies.values())
+        used = ending.seconds, ending.memory / 1e9
+        rows.append((kind_of(seed), f"exit {ending.status}", bool(breach), *used))
+    table = pd.DataFrame(rows, columns=["slip in", "status", "breaches", "CPU s", "GB"])
+    most = {"breaches": "sum", "CPU s": "max", "GB": "max"}
+    statuses = pd.crosstab(table["slip in"], table["status"])
+    print(statuses.join(table.groupby("slip in").agg(most)).round(2).to_string())
+    kept = given.count - int(table["breaches"].sum())
     print(f"{kept} of {given.count} keep the contract")
     return 0 if kept == given.count else 1
-
-
-def _show(tallies: Mapping[str, Tally]) -> None:
-    table = Table("slip in", "slips", "exit 0", "1", "2", "3", "breaches", "CPU s", "GB")
-    for kind, tally in tallies.items():
-        counts = [tally.statuses.total(), *(tally.statuses[i] for i in range(4)), tally.breaches]
-        most = f"{tally.seconds:.1f}", f"{tally.memory / 1e9:.2g}"
-        table.add_row(kind, *map(str, counts), *most)
-    Console().print(table)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.system.run_folder import COARSE, ROOT
+from tests.torture.kills import listens
 
 pytestmark = pytest.mark.slow
 
@@ -54,13 +55,6 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 def command(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     return start(folder, "-m", "protractile", *arguments, "--out", "out")
-
-
-def listens(process: subprocess.Popen[str]) -> bool:
-    """Whether the process has taken SIGTERM into its own hands."""
-    status = Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
-    (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
-    return bool(int(caught.split()[1], 16) & 1 << (signal.SIGTERM - 1))
 
 
 def works(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:

@@ -16,6 +16,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -135,15 +136,15 @@ def _cold_shell(place: Path) -> subprocess.Popen[bytes]:
     for name in ("out", "cache"):
         shutil.rmtree(place / name, ignore_errors=True)
     process = _start(place, _COLD_SHELL, subprocess.PIPE)
-    while process.poll() is None and not _listens(process.pid):
+    while process.poll() is None and not listens(process):
         time.sleep(0.005)
     return process
 
 
-def _listens(pid: int) -> bool:
+def listens(process: subprocess.Popen[Any]) -> bool:
     """Whether a process has a handler for SIGTERM."""
     with suppress(OSError):
-        status = Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
+        status = Path(f"/proc/{process.pid}/status").read_text(encoding="utf-8")
         (caught,) = (line for line in status.splitlines() if line.startswith("SigCgt:"))
         return bool(int(caught.split()[1], 16) & 1 << (signal.SIGTERM - 1))
     return False
