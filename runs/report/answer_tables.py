@@ -12,7 +12,7 @@ from runs.pipeline.at_rest import AtRest
 from runs.pipeline.metrics import records
 from runs.pipeline.moved import Peak
 from runs.pipeline.results import Results
-from runs.report.drawn_axis import of_rests
+from runs.report.figure_context import of_rests
 from runs.report.model_tables import metric_columns
 from runs.report.numerals import NONE, amount, number
 from runs.report.tables import Column, Table

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,6 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from geometry.arrays import Array
+from geometry.typography import listed
+from runs.case.schema import Case
+from runs.pipeline.at_rest import AtRest
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.charts import Chart, Curve
@@ -27,6 +31,8 @@ BEHIND = 0.5
 PAST = 1.3
 # An axis shows no less than this part of what it is about.
 HARDLY_CHANGES = 0.02
+# Strokes of drives.
+EXTENSIONS = ("-", "--", "-.", ":")
 # How plotly calls the strokes.
 CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
@@ -130,6 +136,40 @@ class Pen:
         dashes, shown = CHART_DASHES[stroke.linestyle], name in self.leading
         return Curve(self.labels[name], values, stroke.color, dashes, shown, panel, **more)
 
+    def plot(
+        self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5
+    ) -> list[Curve]:
+        """Draw a line over time for each model; the same for a chart."""
+        for name, curve in values.items():
+            self.line(axes, name, self.time, curve, linewidth)
+        return [self.curve(name, curve, panel) for name, curve in values.items()]
+
+    def over_time(
+        self, panels: int, height: float, end: float | None = None, share_y: bool = False
+    ) -> tuple[Sheet, list[Axes]]:
+        """A sheet as of :func:`new_sheet` over time, with how far drives have extended the boom.
+
+        The time ends with the run unless an end is given in s.
+        """
+        sheet, column = new_sheet(panels, height, share_y)
+        column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
+        # Segments that go together are one line.
+        together: dict[tuple[float, ...], list[str]] = {}
+        for suffix, inner in self.case.driven.items():
+            if f"drawn_out{suffix}" in self.data:
+                travel = self.of(self.models[0], f"drawn_out{suffix}")
+                together.setdefault(tuple(travel.tolist()), []).append(inner)
+        look: dict[str, Any] = {"color": theme.INK, "linewidth": 0.9, "alpha": 0.5}
+        for axes in column if together else ():
+            beside = axes.twinx()
+            for (along, names), dashes in zip(together.items(), cycle(EXTENSIONS), strict=False):
+                label = f"{', '.join(names)} drawn out"
+                beside.plot(self.time, along, linestyle=dashes, label=label, **look)
+            beside.set_ylabel("drawn out (m)")
+            beside.grid(visible=False)
+            beside.spines["right"].set_visible(True)
+        return sheet, column
+
     @property
     def stays_pressed(self) -> bool:
         """Whether no contact ever opens, and no impact lets small differences grow."""
@@ -205,3 +245,14 @@ def highest(values: Sequence[float] | Array) -> float:
     """The largest of the finite ones, NaN if there are none."""
     finite = np.asarray(values)[np.isfinite(values)]
     return float(finite.max()) if finite.size else float("nan")
+
+
+def of_start(case: Case) -> str:
+    """A sentence for what stands over x, or is named by it; empty where nothing is drawn out."""
+    return " Places are those of t = 0, and go with their segments." if case.driven else ""
+
+
+def of_rests(case: Case, rests: Iterable[AtRest]) -> str:
+    """A sentence for how far a boom is drawn out where it rests; empty where nothing is."""
+    times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
+    return f" Drawn out as it is at {listed(times)} s." if case.driven and times else ""

@@ -17,14 +17,25 @@ from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
 from runs.pipeline.summary import Snapshots
 from runs.report import theme
 from runs.report.boom_drawing import boom
-from runs.report.contact_figures import contact_peaks, first_contacts, friction
-from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
-from runs.report.drive_figures import drives
-from runs.report.energy_figures import energies, residuals
 from runs.report.figure_context import Figure, Pen
-from runs.report.horizon_figures import horizons, slow_peaks
+from runs.report.force_figures import (
+    contact_peaks,
+    drives,
+    first_contacts,
+    friction,
+    stress_history,
+)
+from runs.report.motion_figures import (
+    close_up,
+    energies,
+    heads,
+    horizons,
+    lateral_tip,
+    residuals,
+    slow_peaks,
+    tip,
+)
 from runs.report.rest_figures import at_rest, envelopes, mode_shapes
-from runs.report.stress_figures import stress_history
 
 FOLDER = "figures"
 DRAWN_OF = ".drawn-of"

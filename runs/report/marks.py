@@ -131,7 +131,7 @@ def look(sign: Path, color: str, size: float) -> dict[str, Any]:
         "linestyle": "",
         "markeredgecolor": color,
         "markerfacecolor": "none",
-        "markeredgewidth": size / 14.0,
+        "markeredgewidth": max(1.1, size / 14.0),
     }
 
 

@@ -16,8 +16,7 @@ from runs.pipeline.modes import Mode
 from runs.pipeline.moved import Envelope
 from runs.report import numerals, theme
 from runs.report.charts import Chart, Curve
-from runs.report.drawn_axis import of_rests, of_start
-from runs.report.figure_context import Figure, Pen, new_sheet
+from runs.report.figure_context import Figure, Pen, new_sheet, of_rests, of_start
 
 # Quantity → heading of its panel, and the factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {
@@ -104,12 +103,11 @@ def mode_shapes(pen: Pen) -> list[Figure]:
     name, modes = found[0]
     modes = modes[:MODES]
     sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
-    colors = theme.PALETTE
     for axes, mode in zip(panels, modes, strict=True):
         for number, shape in enumerate(mode.shapes):
             for what, values in shape.curves.items():
                 if what == _moving(mode):
-                    axes.plot(shape.x, values, color=colors[number % len(colors)], linewidth=1.8)
+                    axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
         axes.set_title(f"{numerals.number(mode.frequency, 4)} Hz, {mode.way}")
         axes.set_yticks([])
     panels[-1].set_xlabel("x along the boom (m)")
@@ -174,7 +172,7 @@ def _stacked(
                     factor * line.values,
                     color=line.color,
                     linestyle=line.dashes,
-                    label=name if name not in axes.get_legend_handles_labels()[1] else None,
+                    label=name,
                 )
                 dashes = "dash" if line.dashes == "--" else "solid"
                 curves.append(

@@ -29,8 +29,7 @@ from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.answer_tables import drive_table, record_tables, rest_tables
 from runs.report.boom_drawing import boom_sheet
-from runs.report.drawn_axis import of_rests
-from runs.report.figure_context import Figure
+from runs.report.figure_context import Figure, of_rests
 from runs.report.figures import draw
 from runs.report.first_look import first_table
 from runs.sweep.points import plan

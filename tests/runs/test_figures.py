@@ -21,13 +21,11 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.pipeline.summary import FirstPeak
 from runs.report import theme
-from runs.report.contact_figures import contact_peaks, first_contacts, friction
-from runs.report.deflection_figures import close_up, heads, lateral_tip, tip
-from runs.report.energy_figures import energies
 from runs.report.figure_context import Figure, Pen, new_sheet
 from runs.report.figures import draw
-from runs.report.horizon_figures import horizons
+from runs.report.force_figures import contact_peaks, first_contacts, friction
 from runs.report.model_tables import model_table
+from runs.report.motion_figures import close_up, energies, heads, horizons, lateral_tip, tip
 from tests.runs.summaries import changed
 
 pytestmark = pytest.mark.slow

@@ -27,8 +27,8 @@ from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.answer_tables import answer_tables, stick_slip_table
-from runs.report.drive_figures import drives
 from runs.report.figure_context import Pen
+from runs.report.force_figures import drives
 from runs.sweep.quantities import measure
 
 ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"

@@ -17,8 +17,8 @@ from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.figure_context import Pen
+from runs.report.force_figures import stress_history
 from runs.report.model_tables import wall_table
-from runs.report.stress_figures import stress_history
 from tests.runs.summaries import model_summary, summary_of
 
 COARSE = CASES / "coarse.toml"

@@ -1,0 +1,342 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The motion over time: tip and heads with their ensembles, what is predictable of it, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from dynamics.energy import DRIVEN_ENERGIES, energy_residual
+from dynamics.predictability.horizon import SHARES
+from geometry.arrays import Array
+from geometry.typography import TO_MILLI
+from runs.report import theme
+from runs.report.charts import Chart
+from runs.report.figure_context import Figure, Pen, farthest, highest, new_sheet
+from runs.report.numerals import fixed, scientific
+
+# Of an ensemble this part of the members lies in its band, in percent.
+BAND = (5.0, 95.0)
+# How dark the bands of all models are where they lie on one another.
+SHADE = 0.8
+# A stroke for each part of the range.
+DASHES = ("-", ":", "--")
+# Of the numbers that an energy is the sum of.
+ROUND_OFF = 1.0e-16
+# Shades of what is held, of the model's colour, and of what is lost.
+HELD = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
+LOST = (0.75, 0.45, 0.2)
+
+
+def tip(pen: Pen) -> list[Figure]:
+    """The tip in all models, over one another."""
+    sheet, (axes,) = pen.over_time(1, 3.9)
+    axes.set_ylabel("deflection (mm)")
+    for name in pen.models:
+        pen.line(axes, name, pen.time, TO_MILLI * pen.of(name, "tip"))
+        _members(pen, axes, name, "tip")
+    caption = f"Deflection of the tip, all models.{_sampled(pen, 'tip')}"
+    title = f"Tip: {_reach(pen, 'tip')}"
+    return [pen.finish(sheet, axes, "tip", title, caption, chart=_chart(pen, "tip"))]
+
+
+def close_up(pen: Pen) -> list[Figure]:
+    """The tip up to shortly after its first peak; nothing where none has one."""
+    if not any(pen.summary[name].first_peak["tip"].time for name in pen.models):
+        return []
+    end = pen.first_stretch
+    shown = pen.time <= end
+    sheet, (axes,) = pen.over_time(1, 3.9, end)
+    contacts, peakless = [], []
+    circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
+    for name in pen.models:
+        deflection = TO_MILLI * pen.of(name, "tip")
+        pen.line(axes, name, pen.time[shown], deflection[shown])
+        color = pen.strokes[name].color
+        contact = pen.summary[name].first_contact
+        if contact and contact <= end:
+            contacts.append(contact)
+            then = np.interp(contact, pen.time, deflection)
+            axes.plot(contact, then, "o", color=color, zorder=4, **circle)
+        peak, height = pen.summary[name].first_peak["tip"]
+        if peak is None or height is None:
+            peakless.append(name)
+        elif peak <= end:
+            axes.plot(peak, TO_MILLI * height, "v", color=color, ms=8, zorder=4)
+    if contacts:
+        axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
+    axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
+    axes.set_ylabel("deflection (mm)")
+    axes.margins(y=0.08)
+    title, marked = f"Tip, first {end:g} s", "Triangles mark each model's"
+    if contacts:
+        title += f": the segments first touch at {min(contacts):.2f} s"
+        marked = "Circles mark where a model's segments first touch, triangles its"
+    caption = f"Close-up of the tip. {marked} first peak."
+    if peakless:
+        caption += f" No peak within {pen.case.time.duration:g} s: {', '.join(peakless)}."
+    return [pen.finish(sheet, axes, "tip-close-up", title, caption)]
+
+
+def heads(pen: Pen) -> list[Figure]:
+    """The head of each outer segment; it rattles, so each model has its own panel."""
+    joints = range(1, len(pen.case.joints) + 1)
+    places = ["head", *(f"head-{number}" for number in joints if number > 1)]
+    return [_head(pen, place) for place in places if place in pen.data]
+
+
+def _head(pen: Pen, place: str) -> Figure:
+    models = pen.with_play or pen.models
+    # One panel alone has room for the names of its axes.
+    sheet, panels = pen.over_time(len(models), 1.1 + max(1.25 * len(models), 2.2))
+    curves = {name: TO_MILLI * pen.of(name, place) for name in pen.models}
+    for axes, name in zip(panels, models, strict=True):
+        for other in pen.play_free:
+            if other != name:
+                pen.line(axes, other, pen.time, curves[other], linewidth=0.9)
+        pen.line(axes, name, pen.time, curves[name], linewidth=1.1, alone=True)
+        _members(pen, axes, name, place)
+        axes.set_title(name, color=pen.strokes[name].color)
+        axes.set_ylim(_limits(list(curves.values())))
+    sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
+    number = int(place.partition("-")[2] or 1)
+    which = pen.case.joints[number - 1].outer if pen.case.joints else pen.case.segments[0].name
+    tied = [pen.labels[name] for name in pen.play_free if name in pen.models]
+    dashed = f" Dashed: {', '.join(tied)}, without play." if tied else ""
+    caption = (
+        f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
+        f"{_sampled(pen, place)}"
+    )
+    title = f"{place.replace('-', ' ').capitalize()}: {_reach(pen, place)}"
+    return pen.finish(sheet, panels[0], place, title, caption, chart=_chart(pen, place))
+
+
+def lateral_tip(pen: Pen) -> list[Figure]:
+    """The tip to the sides, where the boom is spatial."""
+    if "tip_lateral" not in pen.data:
+        return []
+    sheet, (axes,) = pen.over_time(1, 3.9)
+    axes.set_ylabel("displacement (mm)")
+    curves = {name: TO_MILLI * pen.of(name, "tip_lateral") for name in pen.models}
+    chart = Chart(pen.time, axes.get_ylabel(), pen.plot(axes, curves))
+    caption = "Displacement of the tip along y, to the sides, all models."
+    title = f"Tip, to the sides: {_reach(pen, 'tip_lateral')}"
+    return [pen.finish(sheet, axes, "tip-lateral", title, caption, chart=chart)]
+
+
+def _chart(pen: Pen, place: str) -> Chart:
+    """One place in all models, with the bands of their ensembles."""
+    curves = [
+        pen.curve(name, TO_MILLI * pen.of(name, place), band=_band(pen, name, place))
+        for name in pen.models
+    ]
+    return Chart(pen.time, "deflection (mm)", curves)
+
+
+def _reach(pen: Pen, place: str) -> str:
+    """How far the models, with play where any have it, deflect at one place, up or down."""
+    reaches = {name: farthest(pen.of(name, place)) for name in pen.with_play or pen.models}
+    name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
+    most = fixed(reaches[name], 0, TO_MILLI)
+    return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
+
+
+def _members(pen: Pen, axes: Axes, name: str, place: str) -> None:
+    """The band of a model's ensemble behind its curve, and its horizons."""
+    band = _band(pen, name, place)
+    if band is None:
+        return
+    color = pen.strokes[name].color
+    low, high = band
+    shade = min(0.25, SHADE / len(pen.with_play))
+    axes.fill_between(pen.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
+    for share, dashes in zip(SHARES, (":", "--"), strict=True):
+        ensemble = pen.summary[name].ensemble
+        if ensemble and (known := ensemble.horizon(share)) is not None:
+            axes.axvline(known, color=color, linestyle=dashes, linewidth=0.9)
+
+
+def _band(pen: Pen, name: str, place: str) -> tuple[Array, Array] | None:
+    """(num_times,) each in mm, between which most members of an ensemble are."""
+    if pen.ensembles is None or name not in pen.ensembles["model"] or place not in pen.ensembles:
+        return None
+    members = TO_MILLI * pen.ensembles[place].sel(model=name).values
+    low, high = np.percentile(members, BAND, axis=0)
+    return low, high
+
+
+def _sampled(pen: Pen, place: str) -> str:
+    """What a curve is worth, and what the marks of its ensemble are."""
+    if not pen.with_play or pen.stays_pressed:
+        return ""
+    if pen.ensembles is None or place not in pen.ensembles:
+        if pen.regular or pen.ensembles is not None:
+            return ""
+        return (
+            " After the first presses a curve with play may be one sample of a chaotic motion; an "
+            "ensemble tells."
+        )
+    low, high = BAND
+    band = (
+        f" Shaded: {low:g} to {high:g} % of the {pen.ensembles.sizes['member']} members of each "
+        "model's ensemble."
+    )
+    sampled = [found for name in pen.with_play if (found := pen.summary[name].ensemble)]
+    if not any(time is not None for found in sampled for time in found.horizons.values()):
+        return f"{band} They stay together to the end."
+    first, last = (f"{100.0 * share:g} %" for share in SHARES)
+    beyond = "" if pen.regular else ", beyond which a curve is one sample of a chaotic motion"
+    return (
+        f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) of "
+        f"the tip's range around one another{beyond}."
+    )
+
+
+def _limits(curves: Sequence[Array]) -> tuple[float, float]:
+    """Limits of an axis on which all curves fit."""
+    high = highest([highest(curve) for curve in curves])
+    low = -highest([highest(-curve) for curve in curves])
+    margin = 0.05 * (high - low) or 1.0
+    return low - margin, high + margin
+
+
+def slow_peaks(pen: Pen) -> list[Figure]:
+    """The peaks of the slow motion that all members of an ensemble share, with their spreads."""
+    found = {
+        name: peaks
+        for name in pen.with_play
+        if (ensemble := pen.summary[name].ensemble)
+        and (peaks := ensemble.slow_peaks)
+        and peaks.time
+    }
+    if not found:
+        return []
+    sheet, (axes,) = new_sheet(1, 3.9)
+    for name, peaks in found.items():
+        stroke = pen.strokes[name]
+        axes.errorbar(
+            peaks.time,
+            TO_MILLI * np.array(peaks.height),
+            xerr=peaks.time_spread,
+            yerr=TO_MILLI * np.array(peaks.height_spread),
+            color=stroke.color,
+            linestyle=stroke.linestyle,
+            linewidth=0.7,
+            elinewidth=1.6,
+            marker="o",
+            markersize=4.0,
+            label=name,
+        )
+    axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, pen.time[-1]))
+    counts = [len(peaks.time) for peaks in found.values()]
+    number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
+    caption = (
+        "Peaks of the tip's slow motion, each with half the distance between the first and the "
+        "last, the lowest and the highest of the ensemble's members. A model's points end where "
+        "not all its members have the next peak."
+    )
+    title = f"Slow peaks: {number} are common to all members"
+    return [pen.finish(sheet, axes, "slow-peaks", title, caption, "knowledge")]
+
+
+def horizons(pen: Pen) -> list[Figure]:
+    """Horizon against the size of the change, of each model whose growth has been measured."""
+    measured = {name: found for name in pen.with_play if (found := pen.summary[name].horizons)}
+    if not measured:
+        return []
+    sheet, (axes,) = new_sheet(1, 3.9)
+    shares: dict[float, str] = {}
+    for name, found in measured.items():
+        color = pen.strokes[name].color
+        logs = np.log10(found.relatives)
+        times = np.array(found.times, dtype=float)
+        for i, (share, dashes) in enumerate(zip(found.shares, DASHES, strict=False)):
+            shares[share] = dashes
+            axes.plot(logs, times[:, i], color=color, linestyle=dashes, marker="o", markersize=4.5)
+            of_step = found.of_step[i]
+            if of_step is not None:
+                axes.plot(logs[0], of_step, "s", color=color, mfc="white", ms=7, mew=1.4, zorder=4)
+        axes.plot([], [], color=color, marker="o", markersize=4.5, label=name)
+    for share, dashes in shares.items():
+        axes.plot([], [], color=theme.INK, linestyle=dashes, label=f"{100.0 * share:g} %")
+    axes.plot([], [], "s", color=theme.INK, mfc="white", ms=7, mew=1.4, label="finer step")
+    axes.set(xlabel="log₁₀ of the relative change", ylabel="horizon (s)")
+    axes.set_ylim(bottom=0.0)
+    caption = (
+        "When ensembles whose data change by so much are parts of the tip's range apart. The "
+        "flatter a line, the less better data buy. Squares, at the smallest change: when a run "
+        "with a finer step is as far from the run; below the line's end a finer step would help."
+    )
+    title = "Horizons: how long a motion can be predicted"
+    return [pen.finish(sheet, axes, "horizons", title, caption, "knowledge")]
+
+
+def energies(pen: Pen) -> list[Figure]:
+    """Where the energy of one model is: the last with play, the most complicated."""
+    name = (pen.with_play or pen.models)[-1]
+    columns = dict(zip(DRIVEN_ENERGIES, _energies(pen, name).T, strict=False))
+    drawn = columns.pop("drive_work", None)
+    work = columns.pop("work") + (0.0 if drawn is None else drawn)
+    of = "work of the load" if drawn is None else "work of load and drive"
+    held = {energy: columns.pop(energy) for energy in HELD}
+    lost = {energy: values for energy, values in columns.items() if values.any()}
+    parts = held | lost
+    color = pen.strokes[name].color
+    tints = [theme.tint(color, strength) for strength in HELD.values()]
+    tints += [theme.tint(theme.LOSS, strength) for strength in LOST[: len(lost)]]
+    sheet, (axes,) = pen.over_time(1, 3.9)
+    areas = axes.stackplot(
+        pen.time,
+        *parts.values(),
+        labels=[_named(energy) for energy in parts],
+        colors=tints,
+        linewidth=0,
+    )
+    for area in areas[len(held) :]:
+        # Whatever the model's colour is.
+        area.set(hatch="///", edgecolor="white")
+    start = float(sum(values[0] for values in parts.values()))
+    total = f"start and {of}" if start else of
+    axes.plot(pen.time, start + work, color=theme.INK, linewidth=1.3, label=total)
+    axes.set_ylabel("energy (J)")
+    losses = " and ".join(_named(energy) for energy in lost)
+    hatched = f"; hatched: {losses}" if lost else ""
+    more = " and what was there at the start" if start else ""
+    caption = (
+        f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
+        f"is the {of}{more}, up to the residual of the next figure."
+    )
+    title = f"{name}: the load's work, and where it is"
+    return [pen.finish(sheet, axes, "energies", title, caption, part="numerics")]
+
+
+def residuals(pen: Pen) -> list[Figure]:
+    """Unaccounted energy of every model, the largest so far."""
+    sheet, (axes,) = new_sheet(1, 3.9)
+    worst = []
+    for name in pen.models:
+        so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(pen, name))))
+        worst.append(float(so_far[-1]))
+        pen.line(axes, name, pen.time, np.maximum(so_far, ROUND_OFF))
+    axes.set_yscale("log")
+    axes.set(xlabel="time (s)", ylabel="part of the work (–)", xlim=(0.0, pen.time[-1]))
+    caption = (
+        "Kinetic, strain and contact energy, plus what was lost, less the work of the load, over "
+        "the largest work: the largest so far. Without contact the motion is exact to round-off."
+    )
+    title = f"Unaccounted energy: up to {scientific(highest(worst), 2)} of the work"
+    return [pen.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
+
+
+def _energies(pen: Pen, name: str) -> Array:
+    """(num_times, num_energies) in J, as in :func:`dynamics.energy.energy_residual`."""
+    known = [energy for energy in DRIVEN_ENERGIES if energy in pen.data]
+    return np.array([pen.of(name, energy) for energy in known]).T
+
+
+def _named(energy: str) -> str:
+    """``strain_energy`` as *strain*, ``friction_loss`` as *friction loss*."""
+    return energy.removesuffix("_energy").replace("_", " ")
