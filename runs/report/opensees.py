@@ -10,7 +10,6 @@ section's fields do, is not in it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,7 +22,7 @@ from dynamics.contact import ContactLaw
 from dynamics.excitation import Released, Thrown
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError
-from geometry.contact_places import pads
+from geometry.contact_places import Pad, pads
 from geometry.section import Direction
 from runs.case.build import build_boom
 from runs.case.build import joined as joined_as_seen_by
@@ -47,25 +46,26 @@ OPEN = 1.0e-5
 
 
 class Part(NamedTuple):
-    """A segment as elements: x of its nodes, and what loads at them are made of."""
+    """A segment as elements, which loads push, see :class:`geometry.load.Member`.
 
-    x: Array
+    Args:
+        component: of the segment, flat.
+        free: degrees of freedom that no rigid support holds.
+    """
+
     component: Component
     free: Array
 
+    def node(self, x: float) -> int:
+        """Return the number of the nearest node, from 0."""
+        return int(np.argmin(np.abs(self.component.breaks - x)))
+
     def nodal(self, row: Array) -> list[list[float]]:
-        """Force and moment of each node that is pushed: its number, from 0, N and N·m."""
-        whole = np.zeros(2 * self.x.size)
+        """Return what pushes each node that is pushed: its number, N and N·m."""
+        whole = np.zeros(2 * self.component.breaks.size)
         whole[self.free] = row
         pairs = whole.reshape(-1, 2)
         return [[int(n), *map(float, pairs[n])] for n in np.flatnonzero(pairs.any(axis=1))]
-
-
-@dataclass(frozen=True, slots=True)
-class _Nodes:
-    """A segment as loads push it, see :class:`geometry.load.Member`."""
-
-    component: Component
 
     def force(self, x: float, direction: Direction) -> Array:
         return self.component.at(x)
@@ -77,9 +77,7 @@ class _Nodes:
         raise AssertionError("a flat boom has no torque")
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        if span is None:
-            return self.component.unit_load
-        return self.component.uniform_load(*span)
+        return self.component.unit_load if span is None else self.component.uniform_load(*span)
 
     def inertia(self, direction: Direction, force: float) -> Array:
         return force * self.component.inertia
@@ -173,10 +171,10 @@ def _part(
     nodes = component.breaks
     held = []
     for support in segment.supports:
-        node = _nearest(nodes, support.x)
+        node = int(np.argmin(np.abs(nodes - support.x)))
         held += [2 * node] if support.stiffness is None else []
         held += [2 * node + 1] if support.kind == "clamped" else []
-    return Part(nodes, component, np.setdiff1d(np.arange(2 * nodes.size), held))
+    return Part(component, np.setdiff1d(np.arange(2 * nodes.size), held))
 
 
 def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[str, object]:
@@ -187,7 +185,7 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
     shear = segment.shear_stiffness if sheared else None
     return {
         "name": segment.name,
-        "x": [float(x) for x in part.x],
+        "x": [float(x) for x in part.component.breaks],
         "E": material.youngs_modulus,
         "G": material.shear_modulus,
         "J": segment.second_moment_of_area,
@@ -197,14 +195,14 @@ def _segment(boom: Boom, number: int, part: Part, model: BeamElements) -> dict[s
         "rotary_inertia": segment.rotary_inertia if model.rotary_inertia else 0.0,
         "supports": [
             {
-                "node": _nearest(part.x, support.x),
+                "node": part.node(support.x),
                 "clamped": support.kind == "clamped",
                 "stiffness": support.stiffness,
                 "rotation_stiffness": support.rotation_stiffness,
             }
             for support in segment.supports
         ],
-        "masses": [[_nearest(part.x, mass.x), mass.mass] for mass in segment.carried],
+        "masses": [[part.node(mass.x), mass.mass] for mass in segment.carried],
     }
 
 
@@ -221,19 +219,16 @@ def _contacts(
         return _points(law, 0.0 if spring is None else 1.0 / spring)
 
     for pad in pads(boom):
-        x = pad.x if calibration is None else pad.middle
-        ends = [
-            [number, _nearest(parts[number].x, x)] for number in (pad.joint.outer, pad.joint.inner)
-        ]
+        outer, inner = _ends(pad, parts, calibrated=calibration is not None)
         for side in (pad.side,) if pad.side else (1, -1):
             law = pad.joint.law(pad.direction).one_sided(side)
             if law is None:
                 continue
             law = law.shared(pad.weight)
             law = law.behind(-pad.raised) if pad.raised else law
-            yield {"outer": ends[0], "inner": ends[1], "points": points(law)}
+            yield {"outer": outer, "inner": inner, "points": points(law)}
     for _, stop in boom.numbered_stops:
-        node = [stop.segment, _nearest(parts[stop.segment].x, stop.x)]
+        node = [stop.segment, parts[stop.segment].node(stop.x)]
         for stopped in stop.sides:
             yield {"outer": None, "inner": node, "points": points(stop.law.one_sided(stopped))}
 
@@ -259,11 +254,7 @@ def _frictions(boom: Boom, parts: Sequence[Part], *, calibrated: bool) -> Iterat
     for pad in pads(boom):
         if pad.joint.friction > 0.0:
             assert pad.normal_force is not None
-            x = pad.middle if calibrated else pad.x
-            ends = [
-                [number, _nearest(parts[number].x, x)]
-                for number in (pad.joint.outer, pad.joint.inner)
-            ]
+            ends = _ends(pad, parts, calibrated=calibrated)
             yield [*ends, pad.joint.friction * pad.normal_force]
 
 
@@ -279,7 +270,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         part = parts[load.segment]
         values = np.asarray(load.history(times), dtype=float)
         constant = bool(np.ptp(values) == 0.0)
-        nodes = part.nodal((values[0] if constant else 1.0) * load.push(_Nodes(part.component)))
+        nodes = part.nodal((values[0] if constant else 1.0) * load.push(part))
         yield {
             "segment": load.segment,
             "nodes": nodes,
@@ -287,8 +278,10 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         }
 
 
-def _nearest(nodes: Array, x: float) -> int:
-    return int(np.argmin(np.abs(nodes - x)))
+def _ends(pad: Pad, parts: Sequence[Part], *, calibrated: bool) -> list[list[int]]:
+    """Return segment and node on both sides of a pad, the outer one first."""
+    x = pad.middle if calibrated else pad.x
+    return [[number, parts[number].node(x)] for number in (pad.joint.outer, pad.joint.inner)]
 
 
 def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
