@@ -126,7 +126,7 @@ class Reading:
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class ReadingFinding:
     """A statement on a reading: the verdict, and the numbers it is from."""
 
     verdict: Judgement
@@ -145,7 +145,7 @@ class Judged:
     """
 
     reading: Reading
-    findings: Mapping[str, Finding]
+    findings: Mapping[str, ReadingFinding]
     peaks: Mapping[str, float]
     energy_residual: float
 
@@ -177,7 +177,7 @@ def _judge(reading: Reading, paper: Case, members: int, motions: Memory) -> Judg
     runs = [_results(reading.case(paper, change), motions) for change in changes]
     first = runs[0]
     findings = {
-        verdict.id: Finding(
+        verdict.id: ReadingFinding(
             verdict.verdict, () if verdict.measured is None else (verdict.measured,)
         )
         for verdict in judge(first)
@@ -206,7 +206,7 @@ def judge_exponents(judged: Sequence[Judged]) -> list[Judged]:
         verdict: Judgement = "reproduced" if measured < CLEAR_INFLUENCE else "contradicted"
         if len(group) < 2 or abs(measured - CLEAR_INFLUENCE) <= PEAK_SCATTER:
             verdict = "undecided"
-        shared[key] = Finding(verdict, (measured,) if len(group) > 1 else ())
+        shared[key] = ReadingFinding(verdict, (measured,) if len(group) > 1 else ())
     return [
         replace(entry, findings={**entry.findings, "S9": shared[_but_exponent(entry.reading)]})
         for entry in judged
@@ -242,18 +242,18 @@ def _apart(run: Results, models: Sequence[str], since: float) -> float:
     return largest / max(float(np.ptp(tip)) for tip in tips)
 
 
-def _all_above(values: Sequence[float]) -> Finding:
+def _all_above(values: Sequence[float]) -> ReadingFinding:
     above = [value > DIVERGENCE for value in values]
     if all(above):
-        return Finding("reproduced", values)
-    return Finding("undecided" if any(above) else "contradicted", values)
+        return ReadingFinding("reproduced", values)
+    return ReadingFinding("undecided" if any(above) else "contradicted", values)
 
 
-def _grows(peaks: Sequence[float]) -> Finding:
+def _grows(peaks: Sequence[float]) -> ReadingFinding:
     """S4 without the shell: the smallest rise from one model to the next; less than what first
     peaks scatter by is chance.
     """
     smallest = min(after / before - 1.0 for before, after in pairwise(peaks))
     if abs(smallest) <= PEAK_SCATTER:
-        return Finding("undecided", (smallest,))
-    return Finding("reproduced" if smallest > 0.0 else "contradicted", (smallest,))
+        return ReadingFinding("undecided", (smallest,))
+    return ReadingFinding("reproduced" if smallest > 0.0 else "contradicted", (smallest,))

@@ -33,9 +33,9 @@ from runs.paper.reading import (
     MODELS,
     PAD_FORCE,
     STRATIFIED_FROM,
-    Finding,
     Judged,
     Reading,
+    ReadingFinding,
     Stiffness,
     by_base,
     judge_bases,
@@ -114,7 +114,7 @@ def verdict_table(judged: Sequence[Judged]) -> Table:
 def number_table(judged: Sequence[Judged]) -> Table:
     """A line for each reading: what the verdicts are from."""
 
-    def cell(finding: Finding) -> str:
+    def cell(finding: ReadingFinding) -> str:
         ends = (min(finding.measured), max(finding.measured)) if finding.measured else ()
         return "…".join(dict.fromkeys(number(end, 2) for end in ends))
 

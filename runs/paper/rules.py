@@ -20,8 +20,7 @@ from runs.case.build import joined
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Model
-from runs.paper.parting import apart_at_the_end, peaks_apart
-from runs.paper.questions import Lacking, Run, options
+from runs.paper.run_query import MissingData, RunQuery, apart_at_the_end, options, peaks_apart
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict
 from runs.pipeline.results import Results
@@ -71,7 +70,7 @@ class Finding:
 def judge(results: Results) -> list[Verdict]:
     """The verdicts that a run's case asks for, or demands."""
     case = results.case
-    run = Run(results)
+    run = RunQuery(results)
     return [
         Verdict(
             id=key,
@@ -84,7 +83,7 @@ def judge(results: Results) -> list[Verdict]:
     ]
 
 
-def _s1(run: Run) -> Finding:
+def _s1(run: RunQuery) -> Finding:
     """Measure: largest difference of both tips before the earlier first contact, as a part of
     the five-term tip's range. Threshold: 1e-6. Both have the same outer functions and a rigid
     inner motion until then, so only round-off may part them; nothing has grown chaotic yet.
@@ -104,7 +103,7 @@ def _s1(run: Run) -> Finding:
     )
 
 
-def _s2(run: Run) -> Finding:
+def _s2(run: RunQuery) -> Finding:
     """Measure: largest difference of the tips in the last second, as a part of the larger range,
     in the mean of the members. Threshold: 0.20, the statement's number. The mean is known to
     within its 95 % confidence interval over the members: of their chaotic motions the run that
@@ -126,7 +125,7 @@ def _s2(run: Run) -> Finding:
     )
 
 
-def _s3(run: Run) -> Finding:
+def _s3(run: RunQuery) -> Finding:
     """Measure: share of the members that conform for six seconds, and of those that stratify
     after them. Threshold: half of them each, so that what the paper shows is typical. Conformity
     is of the slow motion: every peak of all models with play within 0.20 of one another, the part
@@ -153,9 +152,9 @@ def _s3(run: Run) -> Finding:
         if time.max(initial=0.0) > CONFORMITY
     ]
     if not early:
-        raise Lacking(f"No member has a peak within {CONFORMITY:g} s.")
+        raise MissingData(f"No member has a peak within {CONFORMITY:g} s.")
     if not late:
-        raise Lacking(f"No member has a peak after {CONFORMITY:g} s.")
+        raise MissingData(f"No member has a peak after {CONFORMITY:g} s.")
     conform, conform_doubt = _share(np.array(early) <= DIVERGENCE)
     stratify, stratify_doubt = _share(np.array(late) > DIVERGENCE)
     parting = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in found]
@@ -171,7 +170,7 @@ def _s3(run: Run) -> Finding:
     )
 
 
-def _s4(run: Run) -> Finding:
+def _s4(run: RunQuery) -> Finding:
     """Measure: smallest rise of the first tip peak from one model to the next, in percent.
     Threshold: 0.5 %, by which a small change of load or step moves one such peak. A larger
     rise each time reproduces, a fall of more than that contradicts, anything between is chance.
@@ -194,7 +193,7 @@ def _s4(run: Run) -> Finding:
     )
 
 
-def _s5(run: Run) -> Finding:
+def _s5(run: RunQuery) -> Finding:
     """Measure: smallest ratio of a first tip peak with play to the one without. Threshold: 2,
     where play adds as much again as the whole play-free deflection; the models with play are
     within a tenth of one another. First peaks scatter by 0.5 % only.
@@ -203,7 +202,7 @@ def _s5(run: Run) -> Finding:
     without = run.peak_height(run.play_free())
     models = [model for model in run.case.models if not model.play_free]
     if not models:
-        raise Lacking("The case has no model with play.")
+        raise MissingData("The case has no model with play.")
     ratio, name = min((run.peak_height(model) / without, model.name) for model in models)
     return Finding(
         _above(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_SCATTER),
@@ -215,7 +214,7 @@ def _s5(run: Run) -> Finding:
     )
 
 
-def _s6(run: Run) -> Finding:
+def _s6(run: RunQuery) -> Finding:
     """Measure: largest pointwise difference of any two models at the tip over that at the head,
     up to the first tip peak. Beyond it chaos and the phase of the slow motion, not the models,
     set the differences. Threshold: 5, half of the ratio of the ranges, at which relative
@@ -232,7 +231,7 @@ def _s6(run: Run) -> Finding:
         apart[place] = float(np.ptp(curves, axis=0).max())
         relative[place] = apart[place] / max(map(_range, curves))
     if min(apart.values()) == 0.0:
-        raise Lacking("The models do not differ up to the first peak.")
+        raise MissingData("The models do not differ up to the first peak.")
     ratio = apart["tip"] / apart["head"]
     level = _above(SAME_LEVEL, max(ratio, 1.0 / ratio), LEVEL_SCATTER * SAME_LEVEL)
     greater = _above(relative["head"], relative["tip"], LEVEL_SCATTER * relative["tip"])
@@ -248,7 +247,7 @@ def _s6(run: Run) -> Finding:
     )
 
 
-def _s7(run: Run) -> Finding:
+def _s7(run: RunQuery) -> Finding:
     """Measure: largest pointwise difference of any two models with play at the tip within six
     seconds, as a part of the largest range. Threshold: 0.20, the part that the paper itself calls
     a divergence (S2). Reproduced if they conform so far, differ more after it, if the play-free
@@ -282,7 +281,7 @@ def _s7(run: Run) -> Finding:
     )
 
 
-def _s8(run: Run) -> Finding:
+def _s8(run: RunQuery) -> Finding:
     """Measure: how long the beam elements with friction move with their energy in bound, in s.
     Threshold: 7 s, beyond which the paper's solution was not stable. A run that goes on for
     longer contradicts that the system is to blame; one that ends before decides nothing, since a
@@ -305,7 +304,7 @@ def _s8(run: Run) -> Finding:
     )
 
 
-def _s9(run: Run) -> Finding:
+def _s9(run: RunQuery) -> Finding:
     """Measure: largest relative difference of first tip peaks between models that differ in
     their contact law alone, with another exponent n. Threshold: 5 %, less than what the models
     of S4 are apart. The stiffness may differ too, since its unit depends on n.
@@ -318,7 +317,7 @@ def _s9(run: Run) -> Finding:
         and _exponents(run, a) != _exponents(run, b)
     ]
     if not differences:
-        raise Lacking("No two models of the case differ in the contact law alone.")
+        raise MissingData("No two models of the case differ in the contact law alone.")
     measured, a, b = max(differences)
     return Finding(
         _above(CLEAR_INFLUENCE, measured, PEAK_SCATTER),
@@ -329,7 +328,7 @@ def _s9(run: Run) -> Finding:
     )
 
 
-def _s10(run: Run) -> Finding:
+def _s10(run: RunQuery) -> Finding:
     """Measure: steps that the series needs, the larger of both, for its first three slow peaks:
     the fewest of all step sizes tried that keep them within 1 % beyond the ensemble's spread.
     Threshold: 2000; beam elements must take more than 4000. The paper's 2000 are for its whole
@@ -353,21 +352,21 @@ def _s10(run: Run) -> Finding:
     )
 
 
-def _s11(run: Run) -> Finding:
+def _s11(run: RunQuery) -> Finding:
     """Measure: distance of the first tip peak of the longest series from that of beam elements, on
     a boom of three segments or more. Threshold: 20 %, the part that the paper itself calls a
     divergence (S2): a description that extends comes as near to the elements as with two.
     """
     count = len(run.case.segments)
     if count < SEGMENTS:
-        raise Lacking(f"This case has {count} segments; it takes the case of three segments.")
+        raise MissingData(f"This case has {count} segments; it takes the case of three segments.")
     series = max(
         of_kind(Kantorovich, run.case.models),
         key=lambda model: sum(model.terms),
         default=None,
     )
     if series is None:
-        raise Lacking("The case has no series.")
+        raise MissingData("The case has no series.")
     elements = run.beam_elements()
     apart = abs(run.peak_height(series) / run.peak_height(elements) - 1.0)
     return Finding(
@@ -380,26 +379,16 @@ def _s11(run: Run) -> Finding:
     )
 
 
-RULES: Mapping[str, Callable[[Run], Finding]] = {
-    "S1": _s1,
-    "S2": _s2,
-    "S3": _s3,
-    "S4": _s4,
-    "S5": _s5,
-    "S6": _s6,
-    "S7": _s7,
-    "S8": _s8,
-    "S9": _s9,
-    "S10": _s10,
-    "S11": _s11,
-}
+RULES: Mapping[str, Callable[[RunQuery], Finding]] = dict(
+    zip(STATEMENTS, (_s1, _s2, _s3, _s4, _s5, _s6, _s7, _s8, _s9, _s10, _s11), strict=True)
+)
 
 
-def _find(rule: Callable[[Run], Finding], run: Run) -> Finding:
+def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
     try:
         return rule(run)
-    except Lacking as lacking:
-        return Finding("undecided", str(lacking))
+    except MissingData as missing:
+        return Finding("undecided", str(missing))
 
 
 def _above(value: float, threshold: float, doubt: float) -> Judgement:
@@ -420,7 +409,7 @@ def _share(shows: Mask) -> tuple[float, float]:
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 
 
-def _apart(run: Run, models: Sequence[Model], place: str) -> Array:
+def _apart(run: RunQuery, models: Sequence[Model], place: str) -> Array:
     """(num_times,) largest difference of any two models, as a part of the largest range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
@@ -433,7 +422,7 @@ def _half_part(middle: float) -> str:
     return f"In half of them the first such peak is at {middle:.1f} s or before."
 
 
-def _horizons(run: Run, models: list[Model]) -> str:
+def _horizons(run: RunQuery, models: list[Model]) -> str:
     """From when on a single run of each model is a sample."""
     horizons = [run.horizon(model, DIVERGENCE) for model in models]
     times = [time for time in horizons if time is not None]
@@ -455,11 +444,11 @@ def _all_of(*parts: Judgement) -> Judgement:
 def _range(curve: Array) -> float:
     span = float(np.ptp(curve))
     if span == 0.0:
-        raise Lacking("Nothing moves.")
+        raise MissingData("Nothing moves.")
     return span
 
 
-def _exponents(run: Run, model: Model) -> list[set[float]]:
+def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
     """n of each joint, as the model sees it."""
     joints = joined(run.case, run.results.boom, model).boom.joints
     return [{term.exponent for term in joint.contact.terms} for joint in joints]

@@ -22,9 +22,9 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case, Model
-from runs.paper.parting import peaks_apart
 from runs.paper.reading import LITERAL
 from runs.paper.rules import CONFORMITY, DIVERGENCE
+from runs.paper.run_query import peaks_apart
 from runs.pipeline.members import slow_below
 from runs.pipeline.models import Plan
 from studies.motions import gap_system, model_of, side_by_side

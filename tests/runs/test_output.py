@@ -17,7 +17,7 @@ from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.messages import BadInput
 from runs.client import judge
-from runs.paper.reading import JUDGED, MODELS, Finding, Judged, Reading
+from runs.paper.reading import JUDGED, MODELS, Judged, Reading, ReadingFinding
 from runs.pipeline.answers import ModelAnswers
 from runs.pipeline.at_rest import place_names
 from runs.pipeline.means import Means
@@ -52,7 +52,7 @@ def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
 
 def leave_survey(folder: Path, case_hash: str) -> None:
     """Readings as ``python -m runs.paper.readings`` leaves them: one of 7 mm, reproduced."""
-    findings = {key: Finding("reproduced", (0.1,)) for key in JUDGED}
+    findings = {key: ReadingFinding("reproduced", (0.1,)) for key in JUDGED}
     peaks = dict.fromkeys(MODELS, 0.17)
     judged = Judged(Reading(0.007, "restored", "as printed", 2.0), findings, peaks, 1e-5)
     data = {"case_hash": case_hash, "readings": [asdict(judged)]}

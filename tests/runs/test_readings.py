@@ -17,7 +17,15 @@ from runs.case.build import build_boom
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.paper.reading import COMMON, JUDGED, MODELS, Finding, Judged, Reading, judge_exponents
+from runs.paper.reading import (
+    COMMON,
+    JUDGED,
+    MODELS,
+    Judged,
+    Reading,
+    ReadingFinding,
+    judge_exponents,
+)
 from runs.paper.readings import PAPER, all_readings, conclude, load, shown, survey
 from runs.paper.verdicts import Judgement
 from tests.touching import contact_laws
@@ -33,8 +41,8 @@ def paper() -> Case:
 
 def judged(reading: Reading, peak: float = 0.17, **verdicts: Judgement) -> Judged:
     """A reading with forced verdicts, reproduced unless given, and one height of all peaks in m."""
-    findings: Mapping[str, Finding] = {
-        key: Finding(verdicts.get(key, "reproduced"), ()) for key in JUDGED
+    findings: Mapping[str, ReadingFinding] = {
+        key: ReadingFinding(verdicts.get(key, "reproduced"), ()) for key in JUDGED
     }
     return Judged(reading, findings, dict.fromkeys(MODELS, peak), 0.0)
 
@@ -106,7 +114,7 @@ def test_exponents_are_compared_within_their_group(peak: float, verdict: str) ->
     for entry in both:
         assert entry.findings["S9"].verdict == verdict
         assert entry.findings["S9"].measured == pytest.approx([peak / 0.17 - 1.0])
-    assert other.findings["S9"] == Finding("undecided", ())
+    assert other.findings["S9"] == ReadingFinding("undecided", ())
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from runs.paper.parting import apart_at_the_end, peaks_apart
+from runs.paper.run_query import apart_at_the_end, peaks_apart
 
 TIME = np.arange(10_001) / 1000
 CUTOFF = 1.7

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the rules on the paper's statements may ask of a run."""
+"""What the rules on the paper's statements ask of a run, and how far models diverge."""
 
 from __future__ import annotations
 
@@ -9,23 +9,27 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from geometry.arrays import Array
+from dynamics.predictability.low_pass import slow_peaks
+from geometry.arrays import Array, Mask
 from runs.case.kinds.kantorovich import Kantorovich
 from runs.case.kinds.model import of_kind
 from runs.case.schema import Case, Model
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
+# Beyond the last peak a motion may end before the next one comes, so many periods of its own.
+NEXT_PEAK = 1.5
+
 _Found = TypeVar("_Found")
 
 
-class Lacking(Exception):
+class MissingData(Exception):
     """What a rule needs and the run does not have, as a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
-    """What the rules ask of a run; each question raises :class:`Lacking` without an answer.
+class RunQuery:
+    """What the rules ask of a run; each question raises :class:`MissingData` without an answer.
 
     Args:
         results: of the run.
@@ -47,19 +51,19 @@ class Run:
         """Refuse a model that failed, or was left out."""
         why = self.results.summary.failures.get(model.name)
         if why is not None:
-            raise Lacking(f"{model.name!r} failed: {why}.")
+            raise MissingData(f"{model.name!r} failed: {why}.")
         if model.name not in self.results.trajectories["model"].values:
-            raise Lacking(f"{model.name!r} did not run.")
+            raise MissingData(f"{model.name!r} did not run.")
 
     def curve(self, model: Model, place: str = "tip") -> Array:
         """(num_times,) deflection in m."""
         self.check_ran(model)
         if place not in self.results.trajectories:
-            raise Lacking(f"No {place} in this run.")
+            raise MissingData(f"No {place} in this run.")
         of_model = self.results.trajectories[place].sel(model=model.name)
         deflection = np.asarray(of_model.values, dtype=float)
         if not np.isfinite(deflection).all():
-            raise Lacking(f"The {place} of {model.name!r} is not finite.")
+            raise MissingData(f"The {place} of {model.name!r} is not finite.")
         return deflection
 
     def members(self, *models: Model) -> Array:
@@ -67,7 +71,7 @@ class Run:
         for model in models:
             self.curve(model)
         if self.results.ensembles is None:
-            raise Lacking("One run is a sample of a chaotic motion; it takes [ensemble].")
+            raise MissingData("One run is a sample of a chaotic motion; it takes [ensemble].")
         tips = self.results.ensembles["tip"].sel(model=[model.name for model in models])
         return np.asarray(tips.transpose("model", "member", "time").values, dtype=float)
 
@@ -101,14 +105,14 @@ class Run:
         """Cut-off of the slow motion in Hz."""
         asked = self.results.summary.ensemble
         if asked is None or asked.slow_below is None:
-            raise Lacking("The run is too coarsely reported for a slow motion.")
+            raise MissingData("The run is too coarsely reported for a slow motion.")
         return asked.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
         """The model that fits; of several the one that is called ``what``, else the first."""
         found = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not found:
-            raise Lacking(f"The case has no model like {what!r}.")
+            raise MissingData(f"The case has no model like {what!r}.")
         return found[0]
 
     def four_terms(self) -> Model:
@@ -147,28 +151,28 @@ class Run:
         """All models whose segments can touch, two at least."""
         models = [model for model in self.case.models if not model.play_free]
         if len(models) < 2:
-            raise Lacking("It takes two models with play to compare.")
+            raise MissingData("It takes two models with play to compare.")
         return models
 
     def with_friction(self) -> None:
         """Refuse a case without friction."""
         if not any(joint.friction > 0.0 for joint in self.case.joints):
-            raise Lacking("This case has no friction; it takes the case with friction.")
+            raise MissingData("This case has no friction; it takes the case with friction.")
 
     def without_friction(self) -> None:
         """Refuse a case with friction."""
         if any(joint.friction > 0.0 for joint in self.case.joints):
-            raise Lacking("This case has friction; it takes the case without.")
+            raise MissingData("This case has friction; it takes the case without.")
 
     def last_until(self, end: float) -> None:
         """Refuse a run that ends before ``end`` in s."""
         if self.time[-1] < end * (1.0 - 1e-9):
-            raise Lacking(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
+            raise MissingData(f"The run ends at {self.time[-1]:g} s; it takes {end:g} s.")
 
 
 def _there(model: Model, what: str, value: _Found | None) -> _Found:
     if value is None:
-        raise Lacking(f"{model.name!r} has no {what}.")
+        raise MissingData(f"{model.name!r} has no {what}.")
     return value
 
 
@@ -180,3 +184,44 @@ def terms(model: Model) -> tuple[int, ...]:
 def options(model: Model, *ignored: str) -> dict[str, Any]:
     """What a model is, but for its name and the ignored keys."""
     return model.model_dump(exclude={"name", *ignored})
+
+
+def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
+    """Return (num_members,) largest difference at the last times, as a part of the larger range.
+
+    Args:
+        one, other: (num_members, num_times) of one quantity.
+        last: (num_times,) which times count.
+    """
+    scale = np.maximum(np.ptp(one, axis=1), np.ptp(other, axis=1))
+    return np.asarray(np.abs(one - other)[:, last].max(axis=1) / scale)
+
+
+def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
+    """Return how far the peaks of several slow motions are from one another, peak by peak.
+
+    The k-th peak of one model belongs to the k-th of every other. Their distance is the larger of
+    that in time, as a part of the mean period, and that in height, as a part of the highest; it is
+    infinite where a model has no such peak and its motion goes on for long enough to have one.
+
+    Args:
+        curves: (num_models, num_times), one member of each model.
+        time: (num_times,) in s, equal steps.
+        cutoff: of the slow motion in Hz.
+
+    Returns:
+        (num_peaks,) time in s at which the first model has the peak, and (num_peaks,) distance;
+        peaks that only some models have are among them.
+    """
+    found = [slow_peaks(curve, time, cutoff) for curve in curves]
+    many = [np.diff(times) for times, _ in found if times.size > 1]
+    period = float(np.concatenate(many).mean()) if many else np.inf
+    t, h = np.full((2, len(found), max(times.size for times, _ in found)), np.nan)
+    for model, (times, heights) in enumerate(found):
+        t[model, : times.size], h[model, : times.size] = times, heights
+    first = np.nanmin(t, axis=0)
+    shared = np.isfinite(t).all(axis=0)
+    late, lower = np.ptp(t, axis=0) / period, np.ptp(h, axis=0) / np.nanmax(np.abs(h), axis=0)
+    apart = np.where(shared, np.maximum(late, lower), np.inf)
+    counts = shared | (first < time[-1] - NEXT_PEAK * period)
+    return first[counts], apart[counts]
