@@ -17,8 +17,8 @@ def boom(play: float = PLAY) -> pt.Boom:
     wall = pt.Support(0.0, "clamped")
     arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
     fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=LOAD)
-    joint = pt.Joint(0, 1, stations=(6.0, 8.0), play=play, contact=LAW)
-    return pt.Boom((arm, fly), (joint,))
+    joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=play, contact=LAW)
+    return pt.Boom([arm, fly], [joint])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ x runs along the boom, z is the plane of bending, y is lateral. Everything is in
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -74,30 +74,33 @@ class Boom:
     >>> arm = pt.Segment.of_section("arm", 0.0, 8.0, steel, boxes[0], supports=(wall,))
     >>> fly = pt.Segment.of_section("fly", 6.0, 14.0, steel, boxes[1], load=-500.0)
     >>> law = pt.PowerContact(1e9, exponent=1.0)
-    >>> joint = pt.Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01, contact=law)
-    >>> boom = pt.Boom((arm, fly), (joint,))
+    >>> joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.01, contact=law)
+    >>> boom = pt.Boom([arm, fly], [joint])
     >>> boom.tip, boom.stations
     (14.0, [(6.0, 'z'), (8.0, 'z')])
     >>> pt.BeamElements(boom).system().num_modes
     66
 
+    Joints, loads, stops, cylinders and observations give their segments by name, or by position.
+
     Raises:
-        BoomError: supports, stations, loads or stops outside the segments, an inner box that does
-            not fit its outer one, a section that does not mirror itself, a segment that nothing
-            holds, friction without what presses, a boom in space that lacks lateral numbers, an
-            observation of what is not there.
+        BoomError: a name that is no segment, supports, stations, loads or stops outside the
+            segments, an inner box that does not fit its outer one, a section that does not mirror
+            itself, a segment that nothing holds, friction without what presses, a boom in space
+            that lacks lateral numbers, an observation of what is not there.
     """
 
-    segments: tuple[Segment, ...]
-    joints: tuple[Joint, ...]
-    loads: tuple[Load, ...] = ()
-    stops: tuple[Stop, ...] = ()
-    observations: tuple[Observation, ...] = ()
-    cylinders: tuple[Cylinder, ...] = ()
+    segments: Sequence[Segment]
+    joints: Sequence[Joint] = ()
+    loads: Sequence[Load] = ()
+    stops: Sequence[Stop] = ()
+    observations: Sequence[Observation] = ()
+    cylinders: Sequence[Cylinder] = ()
 
     def __post_init__(self) -> None:
         if not self.segments:
             raise BoomError("segment", "a boom needs at least one segment")
+        self._find_segments()
         for number, segment in enumerate(self.segments, start=1):
             segment.check(f"segment[{number}]")
         for number, joint in enumerate(self.joints, start=1):
@@ -247,6 +250,22 @@ class Boom:
             for what in quantities
         ]
 
+    def _find_segments(self) -> None:
+        """Put positions in place of the segments' names, and tuples in place of lists."""
+        names = [segment.name for segment in self.segments]
+        for group in (field.name for field in fields(self)):
+            parts = list(getattr(self, group))
+            for number, part in enumerate(parts):
+                for key in ("outer", "inner", "segment"):
+                    name = getattr(part, key, None)
+                    if isinstance(name, str) and name not in names:
+                        where = f"{group.removesuffix('s')}[{number + 1}].{key}"
+                        known = ", ".join(map(repr, names))
+                        raise BoomError(where, f"{name!r} is no segment; give one of {known}")
+                    if isinstance(name, str):
+                        parts[number] = replace(parts[number], **{key: names.index(name)})
+            object.__setattr__(self, group, tuple(parts))
+
     def _check_order(self) -> None:
         for number, (before, after) in enumerate(pairwise(self.segments), start=2):
             if after.start < before.start or after.end < before.end:
@@ -389,12 +408,12 @@ class Boom:
             cylinder.check(where, self.spatial)
 
 
-def _overlap(joint: Joint, segments: tuple[Segment, ...]) -> tuple[float, float]:
+def _overlap(joint: Joint, segments: Sequence[Segment]) -> tuple[float, float]:
     outer, inner = segments[joint.outer], segments[joint.inner]
     return max(outer.start, inner.start), min(outer.end, inner.end)
 
 
-def _check_joint(where: str, joint: Joint, segments: tuple[Segment, ...]) -> None:
+def _check_joint(where: str, joint: Joint, segments: Sequence[Segment]) -> None:
     outer, inner = segments[joint.outer], segments[joint.inner]
     start, end = _overlap(joint, segments)
     if not start < end:

@@ -13,6 +13,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.fault import BoomError
 from geometry.load import Body
+from geometry.section import SegmentRef
 from geometry.support import Support
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Cylinder:
     True
 
     Args:
-        segment: position in ``Boom.segments``.
+        segment: its name; in a boom its position.
         x: of the lug in m.
         depth: of the lug below the axis in m.
         ground: x of the other end in m, and how far it is above the axis, which is straight.
@@ -45,7 +46,7 @@ class Cylinder:
         spread: m along y between two side by side, in space; one in the middle unless given.
     """
 
-    segment: int
+    segment: SegmentRef
     x: float
     depth: float
     ground: tuple[float, float]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from geometry.drive import Drive
 from geometry.fault import BoomError
-from geometry.section import Direction, Side
+from geometry.section import Direction, SegmentRef, Side
 
 PadSide = Literal["above", "below", "left", "right"]
 
@@ -74,7 +74,7 @@ class Joint:
     ((6.0, 8.0), (0.005, 0.005))
 
     Args:
-        outer, inner: positions of the two in ``Boom.segments``.
+        outer, inner: names of the two; in a boom their positions in ``Boom.segments``.
         stations: x at which they may touch, rising.
         play: 2Δ in m, the clearance above and below together.
         contact: what presses at each station across the play, a
@@ -100,8 +100,8 @@ class Joint:
             given.
     """
 
-    outer: int
-    inner: int
+    outer: SegmentRef
+    inner: SegmentRef
     stations: tuple[float, ...]
     play: float
     contact: Any = None
@@ -178,7 +178,7 @@ class Stop:
     (14.0, 'z')
 
     Args:
-        segment: position in ``Boom.segments``.
+        segment: its name; in a boom its position.
         x: m.
         play: 2Δ in m, half of it each way.
         contact: what presses across the play, a :class:`dynamics.contact.ContactLaw`; one-sided
@@ -187,7 +187,7 @@ class Stop:
             its box unless given.
     """
 
-    segment: int
+    segment: SegmentRef
     x: float
     play: float
     contact: Any

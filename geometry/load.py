@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from geometry.arrays import Array
-from geometry.section import Direction
+from geometry.section import Direction, SegmentRef
 
 
 class Body(Protocol):
@@ -51,7 +51,7 @@ class Load:
     1
 
     Args:
-        segment: position in ``Boom.segments``.
+        segment: its name; in a boom its position.
         direction: along which it acts.
         magnitude: in N/m along the whole segment, or in N at one place.
         x: the place in m; None for the whole segment.
@@ -61,7 +61,7 @@ class Load:
             which collars and diaphragms feel beyond that.
     """
 
-    segment: int
+    segment: SegmentRef
     direction: Direction
     magnitude: float
     x: float | None

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from geometry.section import SegmentRef
+
 # What a case may ask for.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
 
@@ -53,13 +55,13 @@ class Observation:
 
     Args:
         name: of the output.
-        segment: position in ``Boom.segments``.
+        segment: its name; in a boom its position.
         x: m.
         quantity: of its cross-section there; the lateral deflection and the twist in space alone.
     """
 
     name: str
-    segment: int
+    segment: SegmentRef
     x: float
     quantity: Quantity = "deflection"
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -24,6 +24,8 @@ from geometry.arrays import Array, Mask
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
+# A segment of a boom: its name as it is given, its position in a boom.
+SegmentRef = Any
 Offset = tuple[float, float]
 
 # Position of a direction in an (x, y, z).

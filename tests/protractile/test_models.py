@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 import protractile as pt
 from runs.case.kinds.model import ModelTable
@@ -53,7 +55,8 @@ def boom() -> pt.Boom:
         "fly", 6.0, 14.0, steel,
         pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005), load=-500.0,
     )  # fmt: skip
-    return pt.Boom((arm, fly), (pt.Joint(0, 1, stations=(6.0, 8.0), play=0.010, contact=LAW),))
+    joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.010, contact=LAW)
+    return pt.Boom([arm, fly], [joint])
 
 
 def declared(model: ModelTable, **tables: Any) -> pt.Case:
@@ -87,6 +90,26 @@ def test_a_model_moves_as_that_of_a_case_file(
     motion = model.simulate(0.2)
     np.testing.assert_array_equal(motion.tip, results.trajectories["tip"].sel(model=model.name))
     assert motion.data.attrs["steps"] == results.summary.models[model.name].steps
+
+
+def test_changing_the_play_of_a_joint_changes_what_touches(boom: pt.Boom) -> None:
+    """Reference: analytic. A free fall across half the play takes the root of it in time."""
+    near = replace(boom, joints=[replace(boom.joints[0], play=0.002)])
+    touched = [pt.BeamElements(b).simulate(0.1).first_contact for b in (boom, near)]
+    assert touched[1] == pytest.approx(touched[0] / np.sqrt(5.0), rel=1e-3)
+
+
+def test_a_name_that_is_no_segment(boom: pt.Boom) -> None:
+    with pytest.raises(pt.BoomError) as error:
+        replace(boom, loads=[pt.Load("jib", "z", -1.0, 14.0, pt.Step())])
+    assert str(error.value) == "load[1].segment: 'jib' is no segment; give one of 'arm', 'fly'"
+
+
+def test_keys_are_those_of_the_table(boom: pt.Boom) -> None:
+    with pytest.raises(ValidationError, match="mesh"):
+        pt.Shell(boom, mesh=0.1)
+    with pytest.raises(pt.BoomError, match="must have one number for each of the 2 segments"):
+        pt.Kantorovich(boom, terms=(4,)).system()
 
 
 def test_a_boom_weighs_as_that_of_a_case_file(boom: pt.Boom) -> None:

@@ -22,7 +22,6 @@ from dynamics.integrator import simulate
 HEAVY = "dolfinx", "pyvista", "matplotlib", "numba", "numpy"
 NAMES = dir(pt)
 ROOT = Path(__file__).parents[2]
-README = ROOT / "README.md"
 ROOMS = "geometry", "dynamics", "beam_model", "runs", "protractile"
 EXPLAINED = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts)
@@ -73,10 +72,13 @@ def test_examples_in_docstrings_hold(name: str, at_hand: dict[str, Any]) -> None
         assert doctest.DocTestRunner().run(example).failed == 0
 
 
-def test_the_readme_runs() -> None:
+@pytest.mark.parametrize(
+    ("text", "heading"), [("README.md", "## In Python"), ("docs/api.md", "# In Python")]
+)
+def test_code_in_texts_runs(text: str, heading: str) -> None:
     """What stands under "In Python" runs as it stands."""
-    section = README.read_text("utf-8").split("## In Python\n")[1].split("\n## ")[0]
-    code = section.split("```python\n")[1].split("```")[0]
+    section = (ROOT / text).read_text("utf-8").split(f"{heading}\n")[1]
     names: dict[str, Any] = {}
-    exec(code, names)
-    assert 0.0 < names["compared"].largest < 0.2
+    for code in section.split("\n## Is the shell")[0].split("```python\n")[1:]:
+        exec(code.split("```")[0], names)
+    assert 0.0 < names["difference"].largest < 0.2
