@@ -1,7 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What cases of several tests say alike: steel, segments that are boxes, joints of linear pads."""
+"""What cases of several tests say alike, and how they are read and refused."""
 
 from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from runs.case import reading
+from runs.case.messages import BadInput
+from runs.case.schema import Case
 
 STEEL = """
 [material]
@@ -39,3 +47,17 @@ exponent = 1.0
 {stiffness}
 {more}
 """
+
+
+def read_case(folder: Path, text: str) -> Case:
+    """The case of a text, from a file in a folder."""
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return reading.load(str(path))
+
+
+def refusal(folder: Path, text: str) -> str:
+    """Why a case of a text is refused, behind the name of its file."""
+    with pytest.raises(BadInput) as refused:
+        read_case(folder, text)
+    return str(refused.value).removeprefix(f"{folder / 'case.toml'}: ")

@@ -10,7 +10,14 @@ from typing import Any
 
 from rich.console import Console
 
+from dynamics.trajectory import Trajectory
+from runs.case.build import build_boom
+from runs.case.schema import Case
+from runs.pipeline.answers import Answers
+from runs.pipeline.means import Means
+from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
+from runs.pipeline.run import run_case
 from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
 
 _MODEL = {
@@ -59,3 +66,17 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
     show(*given, console)
     assert isinstance(console.file, StringIO)
     return console.file.getvalue()
+
+
+def answers_of(case: Case) -> Answers:
+    """What a run of a case answers, as a folder gives it back."""
+    run = run_case(case, "", Means())
+    assert run is not None
+    run.answer()
+    return Summary.model_validate_json(str(run.results.summary)).answers
+
+
+def motion_of(case: Case, number: int = 0) -> Trajectory:
+    """The motion of one of a case's models, in the case's order."""
+    model = case.models[number]
+    return Plan.of(build(case, build_boom(case), model).system, case, model).trajectory()

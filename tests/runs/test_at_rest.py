@@ -13,6 +13,7 @@ from dynamics.drive.row_table import RowTable
 from dynamics.drive.travel import Travel
 from dynamics.excitation import Excitation, History, Ramp, Sine, Table
 from dynamics.gap_system import GapSystem
+from protractile.cases import change
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -25,26 +26,16 @@ from runs.pipeline.at_rest import (
     instants,
     positions,
 )
-from runs.pipeline.means import Means
 from runs.pipeline.models import build
-from runs.pipeline.run import run_case
-from runs.pipeline.summary import Summary
+from tests.runs.summaries import answers_of
 
 
 @pytest.fixture(scope="module")
 def answers() -> Answers:
     """Of the paper's boom by elements, with play."""
-    case = case_file.load(str(CASES / "coarse.toml"))
-    time = case.time.model_copy(update={"duration": 0.05})
+    case = change(case_file.load(str(CASES / "coarse.toml")), **{"time.duration": 0.05})
     models = tuple(model for model in case.models if model.name == "timoshenko")
-    short = case.model_copy(update={"models": models, "time": time})
-    run = run_case(short, "", Means())
-    assert run is not None
-    run.answer()
-    # As a folder gives it back.
-    found = Summary.model_validate_json(str(run.results.summary)).answers
-    assert found is not None
-    return found
+    return answers_of(case.model_copy(update={"models": models}))
 
 
 def test_a_joint_tilts_by_its_play(answers: Answers) -> None:

@@ -3,22 +3,20 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from geometry.section import BoxSection
 from protractile.cases import run_case
-from runs.case import reading as case_file
+from runs import CASES
 from runs.case.build import build_boom
 from runs.case.declared import Declared
-from runs.case.messages import BadInput
-from runs.pipeline.inferred import print_inferred
+from runs.pipeline.inferred import print_axial_forces, print_inferred
 from runs.report.model_tables import buckling_table
-from tests.runs.case_texts import STEEL, box, joint
+from tests.runs.case_texts import STEEL, box, joint, read_case, refusal
+from tests.runs.summaries import printed
 
 LIFT = f"""
 title = "Lift"
@@ -47,15 +45,9 @@ MAST = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
 
 
-def written(folder: Path, text: str) -> Path:
-    path = folder / "case.toml"
-    path.write_text(LIFT + text, encoding="utf-8")
-    return path
-
-
 def pressed(folder: Path, text: str) -> list[list[float]]:
     """P at 3 m and 7 m of the mast, at 7 m and 13 m of the fly."""
-    boom = build_boom(case_file.load(str(written(folder, text))))
+    boom = build_boom(read_case(folder, LIFT + text))
     places = (np.array([3.0, 7.0]), np.array([7.0, 13.0]))
     return [s.compression(x).tolist() for s, x in zip(boom.segments, places, strict=True)]
 
@@ -97,10 +89,8 @@ def test_a_rope_presses_the_boom_from_the_tip_to_the_base(
 def test_a_force_may_act_anywhere_and_pass_at_a_pin(tmp_path: Path) -> None:
     text = '[[axial]]\nforce = 5e3\nsegment = "fly"\nx = 10.0\n'
     assert pressed(tmp_path, text) == [[5e3, 0.0], [5e3, 0.0]]
-    path = written(tmp_path, text)
-    locked = path.read_text(encoding="utf-8").replace("play = 0.01", "play = 0.01\nlocked_at = 8.0")
-    path.write_text(locked, encoding="utf-8")
-    mast, fly = build_boom(case_file.load(str(path))).segments
+    locked = (LIFT + text).replace("play = 0.01", "play = 0.01\nlocked_at = 8.0")
+    mast, fly = build_boom(read_case(tmp_path, locked)).segments
     assert mast.compression(np.array([7.0])).tolist() == [5e3]
     assert fly.compression(np.array([7.0, 9.0])).tolist() == [0.0, 5e3]
 
@@ -110,7 +100,7 @@ def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
     rest = '[start]\nstate = "equilibrium"\n' + TIED
     tips = {}
     for name, text in (("straight", ""), ("pressed", "[[axial]]\nforce = 1.5e5\n")):
-        results = run_case(case_file.load(str(written(tmp_path, text + rest))), models=["tied"])
+        results = run_case(read_case(tmp_path, LIFT + text + rest), models=["tied"])
         tips[name] = float(results.trajectories["tip"].values[0, -1])
         summary = results.summary.models["tied"]
         assert summary.static_tip == pytest.approx(tips[name], rel=1e-6)
@@ -123,21 +113,19 @@ def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
 
 def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     """Reference: what the summary of the run has."""
-    case = case_file.load(str(written(tmp_path, "[[axial]]\nforce = 4e4\n" + TIED)))
+    case = read_case(tmp_path, LIFT + "[[axial]]\nforce = 4e4\n" + TIED)
     results = run_case(case)
     table = buckling_table(results)
     assert table is not None
     factor = results.summary.models["tied"].critical_factor
     assert factor is not None
-    shown = io.StringIO()
-    print_inferred(Declared(case), Console(file=shown, width=120))
-    words = [line.replace("│", " ").split() for line in shown.getvalue().splitlines()]
+    shown = printed(print_inferred, Declared(case), width=120)
+    words = [line.replace("│", " ").split() for line in shown.splitlines()]
     assert ["mast", "40", f"{0.04 / MAST.area:.4g}"] in words
-    assert f"{factor:.4g}" in shown.getvalue()
-    assert f"{100.0 / factor:.3g} %" in shown.getvalue()
+    assert f"{factor:.4g}" in shown
+    assert f"{100.0 / factor:.3g} %" in shown
     assert table.rows[1][1:3] == (f"{factor:.4g}", f"{100.0 / factor:.3g}")
-    plain = case_file.load(str(written(tmp_path, TIED)))
-    assert buckling_table(run_case(plain)) is None
+    assert buckling_table(run_case(read_case(tmp_path, LIFT + TIED))) is None
 
 
 @pytest.mark.parametrize(
@@ -159,12 +147,9 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
 )
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
     """Each on its slip, none on what is in proportion."""
-    path = written(tmp_path, text + TIED)
-    path.write_text(path.read_text(encoding="utf-8").replace("= 0.05", "= 0.5"), encoding="utf-8")
-    case = case_file.load(str(path))
-    shown = io.StringIO()
-    print_inferred(Declared(case), Console(file=shown, width=200))
-    checked, told = shown.getvalue().splitlines(), run_case(case, models=["tied"]).summary.cautions
+    case = read_case(tmp_path, (LIFT + text + TIED).replace("= 0.05", "= 0.5"))
+    checked = printed(print_inferred, Declared(case), width=200).splitlines()
+    told = run_case(case, models=["tied"]).summary.cautions
     if caution is None:
         assert told == []
         assert not any(line.startswith("caution") for line in checked)
@@ -213,7 +198,25 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
     ],
 )
 def test_says_what_cannot_press(tmp_path: Path, text: str, line: str) -> None:
-    path = written(tmp_path, text)
-    with pytest.raises(BadInput) as caught:
-        case_file.load(str(path))
-    assert str(caught.value) == f"{path}: {line}"
+    assert refusal(tmp_path, LIFT + text) == line
+
+
+TAPERED = """section = { height = 0.7, width = 0.3, flange = 0.012, web = 0.012 }
+head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }
+"""
+PRESSED = '[[axial]]\nforce = 3e5\n\n[[model]]\nname = "beam"\nkind = "finite-element"\n'
+
+
+def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:
+    """Reference: by hand. The tail comes to 9 m, nine tenths of the way from 12 to 6 mm and from
+    0.7 to 0.5 m, where 300 kN press four walls of 6.6 mm; at the start, at 5 m, of 9 mm."""
+    head, outer, inner, *_ = (CASES / "drawn-out.toml").read_text("utf-8").split("[[segment]]\n")
+    numbers = outer[outer.index("mass_per_length") : outer.index("load")]
+    box = "section = { height = 0.45, width = 0.25, flange = 0.006, web = 0.006 }\n"
+    own = inner[inner.index("mass_per_length") : inner.index("load")]
+    parts = head, outer.replace(numbers, TAPERED), inner.replace(own, box).partition("[[model]]")[0]
+    case = read_case(tmp_path, "[[segment]]\n".join(parts) + PRESSED)
+    told = printed(print_axial_forces, Declared(case), width=120)
+    rows = [line.replace("│", " ").split() for line in told.splitlines()]
+    stress = 300e3 / (2.0 * (0.3 + 0.52) * 6.6e-3) / 1e6
+    assert ["outer", "300", f"{stress:.4g}"] in rows

@@ -7,16 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from geometry.boom import Boom, Cylinder, Support
 from protractile.cases import run_case
-from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.declared import Declared
+from runs.case.schema import Case
 from runs.case.toml import dumps
 from runs.pipeline.inferred import print_inferred
-from tests.runs.case_texts import STEEL, box, joint
+from tests.runs.case_texts import STEEL, box, joint, read_case
+from tests.runs.summaries import printed
 
 LUFFED = f"""
 title = "A boom on its cylinder"
@@ -61,10 +61,8 @@ tied = true
 
 
 @pytest.fixture
-def path(tmp_path: Path) -> Path:
-    place = tmp_path / "case.toml"
-    place.write_text(LUFFED, encoding="utf-8")
-    return place
+def case(tmp_path: Path) -> Case:
+    return read_case(tmp_path, LUFFED)
 
 
 def turning(boom: Boom) -> float:
@@ -78,21 +76,17 @@ def turning(boom: Boom) -> float:
 ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
 
 
-def test_the_boom_is_what_the_case_says(path: Path, tmp_path: Path) -> None:
+def test_the_boom_is_what_the_case_says(case: Case, tmp_path: Path) -> None:
     """As it is written, and as a run writes it again."""
-    again = tmp_path / "again.toml"
-    again.write_text(dumps(case_file.load(str(path))), encoding="utf-8")
-    for file in (path, again):
-        boom = build_boom(case_file.load(str(file)))
+    for boom in (build_boom(case), build_boom(read_case(tmp_path, dumps(case)))):
         assert boom.segments[0].supports == (Support(0.0, lateral_kind="clamped", depth=0.2),)
         assert boom.cylinders == (Cylinder(0, 3.0, 0.5, (1.2, -2.4), 6.0e7, 2.0e4, 0.0),)
         assert boom.joints[0].dashpot == 500.0
 
 
-def test_every_model_stands_on_its_cylinder(path: Path) -> None:
+def test_every_model_stands_on_its_cylinder(case: Case) -> None:
     """Reference: analytic, moments about the hinge; at rest nothing moves, and energy is kept."""
-    results = run_case(case_file.load(str(path)))
-    boom = build_boom(case_file.load(str(path)))
+    results, boom = run_case(case), build_boom(case)
     force = results.trajectories["cylinder_force"]
     assert force.attrs == {
         "units": "N",
@@ -104,16 +98,12 @@ def test_every_model_stands_on_its_cylinder(path: Path) -> None:
         assert results.summary.models[model].energy_residual < 1e-4
 
 
-def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(
-    path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
     """Reference: analytic, the arm of its line about the pin, and the moment of the weights."""
-    print_inferred(Declared(case_file.load(str(path))), Console(width=200))
-    told = capsys.readouterr().out
+    told = printed(print_inferred, Declared(case), width=200)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = (cell.strip() for cell in row.strip("│").split("│"))
     assert x == "3"
     assert [float(length), float(arm)] == pytest.approx([np.hypot(1.8, 1.9), ARM], rel=1e-3)
-    boom = build_boom(case_file.load(str(path)))
-    assert float(force) == pytest.approx(1e-3 * turning(boom) / ARM, rel=1e-3)
+    assert float(force) == pytest.approx(1e-3 * turning(build_boom(case)) / ARM, rel=1e-3)
     assert len([line for line in told.splitlines() if " % at " in line]) == 4

@@ -11,10 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.pipeline.models import Plan, build
-from tests.runs.case_texts import STEEL, box, joint
+from tests.runs.case_texts import STEEL, box, joint, read_case
+from tests.runs.summaries import motion_of
 
 HEAD = f"""
 title = "Under its weight"
@@ -66,12 +64,7 @@ file = "gust.csv"
 def test_a_pressed_boom_keeps_its_ledger(tmp_path: Path, boom: str, damping: str) -> None:
     gust = np.column_stack([np.linspace(0.0, 1.0, 21), np.abs(np.sin(np.linspace(0.0, 9.0, 21)))])
     np.savetxt(tmp_path / "gust.csv", gust, delimiter=",")
-    path = tmp_path / "case.toml"
-    path.write_text(HEAD + boom + f"[damping]\n{damping}\n", encoding="utf-8")
-    case = case_file.load(str(path))
-    (model,) = case.models
-    plan = Plan.of(build(case, build_boom(case), model).system, case, model)
-    run = plan.trajectory(lambda part: None)
+    run = motion_of(read_case(tmp_path, HEAD + boom + f"[damping]\n{damping}\n"))
     assert run.energy_residual < 1e-4
     loss = np.diff(run.data["damping_loss"].values)
     assert loss.min() >= 0.0

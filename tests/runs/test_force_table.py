@@ -10,14 +10,13 @@ import pytest
 
 from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
-from runs.case import reading as case_file
+from protractile.cases import change
 from runs.case import toml
-from runs.case.build import build_boom
 from runs.case.contact import JointTable
-from runs.case.messages import BadInput
 from runs.case.schema import Case
-from runs.pipeline.models import Plan, build
+from tests.runs.case_texts import read_case, refusal
 from tests.runs.coarse_case import COARSE
+from tests.runs.summaries import motion_of
 from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -27,14 +26,7 @@ POINTS = [[float(p), float(1e13 * p**2)] for p in DEPTHS]
 
 
 def case_with(folder: Path, law: str) -> Case:
-    path = folder / "case.toml"
-    assert COARSE.count(LAW) == 1
-    path.write_text(COARSE.replace(LAW, law), encoding="utf-8")
-    return case_file.load(str(path))
-
-
-def first_impacts(case: Case) -> Case:
-    return case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.25})})
+    return read_case(folder, COARSE.replace(LAW, law))
 
 
 def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
@@ -46,23 +38,15 @@ def test_a_table_is_the_law_that_it_samples(tmp_path: Path) -> None:
     above = np.abs(law.force(y)) - np.abs(power.force(y))
     assert -1e-6 < above.min() < 1e-6
     assert above.max() == pytest.approx(0.25 * 1e13 * (5.0e-6) ** 2, rel=1e-2)
-    assert case_file.load(str(write(tmp_path, toml.dumps(case)))) == case
-
-
-def write(folder: Path, text: str) -> Path:
-    path = folder / "again.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    assert read_case(tmp_path, toml.dumps(case)) == case
 
 
 def test_it_moves_as_the_law_that_it_samples(tmp_path: Path) -> None:
     """Reference: the power law itself; chords are 60 N off where the contacts press by 10 kN."""
     tips = []
     for law in (LAW, f"force_table = {POINTS}\n"):
-        case = first_impacts(case_with(tmp_path, law))
-        boom, model = build_boom(case), case.models[1]
-        plan = Plan.of(build(case, boom, model).system, case, model)
-        tips.append(plan.trajectory(lambda part: None).data["tip"].values)
+        case = change(case_with(tmp_path, law), **{"time.duration": 0.25})
+        tips.append(motion_of(case, 1).data["tip"].values)
     assert np.abs(tips[1] - tips[0]).max() < 1e-3 * np.ptp(tips[0])
 
 
@@ -71,12 +55,9 @@ def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
     (tmp_path / "pad.csv").write_text(f"# m, N\n{lines}", encoding="utf-8")
     inline = case_with(tmp_path, f"force_table = {POINTS}\n")
     assert case_with(tmp_path, 'force_file = "pad.csv"\n') == inline
-    path = tmp_path / "own.toml"
     own = COARSE.partition("contact = {")
-    path.write_text(
-        own[0] + 'contact = { force_file = "pad.csv" }' + own[2].partition("}")[2], encoding="utf-8"
-    )
-    case = case_file.load(str(path))
+    model = 'contact = { force_file = "pad.csv" }'
+    case = read_case(tmp_path, own[0] + model + own[2].partition("}")[2])
     (law,) = contact_laws(case, case.models[2])
     (same,) = contact_laws(inline, inline.models[2].model_copy(update={"contact": None}))
     assert law == same
@@ -126,14 +107,9 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
          "joint[1].force_file: forces must be positive, and must not fall at the end"),
     ],
 )  # fmt: skip
-def test_what_is_no_law_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, law: str, message: str
-) -> None:
+def test_what_is_no_law_is_refused(tmp_path: Path, law: str, message: str) -> None:
     for name, text in (
         ("words", "p, F\n1, a\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
     ):  # fmt: skip
         (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(BadInput) as error:
-        case_with(Path(), f"{law}\n")
-    assert str(error.value) == f"case.toml: {message}"
+    assert refusal(tmp_path, COARSE.replace(LAW, f"{law}\n")) == message

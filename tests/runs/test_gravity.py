@@ -10,11 +10,10 @@ import pytest
 
 from geometry.section import BoxSection
 from protractile.cases import run_case
-from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.messages import BadInput
 from runs.case.schema import Case
+from tests.runs.case_texts import read_case, refusal
 
 STEEL = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\nyield_strength = 690e6\n"
 ALUMINIUM = "{ youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0 }"
@@ -47,16 +46,12 @@ state = "equilibrium"
 """
 
 
-def written(folder: Path, rest: str = "", material: str = "", segment: str = "") -> Path:
-    path = folder / "case.toml"
-    material = material or f"[material]\n{STEEL}"
-    text = ARM.format(material=material, segment=segment, rest=rest)
-    path.write_text(text, encoding="utf-8")
-    return path
+def text_of(rest: str = "", material: str = "", segment: str = "") -> str:
+    return ARM.format(material=material or f"[material]\n{STEEL}", segment=segment, rest=rest)
 
 
 def read(folder: Path, rest: str = "", material: str = "", segment: str = "") -> Case:
-    return case_file.load(str(written(folder, rest, material, segment)))
+    return read_case(folder, text_of(rest, material, segment))
 
 
 def tip(case: Case) -> np.ndarray:
@@ -115,9 +110,7 @@ def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Pat
     case = read(tmp_path, material="# none\n", segment=f"material = {ALUMINIUM}")
     (arm,) = build_boom(case).segments
     assert arm.material.youngs_modulus == 7e10
-    again = tmp_path / "again.toml"
-    again.write_text(toml.dumps(case), encoding="utf-8")
-    assert case_file.load(str(again)) == case
+    assert read_case(tmp_path, toml.dumps(case)) == case
 
 
 @pytest.mark.parametrize(
@@ -153,7 +146,4 @@ def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Pat
     ],
 )
 def test_says_what_cannot_weigh(tmp_path: Path, rest: str, material: str, line: str) -> None:
-    path = written(tmp_path, rest, material)
-    with pytest.raises(BadInput) as caught:
-        case_file.load(str(path))
-    assert str(caught.value) == f"{path}: {line}"
+    assert refusal(tmp_path, text_of(rest, material)) == line

@@ -11,13 +11,12 @@ import pytest
 from mpi4py import MPI
 
 from dynamics.excitation import Sine
-from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import Workshop
-from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.pipeline.models import build
+from tests.runs.case_texts import read_case, refusal
 from tests.runs.test_actions import BENDING, CANTILEVER, ELEMENTS
 
 PART = '[[load]]\nsegment = "beam"\nfrom = 3.0\nto = 7.0\nmagnitude = -500.0\n'
@@ -25,12 +24,6 @@ MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\
 SERIES = '[[model]]\nname = "series"\nkind = "kantorovich"\nterms = [6]\nbase = "complete"\n'
 SHELL = '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.1\ncontact_tolerance = "any"\n'
 BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
-
-
-def case_with(folder: Path, load: str, model: str = ELEMENTS, beam: str = CANTILEVER) -> Case:
-    path = folder / "case.toml"
-    path.write_text(beam + load + model, encoding="utf-8")
-    return case_file.load(str(path))
 
 
 def tip_at_rest(case: Case) -> float:
@@ -58,7 +51,7 @@ def test_beams_rest_where_statics_put_them(
     tmp_path: Path, load: str, expected: Callable[[float], float], model: str
 ) -> None:
     """The influence line of the tip is a cubic, or with the moment its slope; both have it."""
-    found = tip_at_rest(case_with(tmp_path, load, model))
+    found = tip_at_rest(read_case(tmp_path, CANTILEVER + load + model))
     assert found == pytest.approx(expected(BENDING), rel=1e-9)
 
 
@@ -71,18 +64,16 @@ def test_a_shell_rests_near_a_beam_with_shear(
         "second_moment_of_area = 3.7986e-4\n", ""
     )
     elements = ELEMENTS + 'theory = "timoshenko"\n'
-    beams = tip_at_rest(case_with(tmp_path, load, elements, beam))
-    shell = tip_at_rest(case_with(tmp_path, load, SHELL, beam))
+    beams = tip_at_rest(read_case(tmp_path, beam + load + elements))
+    shell = tip_at_rest(read_case(tmp_path, beam + load + SHELL))
     assert shell == pytest.approx(beams, rel=5e-3)
 
 
 def test_they_have_histories_and_are_written_again(tmp_path: Path) -> None:
-    case = case_with(tmp_path, PART + "frequency = 2.0\n" + MOMENT)
+    case = read_case(tmp_path, CANTILEVER + PART + "frequency = 2.0\n" + MOMENT + ELEMENTS)
     loads = build_boom(case).loads
     assert [load.history == Sine(2.0) for load in loads] == [True, False]
-    again = tmp_path / "again.toml"
-    again.write_text(toml.dumps(case), encoding="utf-8")
-    assert case_file.load(str(again)) == case
+    assert read_case(tmp_path, toml.dumps(case)) == case
 
 
 @pytest.mark.parametrize(
@@ -99,6 +90,4 @@ def test_they_have_histories_and_are_written_again(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_what_cannot_act_is_refused(tmp_path: Path, load: str, message: str) -> None:
-    with pytest.raises(BadInput) as error:
-        case_with(tmp_path, load)
-    assert str(error.value) == f"{tmp_path / 'case.toml'}: load[1].{message}"
+    assert refusal(tmp_path, CANTILEVER + load + ELEMENTS) == f"load[1].{message}"

@@ -16,13 +16,11 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.profiles import hexagon
 from geometry.section import BoxSection
-from runs.case import reading as case_file
 from runs.pipeline.answers import ModelAnswers
-from runs.pipeline.means import Means
-from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.stresses import Fibres, outer_corners
-from runs.pipeline.summary import Summary
+from tests.runs.case_texts import read_case
+from tests.runs.summaries import answers_of
 
 CASE = """
 title = "A cantilever, loaded suddenly"
@@ -73,15 +71,7 @@ exponent = 1.0
 
 
 def answers(model: str, folder: Path, case: str = CASE) -> ModelAnswers:
-    """Of a run, as a folder gives them back."""
-    file = folder / "case.toml"
-    file.write_text(case.format(model=model), encoding="utf-8")
-    run = run_case(case_file.load(str(file)), "", Means())
-    assert run is not None
-    run.answer()
-    found = Summary.model_validate_json(str(run.results.summary)).answers
-    assert found is not None
-    return found.models["one"]
+    return answers_of(read_case(folder, case.format(model=model))).models["one"]
 
 
 def test_a_load_that_comes_suddenly_counts_twice(tmp_path: Path) -> None:

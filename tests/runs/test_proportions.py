@@ -11,7 +11,7 @@ from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.pipeline.proportions import slips
-from tests.runs.case_texts import STEEL, box, joint
+from tests.runs.case_texts import STEEL, box, joint, read_case
 
 CASE = f"""
 title = "An arm"
@@ -38,9 +38,7 @@ mesh_size = 0.1
 def slips_of(folder: Path, old: str, new: str) -> list[str]:
     """Of the case with something else in place of what it says."""
     assert CASE.count(old) == 1 or old == ""
-    path = folder / "case.toml"
-    path.write_text(CASE.replace(old, new) if old else CASE, encoding="utf-8")
-    case = case_file.load(str(path))
+    case = read_case(folder, CASE.replace(old, new) if old else CASE)
     return slips(case, build_boom(case))
 
 

@@ -18,12 +18,11 @@ from dynamics.line import Line
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.compression import Compression
 from geometry.section import BoxSection
-from runs.case import reading as case_file
 from runs.pipeline.answers import Answers
-from runs.pipeline.means import Means
-from runs.pipeline.run import run_case
 from runs.pipeline.section_forces import section_forces
 from studies.drawn_column import END, LAW, LENGTH, STIFFNESS, column
+from tests.runs.case_texts import read_case
+from tests.runs.summaries import answers_of
 from tests.touching import touching
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
@@ -88,16 +87,7 @@ def test_the_shear_force_is_that_of_where_axial_forces_have_come_to() -> None:
 
 @pytest.fixture(scope="module")
 def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
-    return answers_of(CASE, tmp_path_factory.mktemp("arm"))
-
-
-def answers_of(text: str, folder: Path) -> Answers:
-    file = folder / "case.toml"
-    file.write_text(text, encoding="utf-8")
-    run = run_case(case_file.load(str(file)), "", Means())
-    assert run is not None
-    run.answer()
-    return run.results.summary.answers
+    return answers_of(read_case(tmp_path_factory.mktemp("arm"), CASE))
 
 
 ALONG, ACROSS = 500.0, 1000.0 * np.cos(np.pi / 6.0)  # N/m
@@ -139,7 +129,7 @@ def test_the_pin_bears_what_goes_along(answers: Answers) -> None:
 def test_the_pin_bears_a_mass_that_sits_on_it(tmp_path: Path) -> None:
     """Reference: by hand, as above with 200 kg at the pin, which turn nothing."""
     text = CASE.replace("[[cylinder]]", "masses = [{ x = 1.0, mass = 200.0 }]\n[[cylinder]]")
-    pin, _ = answers_of(text, tmp_path).reactions
+    pin, _ = answers_of(read_case(tmp_path, text)).reactions
     assert pin.along == pytest.approx(10.0 * ALONG + 1000.0 - 0.8 * FORCE, rel=1e-3)
 
 
@@ -147,7 +137,7 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     """Reference: by hand, of the arm without what is before its pin."""
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
-    moved = answers_of(text, tmp_path).models["beam"].moved
+    moved = answers_of(read_case(tmp_path, text)).models["beam"].moved
     assert moved is not None
     (borne,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
     assert borne.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)

@@ -7,7 +7,6 @@ from math import sqrt
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
@@ -15,20 +14,20 @@ from runs.case.build import build_boom
 from runs.case.schema import Case, StopTable
 from runs.pipeline.models import build
 from runs.pipeline.statics import print_statics
+from tests.runs.case_texts import read_case
+from tests.runs.summaries import printed
 
 
-def told(case: Case, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    print_statics(case, build_boom(case), Console(width=200))
-    return [
-        " ".join(line.replace("│", " ").split()) for line in capsys.readouterr().out.split("\n")
-    ]
+def told(case: Case) -> list[str]:
+    shown = printed(print_statics, case, build_boom(case), width=200)
+    return [" ".join(line.replace("│", " ").split()) for line in shown.split("\n")]
 
 
-def test_masses_forces_and_tips_are_those_of_hand(capsys: pytest.CaptureFixture[str]) -> None:
+def test_masses_forces_and_tips_are_those_of_hand() -> None:
     """Reference: by hand, the lever rule; without play other code, 9.916 mm of shear-flexible
     elements; the play lifts the tip by 7 + 14 · 9 mm beyond, and bends nothing.
     """
-    lines = told(case_file.load(str(CASES / "coarse.toml")), capsys)
+    lines = told(case_file.load(str(CASES / "coarse.toml")))
     assert "outer 831.6 0 5" in lines
     assert "all 1382 8.5855" in lines
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
@@ -48,12 +47,12 @@ def test_masses_forces_and_tips_are_those_of_hand(capsys: pytest.CaptureFixture[
     assert "Play turns 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm." in lines
 
 
-def test_unequal_plays_are_not_pressed_in(capsys: pytest.CaptureFixture[str]) -> None:
+def test_unequal_plays_are_not_pressed_in() -> None:
     """Reference: by hand, √(F/k) of 2.2 and 2.8 kN on 1e13 N/m², whatever the play above."""
     case = case_file.load(str(CASES / "coarse.toml"))
     (joint,) = case.joints
     joint = joint.model_copy(update={"play_above": 0.001})
-    lines = told(case.model_copy(update={"joints": (joint,)}), capsys)
+    lines = told(case.model_copy(update={"joints": (joint,)}))
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     assert [float(value) for value in rows["inner", "9"]] == pytest.approx(
         [2.203, 0.0148], rel=2e-3
@@ -63,16 +62,14 @@ def test_unequal_plays_are_not_pressed_in(capsys: pytest.CaptureFixture[str]) ->
     )
 
 
-def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
     """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
     case = case_file.load(str(CASES / "coarse.toml"))
     tied = tuple(model for model in case.models if model.play_free)
     stop = StopTable.model_validate(
         {"segment": "inner", "x": "head", "play": 0.01, "stiffness": 10.0, "exponent": 1.0}
     )
-    lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}), capsys)
+    lines = told(case.model_copy(update={"models": tied, "stops": (stop,)}))
     assert not any("nan" in line or line.startswith("Play turns") for line in lines)
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     assert [float(value) for value in rows["inner", "19"]] == pytest.approx(
@@ -98,18 +95,14 @@ diaphragms = [{ x = "head", thickness = 0.05 }]
 """
 
 
-def test_stiffeners_weigh_across_as_along(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_stiffeners_weigh_across_as_along(tmp_path: Path) -> None:
     """Reference: by hand, plates times density; under 45° as much across as along."""
-    path = tmp_path / "case.toml"
-    path.write_text(STIFFENED, encoding="utf-8")
-    case = case_file.load(str(path))
+    case = read_case(tmp_path, STIFFENED)
     plain = 2.0 * (0.2 * 0.006 + 0.3 * 0.005) * 6.0 * 8000.0
     collar, lid = 1.0 * 0.02 * 8000.0, 0.2 * 0.3 * 0.05 * 8000.0
     weight = (plain + collar + lid) * 10.0 * sqrt(0.5)
     moment = (plain * 3.0 + collar * 5.5 + lid * 6.0) * 10.0 * sqrt(0.5)
-    lines = told(case, capsys)
+    lines = told(case)
     (row,) = (line.split() for line in lines if line.startswith("arm 0 "))
     assert [float(cell) for cell in row[2:]] == pytest.approx(
         [weight / 1e3, weight / 1e3, moment / 1e3], rel=1e-3
@@ -118,12 +111,9 @@ def test_stiffeners_weigh_across_as_along(
 
 def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -> None:
     """Reference: other code, elements, which have nodes where stiffeners are."""
-    path = tmp_path / "case.toml"
     elements = ', { name = "fe", kind = "finite-element", rotary_inertia = false }]'
-    path.write_text(
-        STIFFENED.replace("}]", "}" + elements, 1).replace("[3]", "[12]"), encoding="utf-8"
-    )
-    case = case_file.load(str(path))
+    text = STIFFENED.replace("}]", "}" + elements, 1).replace("[3]", "[12]")
+    case = read_case(tmp_path, text)
     boom = build_boom(case)
     series, beam = (build(case, boom, model).system.gathered() for model in case.models)
     tips = [
@@ -134,9 +124,9 @@ def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -
     assert series.frequencies[:2] == pytest.approx(beam.frequencies[:2], rel=1e-3)
 
 
-def test_a_boom_without_rest_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_boom_without_rest_says_so() -> None:
     """The square of its load is no number of any machine."""
     case = case_file.load(str(CASES / "coarse.toml"))
     segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
-    lines = told(case.model_copy(update={"segments": segments}), capsys)
+    lines = told(case.model_copy(update={"segments": segments}))
     assert lines[-2] == "No rest under the loads of t = 0 is found."

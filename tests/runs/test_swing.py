@@ -21,11 +21,11 @@ from dynamics.integrator import simulate
 from dynamics.trajectory import Trajectory
 from protractile.cases import run_case
 from runs import CASES
-from runs.case.reading import load
 from runs.case.schema import Case
 from runs.pipeline.swing import Swing, farthest_from_rest
 from runs.report import theme
 from runs.sweep.swings import Swings, describe, draw_swings, fastest_within, swings
+from tests.runs.case_texts import read_case
 
 # No play and a load that ramps: no chaos, and swings that are no mere distance of the start.
 PLAYLESS = "play = 0.0"
@@ -44,9 +44,7 @@ def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
     }.items():
         assert before in text
         text = text.replace(before, after, 1)
-    path = folder / "case.toml"
-    path.write_text(text, encoding="utf-8")
-    return load(str(path))
+    return read_case(folder, text)
 
 
 def swing_of(case: Case) -> Swing | None:
