@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from io import StringIO
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
@@ -19,6 +19,9 @@ from runs.pipeline.models import Plan, build
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
+
+if TYPE_CHECKING:
+    from mpi4py.MPI import Intracomm
 
 _MODEL = {
     "kind": "kantorovich",
@@ -68,9 +71,9 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
     return console.file.getvalue()
 
 
-def answers_of(case: Case) -> Answers:
+def answers_of(case: Case, comm: Intracomm | None = None) -> Answers:
     """What a run of a case answers, as a folder gives it back."""
-    run = run_case(case, "", Means())
+    run = run_case(case, "", Means(comm))
     assert run is not None
     run.answer()
     return Summary.model_validate_json(str(run.results.summary)).answers

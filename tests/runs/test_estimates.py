@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 import re
 import subprocess
@@ -12,7 +11,6 @@ from pathlib import Path
 from time import process_time
 
 import pytest
-from rich.console import Console
 
 from runs import CASES
 from runs.case import reading as case_file
@@ -24,6 +22,7 @@ from runs.pipeline.estimates import Cost, of_run, of_sweep, refuse_large
 from runs.pipeline.inferred import print_inferred
 from runs.sweep import points as sweep_points
 from tests.runs.coarse_case import COARSE
+from tests.runs.summaries import printed
 
 ROOT = Path(__file__).parents[2]
 
@@ -165,10 +164,8 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
         if "[damping]" not in edited:
             edited += "\n[damping]\nmass = 0.1\n"
         Path("case.toml").write_text(edited, encoding="utf-8")
-        console = Console(file=io.StringIO(), width=200)
         begin = process_time()
-        print_inferred(case_file.declared("case.toml"), console)
-        told.append(console.file.getvalue())
+        told.append(printed(print_inferred, case_file.declared("case.toml"), width=200))
     assert process_time() - begin < 20.0
     numbers = [[float(x) for x in re.findall(r"([\d.]+) (?:%|Hz)", text)] for text in told]
     assert len(numbers[0]) > 10

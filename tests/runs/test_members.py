@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Ensembles of a run: asked for by the case, of the same motion as the trajectories, on disk."""
+"""Ensembles of a run, and how few steps keep the slow motion's peaks."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,22 +13,29 @@ import xarray as xr
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure as Sheet
 
+from dynamics.gap_system import GapSystem
+from dynamics.integrator import AdaptiveStep
+from dynamics.motion import Motion
+from dynamics.predictability.low_pass import SlowPeaks, slow_peaks
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.messages import BadInput
 from runs.case.schema import Case, EnsembleTable
 from runs.pipeline.means import Means
-from runs.pipeline.members import slow_below
+from runs.pipeline.members import PEAKS, slow_below, steps_for_peaks
+from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case
 from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 from runs.report.pages import Addition
+from tests.runs.case_texts import refusal
+from tests.runs.coarse_case import COARSE
 
 SERIES = ["kantorovich-4", "kantorovich-5"]
 MODELS = [*SERIES, "beam-fe-tied"]
+STEP = 1.0e-3
 
 
 @pytest.fixture(scope="module")
@@ -99,18 +107,9 @@ def test_slow_is_below_the_closed_boom(case: Case) -> None:
 def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
     """A mass that no eigenproblem survives is each model's to complain about."""
     heavy = case.segments[0].model_copy(update={"mass_per_length": 1e300})
-    boom = build_boom(
-        case.model_copy(
-            update={
-                "segments": (
-                    heavy.model_copy(update={"height_to_width": None}),
-                    *case.segments[1:],
-                ),
-                "models": case.models[:1],
-            }
-        )
-    )
-    assert slow_below(boom, case.time) is None
+    segments = heavy.model_copy(update={"height_to_width": None}), *case.segments[1:]
+    changed = case.model_copy(update={"segments": segments, "models": case.models[:1]})
+    assert slow_below(build_boom(changed), case.time) is None
 
 
 def test_ensembles_say_what_they_are(run: Run) -> None:
@@ -148,14 +147,18 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     assert Results.load(tmp_path).ensembles is None
 
 
+@pytest.fixture
+def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
+    """Those that are drawn, by their names."""
+    found: dict[str, Sheet] = {}
+    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path, **_: found.update({path.stem: sheet}))
+    return found
+
+
 def test_figures_have_bands_and_horizons(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Run, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
     """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
-    sheets: dict[str, Sheet] = {}
-    monkeypatch.setattr(
-        Sheet, "savefig", lambda sheet, path, **_: sheets.update({path.stem: sheet})
-    )
     captions = {figure.path.stem: figure.caption for figure in draw(run.results, tmp_path)}
     ensembles = run.results.ensembles
     assert ensembles is not None
@@ -187,13 +190,9 @@ def ensembles_of(run: Run) -> dict[str, EnsembleSummary]:
 
 
 def test_slow_peaks_are_drawn_with_their_spreads(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Run, tmp_path: Path, sheets: dict[str, Sheet]
 ) -> None:
     """Reference: the numbers of the summary, in mm."""
-    sheets: dict[str, Sheet] = {}
-    monkeypatch.setattr(
-        Sheet, "savefig", lambda sheet, path, **_: sheets.update({path.stem: sheet})
-    )
     known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "knowledge"}
     assert list(known) == ["slow-peaks", "horizons"]
     (axes,) = sheets["slow-peaks"].axes
@@ -239,15 +238,65 @@ def test_models_are_compared_in_the_summary(run: Run) -> None:
     ],
 )  # fmt: skip
 def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:
-    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
-    path = tmp_path / "case.toml"
-    path.write_text(text.replace("[material]", f"[ensemble]\n{table}\n\n[material]", 1))
-    with pytest.raises(BadInput) as refused:
-        case_file.load(str(path))
-    assert str(refused.value) == f"{path}: ensemble.{line}"
+    text = COARSE.replace("[material]", f"[ensemble]\n{table}\n\n[material]", 1)
+    assert refusal(tmp_path, text) == f"ensemble.{line}"
 
 
 def test_the_paper_s_case_asks_for_ensembles() -> None:
     table = case_file.load(str(CASES / "paper.toml")).ensemble
     assert table == EnsembleTable(members=32, relative=1e-9, seed=1, vary="load")
     assert case_file.load(str(CASES / "coarse.toml")).ensemble is None
+
+
+@pytest.fixture(scope="module")
+def five_terms() -> tuple[GapSystem, float]:
+    """The five-term series, and the cut-off of its slow motion in Hz."""
+    case = case_file.load(str(CASES / "paper.toml"))
+    boom = build_boom(case)
+    model = next(model for model in case.models if model.name == "kantorovich-5")
+    assert model.kind == "kantorovich"
+    cutoff = slow_below(boom, case.time)
+    assert cutoff is not None
+    return build(case, boom, model).system, cutoff
+
+
+def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
+    """Slow peaks of one run as those of an ensemble."""
+    run = AdaptiveStep()(Motion(system, 4.0, STEP))
+    times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
+    period = float(np.diff(times).mean())
+    return SlowPeaks(
+        times, np.full(times.size, spread), heights, spread * heights, period, period_spread=0.0
+    )
+
+
+def test_counts_the_fewest_of_the_trials_that_hold(five_terms: tuple[GapSystem, float]) -> None:
+    """Reference: by hand. Slow peaks scatter by some percent from the second on."""
+    system, cutoff = five_terms
+    found = steps_for_peaks(Motion(system, 4.0, STEP), peaks_of(system, cutoff, 0.03), cutoff)
+    assert found is not None
+    sizes = [trial.step for trial in found.trials]
+    assert sizes == pytest.approx([STEP * 2.0**i for i in range(-4, len(sizes) - 4)])
+    assert sizes[-1] < 0.25 / cutoff <= 2.0 * sizes[-1]
+    steps = [trial.steps for trial in found.trials]
+    assert steps == [pytest.approx(found.duration / size, abs=16.0) for size in sizes]
+    assert max(trial.energy_residual for trial in found.trials) < 1e-9
+    holding = [trial.steps for trial in found.trials if trial.holds]
+    assert found.fewest == min(holding)
+    # Which of the long steps hold is chance, another one on another machine.
+    assert found.fewest <= steps[0]
+
+
+def test_peaks_that_no_run_has_are_kept_by_none(five_terms: tuple[GapSystem, float]) -> None:
+    system, cutoff = five_terms
+    peaks = peaks_of(system, cutoff, 0.0)
+    peaks = replace(peaks, heights=1.05 * peaks.heights)
+    found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
+    assert found is not None
+    assert found.fewest is None
+
+
+def test_too_few_peaks_are_not_asked_for(five_terms: tuple[GapSystem, float]) -> None:
+    system, cutoff = five_terms
+    two = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
+    assert steps_for_peaks(Motion(system, 4.0, STEP), two, cutoff) is None

@@ -10,10 +10,8 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.answers import Added, Answers
-from runs.pipeline.means import Means
 from runs.pipeline.model_quality import quality_notes
-from runs.pipeline.run import run_case
-from tests.runs.summaries import model_summary, summary_of
+from tests.runs.summaries import answers_of, model_summary, summary_of
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -23,17 +21,13 @@ def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Answers:
     """What some models of the paper's boom answer."""
     case = case_file.load(str(CASES / "coarse.toml"))
     models = tuple(model for model in case.models if model.name in names)
-    run = run_case(case.model_copy(update={"models": models}), "", Means(comm))
-    assert run is not None
-    run.answer()
-    return run.results.summary.answers
+    return answers_of(case.model_copy(update={"models": models}), comm)
 
 
 @pytest.fixture(scope="module")
 def answers() -> Answers:
     """Of a series and elements with play, and of elements without."""
-    names = ["kantorovich-5", "beam-fe", "beam-fe-tied"]
-    return run_of(names)
+    return run_of(["kantorovich-5", "beam-fe", "beam-fe-tied"])
 
 
 def numbers(found: Answers, model: str) -> dict[tuple[str, str], Added]:
@@ -109,15 +103,13 @@ def test_chaos_is_told_of_what_is_chaotic_alone() -> None:
             "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4),
         }
     )
-    found = {one.what: [] for one in quality_notes(summary, Answers({}), 10.0)}
-    for one in quality_notes(summary, Answers({}), 10.0):
-        found[one.what].append(one.line)
-    chaotic, regular = found["horizon"]
-    assert "from here on: wild 3.20 s." in chaotic
-    assert regular == "The motion of calm can be predicted over all 10 s."
-    assert found["energy"] == [
+    chaotic, regular, energy = quality_notes(summary, Answers({}), 10.0)
+    assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
+    assert "from here on: wild 3.20 s." in chaotic.line
+    assert regular.line == "The motion of calm can be predicted over all 10 s."
+    assert energy.line == (
         "Energy is accounted for within 0.0002 of the work done in every model; the least well in "
         "calm."
-    ]
+    )
     none = summary_of({"plain": model_summary()})
     assert [one.what for one in quality_notes(none, Answers({}), 10.0)] == ["energy"]
